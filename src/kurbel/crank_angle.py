@@ -1,0 +1,80 @@
+"""Crank angles in degrees, reduced exactly before any sine is taken, so that dead centres are exact zeros."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from kurbel.arithmetic import where
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+_RADIANS_PER_DEGREE = math.pi / 180
+
+
+class CrankAngle(NamedTuple):
+    """A crank angle, or an array of them, with its sine and cosine.
+
+    degrees: angle in degrees, any size; sin, cos: of the same shape. The formulas of the mechanisms need only
+    `sin` and `cos`, which may be floats, arrays, jets or numbers of higher precision alike.
+    """
+
+    degrees: Any
+    sin: Any
+    cos: Any
+
+    @classmethod
+    def of(cls, degrees: float | NDArray[np.float64], beyond: float | NDArray[np.float64] = 0.0) -> CrankAngle:
+        """Return the angle for a number or an array of degrees.
+
+        beyond: degrees to be added that are too small to show in `degrees`: 90 and 1e-20 are an angle just beyond 90°.
+
+        >>> CrankAngle.of(180.0)
+        CrankAngle(degrees=180.0, sin=0.0, cos=-1.0)
+
+        Raises ValueError for nan or inf.
+        """
+        if isinstance(degrees, (int, float)):
+            return cls(degrees, *_sin_cos_scalar(degrees))
+        return cls(degrees, *_sin_cos_array(degrees, beyond))
+
+    @property
+    def versine(self) -> Any:
+        """1 − cos φ, without cancellation beside φ = 0."""
+        return where(self.cos >= 0, self.sin * self.sin / (1 + abs(self.cos)), 1 + abs(self.cos))
+
+    @property
+    def vercosine(self) -> Any:
+        """1 + cos φ, without cancellation beside φ = 180°."""
+        return where(self.cos >= 0, 1 + abs(self.cos), self.sin * self.sin / (1 + abs(self.cos)))
+
+
+def _sin_cos_scalar(degrees: float) -> tuple[float, float]:
+    if not math.isfinite(degrees):
+        raise ValueError("a crank angle must be finite")
+    rest = math.remainder(degrees, 360.0)
+    quarter = round(rest / 90.0)
+    rest = (rest - 90.0 * quarter) * _RADIANS_PER_DEGREE
+    sin, cos = math.sin(rest), math.cos(rest)
+    # adding 0.0 turns -0.0 into 0.0
+    pair = ((sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin))[quarter % 4]
+    return pair[0] + 0.0, pair[1] + 0.0
+
+
+def _sin_cos_array(
+    degrees: NDArray[np.float64], beyond: float | NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    import numpy as np
+
+    if not np.isfinite(degrees).all():
+        raise ValueError("a crank angle must be finite")
+    rest = np.fmod(degrees, 360.0)
+    quarter = np.rint(rest / 90.0)
+    rest = (rest - 90.0 * quarter + beyond) * _RADIANS_PER_DEGREE
+    sin, cos = np.sin(rest), np.cos(rest)
+    turned = quarter.astype(int) % 4
+    crossed = turned % 2 == 1
+    sin, cos = np.where(crossed, cos, sin), np.where(crossed, sin, cos)
+    return np.where(turned >= 2, -sin, sin) + 0.0, np.where((turned == 1) | (turned == 2), -cos, cos) + 0.0

@@ -1,0 +1,330 @@
+"""Units: the one gate between what people write (`450 mm`, `5.4 at`) and the SI floats inside.
+
+A unit belongs to a *kind* (length, force, pressure …), and the kind that a key asks for decides which units are
+legal: `12 kg` is no force. Two bases are not plain SI, both to keep exact what people write: angles are held in
+degrees (a dead centre is at 180, not near pi) and speeds of rotation in revolutions per second.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from functools import cache
+
+from kurbel.errors import UnitError
+
+Factor = tuple[float, float]
+"""A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""
+
+_G = 9.80665  # standard gravity, m/s2: makes kgf and at exact
+_INCH = 0.0254
+_POUND = 0.45359237
+_LBF = _POUND * _G
+
+_LENGTH: dict[str, Factor] = {
+    "m": (1, 1),
+    "mm": (1, 1e3),
+    "cm": (1, 1e2),
+    "dm": (1, 10),
+    "um": (1, 1e6),
+    "km": (1e3, 1),
+    "in": (254, 1e4),
+    "ft": (3048, 1e4),
+}
+_AREA = {f"{name}2": (up * up, down * down) for name, (up, down) in _LENGTH.items()}
+_MASS: dict[str, Factor] = {"kg": (1, 1), "g": (1, 1e3), "t": (1e3, 1), "lb": (_POUND, 1)}
+_FORCE: dict[str, Factor] = {
+    "N": (1, 1),
+    "kN": (1e3, 1),
+    "MN": (1e6, 1),
+    "kgf": (_G, 1),
+    "kp": (_G, 1),
+    "tf": (1e3 * _G, 1),
+    "lbf": (_LBF, 1),
+}
+_TIME: dict[str, Factor] = {"s": (1, 1), "min": (60, 1), "h": (3600, 1)}
+
+
+def _product(first: dict[str, Factor], second: dict[str, Factor], joint: str) -> dict[str, Factor]:
+    """Return every unit of `first` times (joint " ") or over (joint "/") every unit of `second`."""
+    over = joint == "/"
+    return {
+        f"{a}{joint}{b}": (au * (bd if over else bu), ad * (bu if over else bd))
+        for a, (au, ad) in first.items()
+        for b, (bu, bd) in second.items()
+    }
+
+
+_PRESSURE: dict[str, Factor] = {
+    "Pa": (1, 1),
+    "kPa": (1e3, 1),
+    "MPa": (1e6, 1),
+    "GPa": (1e9, 1),
+    "hPa": (1e2, 1),
+    "mbar": (1e2, 1),
+    "bar": (1e5, 1),
+    "at": (98066.5, 1),
+    "atm": (101325, 1),
+    "psi": (_LBF, _INCH * _INCH),
+    "Torr": (101325, 760),
+    "mmHg": (133.322387415, 1),
+    "mWS": (_G * 1e3, 1),
+}
+_TORQUE: dict[str, Factor] = {"Nm": (1, 1), "kNm": (1e3, 1)}
+
+_BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
+    "length": lambda: _LENGTH,
+    "area": lambda: _AREA,
+    "mass": lambda: _MASS,
+    "force": lambda: _FORCE,
+    "pressure": lambda: {**_PRESSURE, **_product(_FORCE, _AREA, "/")},
+    "time": lambda: _TIME,
+    "angle": lambda: {"deg": (1, 1), "°": (1, 1), "rad": (180, math.pi)},
+    "speed": lambda: {
+        "1/s": (1, 1),
+        "rpm": (1, 60),
+        "1/min": (1, 60),
+        "U/min": (1, 60),
+        "rps": (1, 1),
+        "Hz": (1, 1),
+        "rad/s": (1, 2 * math.pi),
+    },
+    "angular_velocity": lambda: {"rad/s": (1, 1)},
+    "angular_acceleration": lambda: {"rad/s2": (1, 1)},
+    "velocity": lambda: _product(_LENGTH, _TIME, "/"),
+    "acceleration": lambda: _product(_LENGTH, {"s2": (1, 1)}, "/"),
+    "torque": lambda: {**_product(_FORCE, _LENGTH, " "), **_TORQUE},
+    "energy": lambda: {"J": (1, 1), "kJ": (1e3, 1), "MJ": (1e6, 1), **_product(_FORCE, _LENGTH, " "), "Nm": (1, 1)},
+    "power": lambda: {
+        "W": (1, 1),
+        "kW": (1e3, 1),
+        "MW": (1e6, 1),
+        "PS": (75 * _G, 1),
+        "hp": (550 * _LBF * 3048, 1e4),
+        "kgf m/s": (_G, 1),
+    },
+    "inertia": lambda: _product(_MASS, _AREA, " "),
+    "gd2": lambda: {
+        **_product({"kg": (1, 1), "t": (1e3, 1)}, {"m2": (1, 1), "cm2": (1, 1e4)}, " "),
+        "kgf m2": (1, 1),
+        "kp m2": (1, 1),
+        "tf m2": (1e3, 1),
+        "N m2": (1, _G),
+    },
+    "stiffness": lambda: _product(
+        {**_product(_FORCE, {"m": (1, 1), "mm": (1, 1e3)}, " "), **_TORQUE}, {"rad": (1, 1)}, "/"
+    ),
+    "damping": lambda: (
+        _product({**_product(_FORCE, {"m": (1, 1)}, " "), **_TORQUE}, {"rad/s": (1, 1), "s/rad": (1, 1)}, " ")
+        | {"N m s/rad": (1, 1), "Nm s/rad": (1, 1), "kN m s/rad": (1e3, 1)}
+    ),
+    "pressure_velocity": lambda: {"W/m2": (1, 1), "kgf m/s/cm2": (_G * 1e4, 1)},
+}
+"""Kind -> its units. `gd2` counts in kg m2 of GD2 = 4J: a weight of 1 kgf is that of 1 kg."""
+
+SI = {
+    "length": "m",
+    "area": "m^2",
+    "mass": "kg",
+    "force": "N",
+    "pressure": "Pa",
+    "time": "s",
+    "angle": "deg",
+    "speed": "1/s",
+    "angular_velocity": "rad/s",
+    "angular_acceleration": "rad/s^2",
+    "velocity": "m/s",
+    "acceleration": "m/s^2",
+    "torque": "N m",
+    "energy": "J",
+    "power": "W",
+    "inertia": "kg m^2",
+    "gd2": "kg m^2",
+    "stiffness": "N m/rad",
+    "damping": "N m s/rad",
+    "pressure_velocity": "W/m^2",
+    "ratio": "",
+}
+TECHNICAL = SI | {
+    "length": "mm",
+    "area": "cm^2",
+    "force": "kgf",
+    "pressure": "at",
+    "speed": "rpm",
+    "torque": "kgf m",
+    "energy": "kgf m",
+    "power": "PS",
+    "gd2": "kgf m^2",
+    "pressure_velocity": "kgf m/s/cm^2",
+}
+SYSTEMS = {"si": SI, "technical": TECHNICAL}
+"""Unit system -> kind -> the unit in which results are shown."""
+
+_IN_MESSAGES = TECHNICAL | {
+    "force": "N",
+    "pressure": "bar",
+    "torque": "N m",
+    "energy": "J",
+    "power": "W",
+    "area": "mm^2",
+}
+NUMBER = re.compile(r"[-+]?(?:(?:0|[1-9]\d*)(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
+"""A number as YAML 1.2 writes it: no leading zero, no underscore, no base 60, no inf."""
+
+
+@cache
+def _units_of(kind: str) -> dict[str, Factor]:
+    return _BUILDERS[kind]()
+
+
+def _normal(unit: str) -> str:
+    """Write `kg·m²`, `kg*m^2` and `kg  m2` alike."""
+    unit = (
+        unit.replace("²", "2").replace("^", "").replace("·", " ").replace("*", " ").replace("µ", "u").replace("μ", "u")
+    )
+    return re.sub(r"\s*/\s*", "/", " ".join(unit.split()))
+
+
+def unit_factor(unit: str, kind: str) -> Factor:
+    """Return multiplier and divisor that turn a value in `unit` into the base of `kind`.
+
+    Raises UnitError with the known units and, where the unit is one of another kind, that kind.
+    """
+    known = _units_of(kind)
+    factor = known.get(_normal(unit))
+    if factor is not None:
+        return factor
+    raise UnitError(
+        f"unknown {_kind_name(kind)} unit '{unit.strip()}' (known: {_known_text(kind)}){_unit_hint(unit, kind)}"
+    )
+
+
+def _kind_name(kind: str) -> str:
+    return {"gd2": "GD²", "speed": "speed of rotation"}.get(kind, kind.replace("_", " "))
+
+
+def _known_text(kind: str) -> str:
+    names = list(_units_of(kind))
+    return ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
+
+
+def _unit_hint(unit: str, kind: str) -> str:
+    name = _normal(unit)
+    if number := NUMBER.match(name):
+        return f"; write the unit alone, without {number.group()}"
+    if name in ("barg", "bara", "atu", "atü", "ata", "psig", "psia"):
+        return "; whether a pressure is gauge or absolute is said by the key 'pressures'"
+    alike = [known for known in _units_of(kind) if known.lower() == name.lower()]
+    if alike:
+        return f"; did you mean '{alike[0]}'?"
+    kinds = [_kind_name(kind) for kind in _BUILDERS if name in _units_of(kind)]
+    return f"; {unit.strip()} is a unit of {kinds[0]}" if kinds else ""
+
+
+def parse_number(text: str) -> float:
+    """Return the finite number that `text` is. Raises UnitError that says what to write instead."""
+    stripped = text.strip()
+    if NUMBER.fullmatch(stripped):
+        value = float(stripped)
+        if math.isfinite(value):
+            return value
+        raise UnitError(f"{stripped} is too large to compute with")
+    raise UnitError(f"expected a number, got '{text}'{_number_hint(stripped)}")
+
+
+def _number_hint(text: str) -> str:
+    if re.fullmatch(r"[-+]?\d+,\d+", text):
+        return "; write the decimal point: " + text.replace(",", ".")
+    if re.fullmatch(r"[-+]?[\d.]+(,[\d.]+)+", text):
+        return "; write it without commas between thousands"
+    if re.fullmatch(r"[-+]?\d+(\.\d+)?\s*%", text):
+        return f"; write it as a fraction: {float(text[:-1]) / 100:.12g}"
+    if re.fullmatch(r"[-+]?[\d_]+(\.\d+)?", text) and "_" in text:
+        return "; leave out the underscores"
+    if re.fullmatch(r"[-+]?0\d+(\.\d*)?", text):
+        return "; leave out the leading zero"
+    if re.fullmatch(r"\d+(:\d+(\.\d+)?)+", text):
+        return "; a ratio is written as one number, such as 5 for 5:1"
+    if re.fullmatch(r"[-+]?\d+(\.\d+)?/\d+(\.\d+)?", text):
+        over, under = (float(part) for part in text.split("/"))
+        return f"; write it as one number: {over / under:.12g}" if under else ""
+    if text.lower().strip("+-.") in ("nan", "inf", "infinity"):
+        return "; it must be finite"
+    number = NUMBER.match(text)
+    if number and re.match(r"\s*[A-Za-z°]", text[number.end() :]) and not re.match("0[box]", text):
+        return f"; it has no unit, write {number.group()}"
+    return ""
+
+
+def parse_quantity(text: str, kind: str) -> float:
+    """Return the value of `text`, a number with a unit, in the base of `kind`.
+
+    >>> parse_quantity("450 mm", "length")
+    0.45
+
+    Raises UnitError when there is no number, no unit, or a unit of another kind.
+    """
+    stripped = text.strip()
+    number = NUMBER.match(stripped)
+    if not number:
+        raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
+    unit = stripped[number.end() :].strip()
+    if not unit:
+        raise UnitError(f"{stripped} has no unit; write it with one, such as '{stripped} {_unit_example(kind)}'")
+    if re.match(r",\d+(?![\d.,])", unit):
+        raise UnitError(f"'{stripped}' has a decimal comma; write {stripped.replace(',', '.', 1)}")
+    if re.match(r",\d", unit):
+        raise UnitError(f"'{stripped}' has commas between thousands; leave them out")
+    if re.match(r"[\d._:]", unit) and not unit.startswith("1/"):
+        raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
+    up, down = unit_factor(unit, kind)
+    value = float(number.group()) * up / down
+    if not math.isfinite(value):
+        raise UnitError(f"{stripped} is too large to compute with")
+    return value
+
+
+def _unit_example(kind: str) -> str:
+    return {
+        "length": "mm",
+        "pressure": "bar",
+        "force": "N",
+        "speed": "rpm",
+        "torque": "N m",
+        "gd2": "kgf m2",
+        "inertia": "kg m2",
+    }.get(kind, next(iter(_units_of(kind))))
+
+
+def example(kind: str) -> str:
+    """Return a value of this kind as a person would write it, for messages and for the schema."""
+    number = {"length": "450", "pressure": "5.4", "speed": "50", "angle": "90", "mass": "120"}.get(kind, "10")
+    return f"{number} {_unit_example(kind)}"
+
+
+def unit_names(kind: str) -> tuple[str, ...]:
+    """Return the units of a kind in the spelling that messages and the schema use."""
+    return tuple(_units_of(kind))
+
+
+def convert(value: float, kind: str, system: str = "si") -> float:
+    """Return a base value in the unit in which the system shows this kind."""
+    unit = SYSTEMS[system][kind]
+    if not unit or system == "si":
+        return value
+    up, down = unit_factor(unit, kind)
+    return value if up == down else value / up * down
+
+
+def show(value: float, kind: str) -> str:
+    """Write a base value for a message, in the unit that engineers use.
+
+    >>> show(0.3, "length")
+    '300 mm'
+    """
+    unit = _IN_MESSAGES[kind]
+    if not unit:
+        return f"{value:.6g}"
+    up, down = unit_factor(unit, kind)
+    return f"{value / up * down:.6g} {unit}"
