@@ -1,0 +1,140 @@
+"""The slider-crank in units of its crank radius: one set of formulas for every kind of number.
+
+Arguments of all functions: `sin`, `cos` of the crank angle; `lam` = R/L; `rho` = 1 − λ² (from R and L as
+(L − R)(L + R)/L², so that it keeps its digits near λ = 1). They may be floats, arrays of any shape, jets, Decimals or
+mpmath numbers; only + − × ÷ and the square root are used. The results have the shape of `sin`.
+
+The textbook formulas subtract nearly equal terms beside the dead centres; here every sum that can be has terms of one
+sign. Measured against mpmath for λ from 1e-12 to 1 − 1e-12: x and c within 8 ulp, also beside their zeros.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from kurbel.arithmetic import sqrt, where
+
+
+def cos_rod_angle(sin: Any, cos: Any, rho: Any) -> Any:
+    """Return cos ψ = √(cos²φ + ρ sin²φ), which is √(1 − λ² sin²φ) without its cancellation."""
+    return sqrt(cos * cos + rho * (sin * sin))
+
+
+def displacement_factor(sin: Any, cos: Any, lam: Any, rho: Any) -> Any:
+    """Return x/R = (1 − cos φ) + (1 − cos ψ)/λ, R 285, as a sum of positive terms.
+
+    >>> displacement_factor(1.0, 0.0, 0.0, 1.0)
+    1.0
+    """
+    square = sin * sin
+    near = 1 + abs(cos)
+    # 1 − cos φ = sin²φ/(1 + cos φ) on the inner half, where the difference would cancel
+    versine = where(cos >= 0, square / near, near)
+    return versine + lam * square / (1 + cos_rod_angle(sin, cos, rho))
+
+
+def _lead(cos: Any, kappa: Any, lam: Any, rho: Any) -> Any:
+    """Return cos ψ + λ cos φ; for cos φ < 0 as ρ/(cos ψ − λ cos φ), since cos²ψ − λ² cos²φ = ρ."""
+    total = kappa + lam * abs(cos)
+    return where(cos >= 0, total, rho / total)
+
+
+def velocity_factor(sin: Any, cos: Any, lam: Any, rho: Any) -> Any:
+    """Return c/v = T/P = sin(φ + ψ)/cos ψ, R 288, 303.
+
+    >>> velocity_factor(1.0, 0.0, 0.25, 0.9375)
+    1.0
+    """
+    kappa = cos_rod_angle(sin, cos, rho)
+    return sin * _lead(cos, kappa, lam, rho) / kappa
+
+
+def acceleration_factor(sin: Any, cos: Any, lam: Any, rho: Any) -> Any:
+    """Return b R/v² = cos(φ + ψ)/cos ψ + λ cos²φ/cos³ψ: exact, where R 291 is its first-order form.
+
+    Written as cos φ (cos ψ + λ cos φ)/cos ψ − λ ρ sin²φ/cos³ψ, whose two terms have one sign for cos φ < 0.
+
+    >>> acceleration_factor(0.0, 1.0, 0.25, 0.9375)
+    1.25
+    """
+    kappa = cos_rod_angle(sin, cos, rho)
+    return cos * _lead(cos, kappa, lam, rho) / kappa - lam * rho * (sin * sin) / (kappa * kappa * kappa)
+
+
+def radial_factor(sin: Any, cos: Any, lam: Any, rho: Any) -> Any:
+    """Return D/P = cos(φ + ψ)/cos ψ, R 302."""
+    return cos - lam * (sin * sin) / cos_rod_angle(sin, cos, rho)
+
+
+def first_order_displacement(sin: Any, cos: Any, lam: Any) -> Any:
+    """Return the book's x/R ≈ 1 − cos φ + ½ λ sin²φ, R 286, B 22."""
+    return 1 - cos + lam * (sin * sin) / 2
+
+
+def first_order_velocity(sin: Any, cos: Any, lam: Any) -> Any:
+    """Return the book's c/v ≈ sin φ + ½ λ sin 2φ, B 25."""
+    return sin + lam * sin * cos
+
+
+def first_order_acceleration(sin: Any, cos: Any, lam: Any) -> Any:
+    """Return the book's b R/v² ≈ cos φ + λ cos 2φ, R 291, B 26."""
+    return cos + lam * (cos * cos - sin * sin)
+
+
+class Peak(NamedTuple):
+    """Where a factor is largest or smallest: sine and cosine of the crank angle, and the value there."""
+
+    sin: float
+    cos: float
+    value: float
+
+    @property
+    def degrees(self) -> float:
+        """The crank angle in degrees, between 0 and 180."""
+        return math.degrees(math.atan2(self.sin, self.cos))
+
+
+def velocity_peak(lam: float, rho: float) -> Peak:
+    """Return the place and value of c_max/v, where the exact acceleration is zero.
+
+    With q = sin²ψ the condition is q³ − q² − q + λ² = 0, and cos φ = λ sin²φ cos ψ, c_max = v sin φ (1 + sin²ψ).
+    The one root in (0, 1) is taken in trigonometric form, free of cancellation from λ = 1e-300 to 1 − 2⁻⁵³.
+
+    >>> round(velocity_peak(0.2, 0.96).value, 7)
+    1.0198331
+    """
+    square = lam * lam
+    angle = (2 / 3) * math.asin(math.sqrt(27 * rho / 32))
+    cos2_psi = (4 / 3) * math.sin(angle / 2) ** 2 + (2 / math.sqrt(3)) * math.sin(angle)
+    eta = math.asin(27 * square / (math.sqrt(27) * math.sqrt(5 + 27 * square) + math.sqrt(135 * rho))) / 3
+    sin2_psi = (8 / 3) * math.sin(eta) * math.sin((2 / 3) * math.asin(math.sqrt(27 / 32)) + math.pi / 3 - eta)
+    sin2_phi = sin2_psi / square if square > 1e-290 else 1.0  # λ² underflows: the peak is at 90°
+    sin2_phi = min(sin2_phi, 1.0)
+    sin = math.sqrt(sin2_phi)
+    return Peak(sin, lam * sin2_phi * math.sqrt(cos2_psi), sin * (1 + sin2_psi))
+
+
+def acceleration_dip(lam: float, rho: float) -> Peak | None:
+    """Return the smallest b R/v² inside the stroke, or None where b is smallest at the outer dead centre.
+
+    It exists for λ > (√21 − 3)/6 = 0.263763 (the first-order formula says 1/4). With y = −λ cos φ/cos ψ the condition
+    is 3y(1 − y)(1 + y)² = ρ, which has exactly one root in (0, λ).
+    """
+    if 3 * lam * (1 + lam) <= 1:
+        return None
+    low, high, y = 0.0, lam, rho / 3
+    for _ in range(60):
+        excess = 3 * y * (1 - y) * (1 + y) ** 2 - rho
+        low, high = (y, high) if excess < 0 else (low, y)
+        slope = 3 * (1 + y) * ((1 - 2 * y) * (1 + y) + 2 * y * (1 - y))
+        following = y - excess / slope if slope > 0 else low
+        if not low < following < high:
+            following = (low + high) / 2
+        if abs(following - y) <= 4 * math.ulp(y):
+            break
+        y = following
+    kappa = math.sqrt(rho / ((1 - y) * (1 + y)))
+    cos = -y * kappa / lam
+    sin = math.sqrt((1 - cos) * (1 + cos))
+    return Peak(sin, cos, acceleration_factor(sin, cos, lam, rho))

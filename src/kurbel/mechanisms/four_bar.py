@@ -1,0 +1,270 @@
+"""Four-bar crank-rocker (Bogenschubkurbel), R ch. 14 A: a crank, a coupler and a rocker on a frame."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+from kurbel.arithmetic import bearing, sqrt
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Key, Keys, Physical
+from kurbel.mechanisms import Extreme, Mechanism, Swing, check_lengths, fan
+from kurbel.units import show
+
+if TYPE_CHECKING:
+    from kurbel.crank_angle import CrankAngle
+
+
+class Loop(NamedTuple):
+    """Four links over the length of the frame, with the gaps that decide how they close.
+
+    crank a, coupler b, rocker c; span 1 − a; flat b + c − a − 1; near_coupler 1 − a + b − c; near_rocker 1 − a + c − b.
+    It closes at the crank angles where its triangle of coupler, rocker and diagonal does, whether the crank turns fully
+    or not.
+    """
+
+    crank: float
+    coupler: float
+    rocker: float
+    span: float
+    flat: float
+    near_coupler: float
+    near_rocker: float
+    unlike: float
+
+    @classmethod
+    def of(cls, crank: float, coupler: float, rocker: float, frame: float) -> Loop:
+        """Return the loop of four lengths in one unit."""
+        a, b, c = crank / frame, coupler / frame, rocker / frame
+        return cls(
+            a,
+            b,
+            c,
+            (frame - crank) / frame,
+            math.fsum((coupler, rocker, -crank, -frame)) / frame,
+            math.fsum((frame, coupler, -crank, -rocker)) / frame,
+            math.fsum((frame, rocker, -crank, -coupler)) / frame,
+            (coupler - rocker) / frame,
+        )
+
+    def at(self, angle: CrankAngle) -> Closure:
+        """Return the loop closed at a crank angle, its gaps built from positive terms."""
+        a, near, far = self.crank, angle.versine, angle.vercosine
+        square = self.span * self.span + 2 * a * near
+        diagonal = sqrt(square)
+        lift = 2 * a * near / (diagonal + abs(self.span)) + (abs(self.span) - self.span)  # diagonal − (1 − a)
+        drop = 2 * a * far / (1 + a + diagonal)  # 1 + a − diagonal
+        first, second = self.near_coupler + lift, self.near_rocker + lift
+        beyond, total = self.flat + drop, self.coupler + self.rocker + diagonal
+        # twice the area of the triangle coupler, rocker, diagonal, by Heron's product of differences
+        area = sqrt(beyond * total) * sqrt(first * second) / 2
+        return Closure(self, angle, near, square, area)
+
+
+class Closure(NamedTuple):
+    """A loop at a crank angle: square w of the diagonal from pin to rocker pivot, and H, twice the triangle's area."""
+
+    loop: Loop
+    angle: CrankAngle
+    near: Any
+    square: Any
+    area: Any
+
+    @property
+    def direction(self) -> tuple[Any, Any]:
+        """(sin θ, cos θ) of the rocker from the line of the pivots, its joint to the left of pin → rocker pivot."""
+        across, along = self.loop.crank * self.angle.sin, self.loop.span + self.loop.crank * self.near
+        foot = (self.square - self.loop.unlike * (self.loop.coupler + self.loop.rocker)) / 2
+        scale = self.square * self.loop.rocker
+        return (foot * across + self.area * along) / scale, (self.area * across - foot * along) / scale
+
+    @property
+    def _by_coupler(self) -> Any:
+        """E = w + b² − c²."""
+        return self.square + self.loop.unlike * (self.loop.coupler + self.loop.rocker)
+
+    @property
+    def slope(self) -> Any:
+        """dθ/dφ = [a sin φ E/(2H) + a(a − cos φ)]/w, the turning of the triangle and of the diagonal."""
+        a, sin = self.loop.crank, self.angle.sin
+        return (a * sin * self._by_coupler / (2 * self.area) + a * (self.near - self.loop.span)) / self.square
+
+    @property
+    def curvature(self) -> Any:
+        """d²θ/dφ² = a sin φ (1 − a²)/w² + [w″E + w′²(1 − EG/(4H²) − E/w)]/(4Hw), with G = b² + c² − w."""
+        loop, w, H, E = self.loop, self.square, self.area, self._by_coupler
+        G = loop.coupler * loop.coupler + loop.rocker * loop.rocker - w
+        rise, bend = 2 * loop.crank * self.angle.sin, 2 * loop.crank * self.angle.cos
+        triangle = bend * E + rise * rise * (1 - (E / (2 * H)) * (G / (2 * H)) - E / w)
+        return rise / 2 * loop.span * (1 + loop.crank) / (w * w) + triangle / (4 * H * w)
+
+    @property
+    def sin_transmission(self) -> Any:
+        """sin μ = H/(b c), μ between coupler and rocker."""
+        return self.area / (self.loop.coupler * self.loop.rocker)
+
+
+@dataclass(frozen=True, eq=False)
+class FourBar(Mechanism):
+    """A crank that turns fully and swings a rocker through a coupler.
+
+    crank, coupler, rocker, frame: a, b, c, d in m. φ and θ count from the line crank pivot → rocker pivot, with the
+    coupler's joint on the side where the crank pin is for 0 < φ < 180°; that side holds for the whole turn. The working
+    swing is the slower one. Raises RuleError unless the crank is the shortest link and a + longest < sum of the others.
+    """
+
+    crank: float
+    coupler: float
+    rocker: float
+    frame: float
+
+    name: ClassVar[str] = "four-bar"
+    slides: ClassVar[bool] = False
+    swings: ClassVar[bool] = True
+    quick_return: ClassVar[bool] = True
+    KEYS: ClassVar[Keys] = {
+        "crank": Key(Physical("length", above=0), "Crank radius", "a", required=True),
+        "coupler": Key(Physical("length", above=0), "Length of the coupler", "b", required=True),
+        "rocker": Key(Physical("length", above=0), "Length of the rocker", "c", required=True),
+        "frame": Key(Physical("length", above=0), "Distance of the rocker's pivot from the shaft", "d", required=True),
+    }
+
+    def __post_init__(self) -> None:
+        links = {"coupler": self.coupler, "rocker": self.rocker, "frame": self.frame}
+        check_lengths(crank=self.crank, **links)
+        longest = max(links, key=lambda name: links[name])
+        others = [name for name in links if name != longest]
+        gap = math.fsum((*(links[name] for name in others), -self.crank, -links[longest]))
+        # lengths that were written in decimals meet a change point only within their rounding
+        rounding = 2 * math.ulp(links[longest])
+        if gap > rounding and self.crank < min(links.values()):
+            return
+        raise RuleError(Fault(("crank",), self._locked(longest, others, gap, rounding)))
+
+    def _locked(self, longest: str, others: list[str], gap: float, rounding: float) -> str:
+        def named(name: str) -> str:
+            return f"{name} {show(getattr(self, name), 'length')}"
+
+        pair = " + ".join(named(name) for name in others)
+        shortest = min((*others, longest), key=lambda name: float(getattr(self, name)))
+        if math.fsum((self.crank, *(getattr(self, name) for name in others), -getattr(self, longest))) <= 0:
+            return f"the links do not meet: {named(longest)} is no shorter than {named('crank')} + {pair}"
+        if self.crank > getattr(self, shortest):
+            crank = show(self.crank, "length")
+            return f"{crank} is longer than the {named(shortest)}; the crank must be the shortest link"
+        if abs(gap) <= rounding:
+            sums = f"{named('crank')} + {named(longest)} = {pair}"
+            return f"the linkage folds flat once a turn and may go on either way from there (change point): {sums}"
+        return f"it cannot turn fully: {named('crank')} + {named(longest)} is more than {pair} (Grashof)"
+
+    @cached_property
+    def loop(self) -> Loop:
+        """The four links over the frame."""
+        return Loop.of(self.crank, self.coupler, self.rocker, self.frame)
+
+    def direction(self, angle: CrankAngle) -> tuple[Any, Any]:
+        """Return (sin θ, cos θ) of the rocker."""
+        return self.loop.at(angle).direction
+
+    def coordinate(self, angle: CrankAngle) -> Any:
+        """Return θ in radians."""
+        return bearing(*self.direction(angle)) * (math.pi / 180)
+
+    def slope(self, angle: CrankAngle) -> Any:
+        """Return dθ/dφ, by loop closure."""
+        return self.loop.at(angle).slope
+
+    def curvature(self, angle: CrankAngle) -> Any:
+        """Return d²θ/dφ², by loop closure."""
+        return self.loop.at(angle).curvature
+
+    def swing_at(self, angle: CrankAngle) -> Swing:
+        """Return the rocker at the crank angle."""
+        closure = self.loop.at(angle)
+        return Swing(bearing(*closure.direction), closure.slope, closure.curvature)
+
+    def coupler_force_factor(self, angle: CrankAngle) -> Any:
+        """Return the coupler's force over the moment on the rocker, 1/(c sin μ) in 1/m."""
+        return 1 / (self.rocker * self.loop.at(angle).sin_transmission)
+
+    def _half_tangents(self, reach: float) -> tuple[float, float]:
+        """Return tan of half the angles at the crank's and the rocker's pivot, crank and coupler in line.
+
+        reach: 1 for the coupler's joint at b + a from the crank's pivot, −1 at b − a. All differences are positive.
+        """
+        a, b, c, d = reach * self.crank, self.coupler, self.rocker, self.frame
+        no_line, no_rocker = math.fsum((c, d, -a, -b)), math.fsum((a, b, d, -c))
+        frame_share = math.fsum((a, b, c, -d)) / math.fsum((a, b, c, d))
+        return math.sqrt(frame_share * (no_line / no_rocker)), math.sqrt(frame_share * (no_rocker / no_line))
+
+    def dead_centres(self) -> tuple[float, float]:
+        """Return the crank angles of smallest and of largest θ: crank and coupler in line, stretched and folded."""
+        return 2 * bearing(self._half_tangents(1)[0], 1.0), 180.0 + 2 * bearing(self._half_tangents(-1)[0], 1.0)
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Smallest and largest θ in degrees."""
+        return 180.0 - 2 * bearing(self._half_tangents(1)[1], 1.0), 180.0 - 2 * bearing(self._half_tangents(-1)[1], 1.0)
+
+    @property
+    def swing(self) -> float:
+        """θ_max − θ_min in degrees, from the difference of the half tangents: a small swing keeps its digits."""
+        stretched, folded = self._half_tangents(1)[1], self._half_tangents(-1)[1]
+        a, b, c = self.loop.crank, self.loop.coupler, self.loop.rocker
+        below = self._line_gap(1) * self._line_gap(-1) * (stretched + folded)
+        return float(2 * bearing(16 * a * b * c / below, 1 + stretched * folded))
+
+    def _line_gap(self, reach: float) -> float:
+        """(c + d)² − (b ± a)², over d²."""
+        a, b, c, d = reach * self.crank, self.coupler, self.rocker, self.frame
+        return math.fsum((c, d, -a, -b)) / d * (math.fsum((c, d, a, b)) / d)
+
+    @property
+    def stroke(self) -> float:
+        """The swing in radians."""
+        return math.radians(self.swing)
+
+    @property
+    def start(self) -> float:
+        """The smallest θ in radians."""
+        return math.radians(self.limits[0])
+
+    @property
+    def phi_work(self) -> float:
+        """Crank rotation of the slower swing in degrees."""
+        inner, outer = self.dead_centres()
+        return max(outer - inner, 360.0 - (outer - inner))
+
+    def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
+        """Return the crank angles in degrees where θ − θ_min (n,) in rad is passed, θ rising (outstroke) or falling."""
+        import numpy as np
+
+        a, b, c = self.loop.crank, self.loop.coupler, self.loop.rocker
+        low, high = (math.radians(theta) for theta in self.limits)
+        theta = low + displacement
+        line = np.hypot(1 + c * np.cos(theta), c * np.sin(theta))  # from the crank pivot to the coupler's joint
+        # (b + a)² − line² and line² − (b − a)², which vanish at the dead centres
+        outer = 4 * c * np.sin((theta + low) / 2) * np.sin(displacement / 2) / (b + a + line)
+        inner = 4 * c * np.sin((theta + high) / 2) * np.sin((self.stroke - displacement) / 2) / (line + b - a)
+        sweep = 2 * np.degrees(np.arctan2(np.sqrt(outer * (line + b - a)), np.sqrt(inner * (line + a + b))))
+        turn = bearing(c * np.sin(theta), 1 + c * np.cos(theta))
+        return turn + sweep if outstroke else 360.0 + turn - sweep
+
+    def landmarks(self) -> tuple[float, ...]:
+        """Return 0° and 180°, each with a widening fan where the linkage comes near to lying flat."""
+        loop = self.loop
+        gap = min(loop.near_coupler, loop.near_rocker) * (loop.span / loop.crank)
+        nearest = math.degrees(math.sqrt(2 * min(gap, loop.span * loop.span / loop.crank)))
+        flat = math.degrees(math.sqrt(2 * loop.flat * (1 + loop.crank) / loop.crank))
+        return *fan(0.0, nearest), *fan(180.0, flat)
+
+    @property
+    def transmission(self) -> tuple[Extreme, Extreme]:
+        """The transmission angle μ between coupler and rocker at 0° and at 180°, its smallest and largest."""
+        c, b, loop = self.rocker / self.frame, self.coupler / self.frame, self.loop
+        small = math.sqrt(loop.near_coupler / (b + c + loop.span) * (loop.near_rocker / (loop.flat + 2 * loop.crank)))
+        far_coupler, far_rocker = loop.near_coupler + 2 * loop.crank, loop.near_rocker + 2 * loop.crank
+        large = math.sqrt(far_coupler / loop.flat * (far_rocker / (b + c + 1 + loop.crank)))
+        return Extreme(2 * bearing(small, 1.0), 0.0), Extreme(2 * bearing(large, 1.0), 180.0)

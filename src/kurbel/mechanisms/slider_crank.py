@@ -1,0 +1,268 @@
+"""Slider-crank (gerader und geschränkter Schubkurbeltrieb), R ch. 14 B."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from kurbel.arithmetic import sqrt, where
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Key, Keys, Number, Physical
+from kurbel.mechanisms import Extreme, Mechanism, fan
+from kurbel.mechanisms import crank_formulas as formulas
+from kurbel.units import show
+
+CRANK_KEYS: Keys = {
+    "crank": Key(Physical("length", above=0), "Crank radius; or give `stroke`", "R"),
+    "stroke": Key(Physical("length", above=0), "Stroke; or give `crank`", "s"),
+}
+"""The size of the crank, shared by the mechanisms that can be given by their stroke."""
+
+
+@dataclass(frozen=True, eq=False)
+class SliderCrank(Mechanism):
+    """A crank, a connecting rod and a crosshead on a straight guide.
+
+    crank: R in m; rod: L in m, `math.inf` for the infinite rod; offset: e in m of the stroke line from the shaft axis,
+    positive toward the side where the crank pin runs on the outstroke. sin ψ = (R sin φ − e)/L; it turns fully for
+    L > R + |e|. Raises RuleError otherwise.
+    """
+
+    crank: float
+    rod: float
+    offset: float = 0.0
+
+    name: ClassVar[str] = "slider-crank"
+    KEYS: ClassVar[Keys] = {
+        **CRANK_KEYS,
+        "rod": Key(
+            Physical("length", above=0, words=(("infinite", math.inf),)),
+            "Length of the connecting rod, or `infinite`; or give `rod_ratio`",
+            "L",
+        ),
+        "rod_ratio": Key(Number(above=1, words=(("infinite", math.inf),)), "L/R; or give `rod`", "L/R"),
+        "offset": Key(
+            Physical("length"),
+            "Offset of the stroke line from the shaft, positive toward the side of the outstroke",
+            "e",
+            absent="0",
+        ),
+    }
+
+    @classmethod
+    def from_keys(
+        cls,
+        crank: float | None = None,
+        stroke: float | None = None,
+        rod: float | None = None,
+        rod_ratio: float | None = None,
+        offset: float = 0.0,
+    ) -> SliderCrank:
+        """Return the slider-crank that these keys of a machine file describe; raises RuleError."""
+        one_of(("crank", crank), ("stroke", stroke), hint="crank: 400 mm")
+        one_of(("rod", rod), ("rod_ratio", rod_ratio), hint="rod_ratio: 5")
+        if crank is None:
+            assert stroke is not None
+            crank = _crank_of_stroke(stroke, rod, rod_ratio, offset)
+        return cls(crank, rod if rod is not None else crank * (rod_ratio or math.inf), offset)
+
+    def __post_init__(self) -> None:
+        if not (0 < self.crank < math.inf and self.rod > 0 and math.isfinite(self.offset)):
+            raise RuleError(Fault(("crank",), "crank and rod must be positive, crank and offset finite"))
+        if not math.isinf(self.rod) and math.fsum((self.rod, -self.crank, -abs(self.offset))) <= self._rounding:
+            raise RuleError(Fault(("rod",), self._too_short()))
+
+    @property
+    def _rounding(self) -> float:
+        """How far three lengths that add up as people write them may miss each other as floats; two miss by nothing."""
+        return math.ulp(self.rod) + math.ulp(self.offset) / 2 if self.offset else 0.0
+
+    def _too_short(self) -> str:
+        rod, crank, offset = (show(value, "length") for value in (self.rod, self.crank, abs(self.offset)))
+        if self.offset:
+            return f"{rod} does not reach: it must be longer than crank and offset together ({crank} + {offset})"
+        relation = "is no longer than" if self.rod == self.crank else "is shorter than"
+        return f"{rod} {relation} the crank ({crank}); the crank turns fully only with a longer rod"
+
+    @property
+    def lam(self) -> float:
+        """λ = R/L, 0 for the infinite rod."""
+        return self.crank / self.rod
+
+    @property
+    def rho(self) -> float:
+        """ρ = 1 − λ², from the lengths."""
+        if math.isinf(self.rod):
+            return 1.0
+        return (self.rod - self.crank) / self.rod * ((self.rod + self.crank) / self.rod)
+
+    @property
+    def _straight(self) -> bool:
+        return self.offset == 0 or math.isinf(self.rod)
+
+    @property
+    def _gaps(self) -> tuple[float, float]:
+        """(L − R + e)/L and (L − R − e)/L: how far sin ψ stays from 1 and from −1."""
+        if math.isinf(self.rod):
+            return 1.0, 1.0
+        return (
+            math.fsum((self.rod, -self.crank, self.offset)) / self.rod,
+            math.fsum((self.rod, -self.crank, -self.offset)) / self.rod,
+        )
+
+    @property
+    def _reaches(self) -> tuple[float, float]:
+        """√((L+R)² − e²)/L and √((L−R)² − e²)/L: the crosshead's distances from the shaft at the dead centres."""
+        if math.isinf(self.rod):
+            return 1.0, 1.0
+        beyond, within = self._gaps
+        lam, eps = self.lam, self.offset / self.rod
+        return math.sqrt((1 + lam - eps) * (1 + lam + eps)), math.sqrt(beyond * within)
+
+    @property
+    def stroke(self) -> float:
+        """s = √((L+R)² − e²) − √((L−R)² − e²) = 4LR/(their sum); 2R without offset."""
+        return 2 * self.crank if self._straight else self.crank * (4 / sum(self._reaches))
+
+    def dead_centres(self) -> tuple[float, float]:
+        """Return φ_i with sin φ_i = e/(L+R) and φ_o = 180° + arcsin(e/(L−R)), in degrees."""
+        if self._straight:
+            return 0.0, 180.0
+        outer, inner = self._reaches
+        eps = self.offset / self.rod
+        return math.degrees(math.atan2(eps, outer)), 180.0 + math.degrees(math.atan2(eps, inner))
+
+    def rod_angle(self, angle: CrankAngle) -> tuple[Any, Any]:
+        """Return (sin ψ, cos ψ) with sin ψ = (R sin φ − e)/L."""
+        if self._straight:
+            return self.lam * angle.sin, formulas.cos_rod_angle(angle.sin, angle.cos, self.rho)
+        lam, (beyond, within) = self.lam, self._gaps
+        near = 1 + abs(angle.sin)
+        far = angle.cos * angle.cos / near
+        up = angle.sin >= 0
+        # 1 − sin ψ and 1 + sin ψ, each as a gap plus λ(1 ∓ sin φ), both positive
+        below_one = beyond + lam * where(up, far, near)
+        above_minus_one = within + lam * where(up, near, far)
+        return lam * angle.sin - self.offset / self.rod, sqrt(below_one) * sqrt(above_minus_one)
+
+    def coordinate(self, angle: CrankAngle) -> Any:
+        """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0."""
+        if self._straight:
+            return self.crank * formulas.displacement_factor(angle.sin, angle.cos, self.lam, self.rho)
+        start = CrankAngle.of(self.dead_centres()[0])
+        sin_start, cos_start = (value for value in self.rod_angle(start))
+        sin_psi, cos_psi = self.rod_angle(angle)
+        # with θ = φ − φ_i and m = (φ + φ_i)/2: x = 2R sin(θ/2) [sin m + cos m (sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)]
+        half_sin, half_cos = _half_angle(
+            angle.sin * start.cos - angle.cos * start.sin, angle.cos * start.cos + angle.sin * start.sin
+        )
+        middle_sin = start.sin * half_cos + start.cos * half_sin
+        middle_cos = start.cos * half_cos - start.sin * half_sin
+        bracket = middle_sin + middle_cos * (sin_psi + sin_start) / (cos_psi + cos_start)
+        return self.crank * (2 * half_sin * bracket)
+
+    def slope(self, angle: CrankAngle) -> Any:
+        """Return dx/dφ = R sin(φ+ψ)/cos ψ in m, R 288."""
+        if self._straight:
+            return self.crank * formulas.velocity_factor(angle.sin, angle.cos, self.lam, self.rho)
+        sin_psi, cos_psi = self.rod_angle(angle)
+        return self.crank * (angle.sin + angle.cos * sin_psi / cos_psi)
+
+    def curvature(self, angle: CrankAngle) -> Any:
+        """Return d²x/dφ² = R [cos(φ+ψ)/cos ψ + λ cos²φ/cos³ψ] in m."""
+        if self._straight:
+            return self.crank * formulas.acceleration_factor(angle.sin, angle.cos, self.lam, self.rho)
+        sin_psi, cos_psi = self.rod_angle(angle)
+        bend = self.lam * (angle.cos * angle.cos) / (cos_psi * cos_psi * cos_psi)
+        return self.crank * (angle.cos - angle.sin * sin_psi / cos_psi + bend)
+
+    def radial(self, angle: CrankAngle) -> Any:
+        """Return D/P = cos(φ+ψ)/cos ψ, R 302."""
+        sin_psi, cos_psi = self.rod_angle(angle)
+        return angle.cos - angle.sin * (sin_psi / cos_psi)
+
+    def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
+        """Return the crank angles in degrees at which x (n,) in m is passed on the outstroke or the return stroke.
+
+        From the triangle shaft, pin, crosshead by half angles, so that no digit is lost beside the dead centres.
+        """
+        import numpy as np
+
+        lam, way = self.lam, displacement / self.crank
+        eps = 0.0 if self._straight else self.offset / self.rod
+        outer, inner = self._reaches if eps else (1 + lam, 1 - lam)
+        total = self.stroke / self.crank
+        distance = outer - lam * way  # of the crosshead from the foot of the shaft axis, over L
+        line = np.hypot(distance, eps) if eps else distance
+        # over λ: L + R − line, and line + R − L, from differences of squares
+        before = way * (2 * outer - lam * way) / (1 + lam + line)
+        after = (total - way) * (distance + inner) / (line + 1 - lam)
+        half = np.arctan2(np.sqrt(before * (1 + line - lam)), np.sqrt(after * (line + lam + 1)))
+        sweep = np.degrees(2 * half)
+        bearing = np.degrees(np.arctan2(eps, distance)) if eps else 0.0
+        return bearing + sweep if outstroke else 360.0 + bearing - sweep
+
+    def landmarks(self) -> tuple[float, ...]:
+        """Return 90°, 270° and the velocity peaks, with a fan round 90° and 270° where the rod barely reaches."""
+        beyond, within = (math.degrees(math.sqrt(2 * gap)) for gap in self._gaps)
+        marks = (*fan(90.0, beyond), *fan(270.0, within))
+        if not self._straight:
+            return marks
+        peak = formulas.velocity_peak(self.lam, self.rho).degrees
+        return *marks, peak, 360 - peak
+
+    def velocity_extremes(self) -> tuple[Extreme, ...]:
+        """Return ±c_max/ω in m in closed form, straight slider-crank only."""
+        if not self._straight:
+            return ()
+        peak = formulas.velocity_peak(self.lam, self.rho)
+        value = self.crank * peak.value
+        return Extreme(value, peak.degrees), Extreme(-value, 360 - peak.degrees)
+
+    def acceleration_extremes(self) -> tuple[Extreme, ...]:
+        """Return b/ω² in m at its extremes: both dead centres (R 292, 294) and the dip inside the stroke, if any."""
+        if not self._straight:
+            return ()
+        found = [Extreme(self.crank * (1 + self.lam), 0.0), Extreme(-self.crank * (self._gaps[0]), 180.0)]
+        dip = formulas.acceleration_dip(self.lam, self.rho)
+        if dip:
+            value = self.crank * dip.value
+            found += [Extreme(value, dip.degrees), Extreme(value, 360 - dip.degrees)]
+        return tuple(found)
+
+
+def one_of(first: tuple[str, Any], second: tuple[str, Any], hint: str) -> None:
+    """Raise RuleError unless exactly one of two alternative keys is given."""
+    (name, value), (other, alternative) = first, second
+    if value is None and alternative is None:
+        raise RuleError(Fault((), f"'{name}' or '{other}' is missing; write for instance '{hint}'"))
+    if value is not None and alternative is not None:
+        raise RuleError(Fault((other,), f"'{name}' and '{other}' say the same thing; leave one of them out"))
+
+
+def _half_angle(sin: Any, cos: Any) -> tuple[Any, Any]:
+    """Return sine and cosine of half an angle; both may carry the other sign, which their products do not see."""
+    large = sqrt((1 + abs(cos)) / 2)
+    small = sin / (2 * large)
+    return where(cos >= 0, small, large), where(cos >= 0, large, small)
+
+
+def _crank_of_stroke(stroke: float, rod: float | None, rod_ratio: float | None, offset: float) -> float:
+    """Solve s = √((L+R)² − e²) − √((L−R)² − e²) for R, with L given or L = kR."""
+    half = stroke / 2
+    if offset == 0 or math.inf in (rod, rod_ratio):
+        return half
+    if rod is not None:
+        span = (rod - half) * (rod + half)
+        if span <= offset * offset:
+            raise RuleError(Fault(("rod",), f"{show(rod, 'length')} is too short for this stroke and offset"))
+        return half * math.sqrt(1 - offset * offset / span)
+    assert rod_ratio is not None
+    # k² u² − (1 + k²) u + (ε² + 1) = 0 for u = (R/half)², ε = e/half; the root that is 1 for ε = 0
+    square, eps2 = rod_ratio * rod_ratio, (offset / half) ** 2
+    root = (square - 1) ** 2 - 4 * square * eps2
+    if root < 0:
+        raise RuleError(Fault(("offset",), f"{show(offset, 'length')} is too large for this stroke and rod_ratio"))
+    return half * math.sqrt((1 + square + math.sqrt(root)) / (2 * square))

@@ -1,0 +1,290 @@
+"""Slotted lever (schwingende Kurbelschleife): the quick return of shapers, R p. 617, and Whitworth's rotating lever."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+from kurbel.arithmetic import bearing, sqrt, where
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Key, Keys, Physical
+from kurbel.mechanisms import Extreme, Mechanism, Swing, check_lengths, fan
+from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
+from kurbel.units import show
+
+
+class _Lever(NamedTuple):
+    """The lever at a crank angle: its direction, and the pin's distance from the pivot over the longer of r and e."""
+
+    sin: Any
+    cos: Any
+    reach: Any
+
+
+@dataclass(frozen=True, eq=False)
+class SlottedLever(Mechanism):
+    """A crank pin that slides in a slotted lever, whose end drives a ram square to the line of the two pivots.
+
+    crank: r; frame: e, distance of the lever's pivot D from the shaft M; lever: R_l = DE; in m.
+    tan θ = r sin φ/(e + r cos φ), φ from the position where the pin is farthest from D, the ram moving forward there.
+    For e > r the lever swings; for e < r it turns fully, which is Whitworth's quick return.
+    link: m, `math.inf` for the fork head (x = R_l sin θ); otherwise the connecting link from E to the ram, which runs
+    ahead of E. ram_height: h of the ram's line above D, by default half-way between highest and lowest point of E.
+    Raises RuleError for e = r, and for a link that does not reach the ram or gets into line with the lever.
+    """
+
+    crank: float
+    frame: float
+    lever: float
+    link: float = math.inf
+    ram_height: float | None = None
+
+    name: ClassVar[str] = "slotted-lever"
+    swings: ClassVar[bool] = True
+    quick_return: ClassVar[bool] = True
+    KEYS: ClassVar[Keys] = {
+        "crank": Key(Physical("length", above=0), "Crank radius", "r", required=True),
+        "frame": Key(Physical("length", above=0), "Distance of the lever's pivot from the shaft", "e", required=True),
+        "lever": Key(Physical("length", above=0), "Length of the lever, pivot to end", "R_l", required=True),
+        "link": Key(
+            Physical("length", above=0, words=(("infinite", math.inf),)),
+            "Length of the connecting link from the lever's end to the ram",
+            "l",
+            absent="fork head sliding along the ram",
+        ),
+        "ram_height": Key(
+            Physical("length"),
+            "Height of the ram's line above the lever's pivot; needs `link`",
+            "h",
+            absent="half-way between the highest and the lowest point of the lever's end",
+        ),
+    }
+
+    def __post_init__(self) -> None:
+        check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
+        if self.crank == self.frame:
+            same = show(self.crank, "length")
+            message = f"{same} is also the crank: the pin would pass through the lever's pivot"
+            raise RuleError(Fault(("frame",), message))
+        if math.isinf(self.link) and self.ram_height is not None:
+            raise RuleError(Fault(("ram_height",), "has no meaning for a fork head; give 'link' with it"))
+        if not math.isfinite(self._height):
+            raise RuleError(Fault(("ram_height",), "must be finite"))
+        if not self._forked:
+            check_lengths(link=self.link)
+            fault = self._full_turn_fault() if self.rotates else self._swing_fault()
+            if fault:
+                raise RuleError(Fault(("link",), f"{show(self.link, 'length')} {fault}"))
+
+    def _full_turn_fault(self) -> str:
+        if math.fsum((self.link, -self.lever, -abs(self._height))) > 0:
+            return ""
+        arms = f"{show(self.lever, 'length')} + {show(abs(self._height), 'length')}"
+        return f"does not reach: as the lever turns fully it must be longer than lever and ram_height together ({arms})"
+
+    def _swing_fault(self) -> str:
+        farthest = max(abs(self._height - self.lever), abs(self._height - self.lever * self._kappa[1]))
+        if self.link <= farthest:
+            height = show(self._height, "length")
+            return f"does not reach the ram at {height}; it must be longer than {show(farthest, 'length')}"
+        if min(self._ram.lead(sin, cos) for sin, cos in self._limits) <= 0:
+            return "gets into line with the lever within its swing; give a longer link or another ram_height"
+        return ""
+
+    @property
+    def rotates(self) -> bool:
+        """Whether the lever turns fully (e < r, Whitworth) instead of swinging."""
+        return self.frame < self.crank
+
+    @property
+    def _forked(self) -> bool:
+        return math.isinf(self.link)
+
+    @property
+    def _shares(self) -> tuple[float, float, float]:
+        """r, e and e − r, over the longer of r and e."""
+        longer = max(self.crank, self.frame)
+        return self.crank / longer, self.frame / longer, (self.frame - self.crank) / longer
+
+    @property
+    def _kappa(self) -> tuple[float, float]:
+        """κ, the shorter of r and e over the longer, and √(1 − κ²)."""
+        crank, frame, gap = self._shares
+        return min(crank, frame), math.sqrt(abs(gap) * (crank + frame))
+
+    @property
+    def _ram(self) -> ForkHead | ConnectingLink:
+        return ForkHead() if self._forked else ConnectingLink(self.link / self.lever, self._height / self.lever)
+
+    @property
+    def _limits(self) -> tuple[Direction, Direction]:
+        """(sin θ, cos θ) of the lever at the inner and the outer dead centre of the ram."""
+        kappa, root = self._kappa
+        return self._ram.ends if self.rotates else ((-kappa, root), (kappa, root))
+
+    @property
+    def _height(self) -> float:
+        if self.ram_height is not None:
+            return self.ram_height
+        return 0.0 if self.rotates else self.lever * (1 + self._kappa[1]) / 2
+
+    def dead_centres(self) -> tuple[float, float]:
+        """Return the ends of the working stroke, ∓(180° − β) with cos β = r/e (e/r for the rotating lever), R p. 617.
+
+        With a link on the rotating lever they are where link and lever lie in line: φ = θ + arcsin(κ sin θ).
+        """
+        kappa, root = self._kappa
+        if self._forked or not self.rotates:
+            end = 180.0 - bearing(root, kappa)
+            return -end, end
+        ends = [bearing(sin, cos) + bearing(kappa * sin, self._cos_shift(sin, cos)) for sin, cos in self._limits]
+        return ends[0], ends[1]
+
+    def _cos_shift(self, sin: Any, cos: Any) -> Any:
+        """√(1 − κ² sin²), from cosine and sine of one angle."""
+        root = self._kappa[1]
+        return sqrt(cos * cos + root * root * (sin * sin))
+
+    def _lever_at(self, angle: CrankAngle) -> _Lever:
+        crank, frame, gap = self._shares
+        reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
+        return _Lever(crank * angle.sin / reach, _sum_along(frame, crank, gap, angle) / reach, reach)
+
+    def direction(self, angle: CrankAngle) -> tuple[Any, Any]:
+        """Return (sin θ, cos θ) of the lever's tilt from the line of the pivots."""
+        lever = self._lever_at(angle)
+        return lever.sin, lever.cos
+
+    def swing_at(self, angle: CrankAngle) -> Swing:
+        """Return θ, θ′ = r(r + e cos φ)/ρ² and θ″ = −r e (e² − r²) sin φ/ρ⁴, with ρ the pin's distance from the pivot.
+
+        The rotating lever's θ runs on with φ from turn to turn.
+        """
+        crank, frame, _ = self._shares
+        lever = self._lever_at(angle)
+        degrees = bearing(lever.sin, lever.cos)
+        if self.rotates:
+            degrees = angle.degrees - bearing(frame * angle.sin, crank + frame * angle.cos)
+        return Swing(degrees, *self._turning(angle, lever))
+
+    def _turning(self, angle: CrankAngle, lever: _Lever) -> tuple[Any, Any]:
+        """Return θ′ and θ″, pure arithmetic as the rest."""
+        crank, frame, gap = self._shares
+        square = lever.reach * lever.reach
+        bend = -crank * frame * (gap * (crank + frame)) * angle.sin / (square * square)
+        return crank * _sum_along(crank, frame, -gap, angle) / square, bend
+
+    @property
+    def stroke(self) -> float:
+        """s = 2 R_l r/e (2 R_l for the rotating lever), with a fork head, and with a link on the swinging lever."""
+        if not self.rotates:
+            return 2 * self.lever * self._kappa[0]
+        inner, outer = (self._ram.place(sin, cos) for sin, cos in self._limits)
+        return self.lever * float(outer - inner)
+
+    @property
+    def start(self) -> float:
+        """−s/2: x counts from the middle of the stroke."""
+        return -self.stroke / 2
+
+    @property
+    def swing(self) -> float | None:
+        """2 arcsin(r/e) in degrees; None where the lever turns fully."""
+        return None if self.rotates else 2 * bearing(*self._kappa)
+
+    def coordinate(self, angle: CrankAngle) -> Any:
+        """Return x of the ram in m from the middle of its stroke: R_l sin θ for the fork head."""
+        lever = self._lever_at(angle)
+        place = self._ram.place(lever.sin, lever.cos)
+        return self.lever * (place if self._forked else place - self._middle)
+
+    @property
+    def _middle(self) -> float:
+        """The middle of the stroke, as the ram counts its place."""
+        return sum(float(self._ram.place(sin, cos)) for sin, cos in self._limits) / 2
+
+    def slope(self, angle: CrankAngle) -> Any:
+        """Return dx/dφ = R_l θ′ cos(θ + γ)/cos γ in m; for the fork head R_l r (r + e cos φ)(e + r cos φ)/ρ³."""
+        lever = self._lever_at(angle)
+        return self.lever * (self._turning(angle, lever)[0] * self._ram.lead(lever.sin, lever.cos))
+
+    def curvature(self, angle: CrankAngle) -> Any:
+        """Return d²x/dφ² in m; for the fork head with u = er(1 + cos φ), g = (e − r)²
+
+        −R_l r sin φ [g(g + 3er) + u(g + u)]/ρ⁵, whose terms are all positive.
+        """
+        if not self._forked:
+            return self._curvature_with_link(angle)
+        crank, frame, gap = self._shares
+        reach, beyond = self._lever_at(angle).reach, crank * frame * angle.vercosine
+        inside = gap * gap * (gap * gap + 3 * crank * frame) + beyond * (gap * gap + beyond)
+        square = reach * reach
+        return -self.lever * crank * angle.sin * (inside / (square * square * reach))
+
+    def _curvature_with_link(self, angle: CrankAngle) -> Any:
+        """d²x/dφ² = R_l [θ″ cos(θ + γ)/cos γ − θ′² (sin θ + cos θ tan γ + (R_l/l) sin²θ/cos³γ)]."""
+        lever, ram = self._lever_at(angle), self._ram
+        slope, curvature = self._turning(angle, lever)
+        bent = slope * slope * ram.bend(lever.sin, lever.cos)
+        return self.lever * (curvature * ram.lead(lever.sin, lever.cos) - bent)
+
+    def pin_force_factor(self, angle: CrankAngle) -> Any:
+        """Return the force on the crank pin, square to the lever, over the force P on the ram: (dx/dθ)/ρ."""
+        lever = self._lever_at(angle)
+        return self.lever / max(self.crank, self.frame) * self._ram.lead(lever.sin, lever.cos) / lever.reach
+
+    def block_slope(self, angle: CrankAngle) -> Any:
+        """Return dρ/dφ = −r e sin φ/ρ in m: times ω, the speed at which the block slides along the lever."""
+        _, frame, _ = self._shares
+        return -self.crank * frame * angle.sin / self._lever_at(angle).reach
+
+    def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
+        """Return the crank angles in degrees at which x − start (n,) in m is passed.
+
+        Turning lever: φ = θ + arcsin(κ sin θ). Swinging: with sin α = sin θ/κ, φ = θ + α on the working stroke and
+        θ + 180° − α on the return. The fork head's x = (s/2) sin α keeps all digits beside the dead centres.
+        """
+        import numpy as np
+
+        kappa, half = self._kappa[0], self.stroke / 2
+        if self._forked:
+            sin, cos = (displacement - half) / half, np.sqrt(displacement * (self.stroke - displacement)) / half
+            main, shift = bearing(sin, cos), bearing(kappa * sin, self._cos_shift(sin, cos))
+            return main + shift if outstroke else 180.0 - main + shift
+        theta = self._ram.tilt_at(self._middle + (displacement - half) / self.lever, outstroke or not self.rotates)
+        tilt = CrankAngle.of(theta)
+        if self.rotates:
+            return theta + bearing(kappa * tilt.sin, self._cos_shift(tilt.sin, tilt.cos))
+        alpha = bearing(tilt.sin, np.sqrt(np.maximum((kappa - tilt.sin) * (kappa + tilt.sin), 0.0)))
+        return theta + alpha if outstroke else theta + 180.0 - alpha
+
+    def landmarks(self) -> tuple[float, ...]:
+        """Return 0° and 180°, and a widening fan round 180° where the pin comes near the pivot."""
+        crank, frame, gap = self._shares
+        width = math.degrees(abs(gap) / math.sqrt(crank * frame))
+        return (0.0, *fan(180.0, width))
+
+    def velocity_extremes(self) -> tuple[Extreme, ...]:
+        """Return dx/dφ at 0°, R_l r/(e + r), R 304, and at 180°, −R_l r/|e − r|, R 305; fork head only."""
+        if not self._forked:
+            return ()
+        crank, frame, gap = self._shares
+        return Extreme(self.lever * crank / (crank + frame), 0.0), Extreme(-self.lever * crank / abs(gap), 180.0)
+
+    def swing_extremes(self) -> tuple[Extreme, ...]:
+        """Return dθ/dφ at 0°, r/(e + r), and at 180°, −r/(e − r)."""
+        crank, frame, gap = self._shares
+        return Extreme(crank / (crank + frame), 0.0), Extreme(-crank / gap, 180.0)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Say that the lever turns fully, where it does."""
+        whitworth = "the frame is shorter than the crank: the lever turns fully (Whitworth quick return)"
+        return (whitworth,) if self.rotates else ()
+
+
+def _sum_along(base: float, arm: float, gap: float, angle: CrankAngle) -> Any:
+    """Return base + arm cos φ; where that is a difference, from gap = base − arm, as they were given."""
+    return where(angle.cos >= -0.5, base + arm * angle.cos, gap + arm * angle.vercosine)

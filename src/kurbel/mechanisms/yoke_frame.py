@@ -1,0 +1,71 @@
+"""Yoke-frame small crank drive (Klein, Schanzlin & Becker), R p. 616: a slider-crank without a crosshead guide.
+
+Steam and pump piston rod lie in one line, joined by a frame in which rod and crank move. The motion is that of the
+slider-crank; the side force N of the rod finds no guide and bends the piston rod.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Key, Keys, Physical
+from kurbel.mechanisms.slider_crank import SliderCrank
+
+if TYPE_CHECKING:
+    from kurbel.crank_angle import CrankAngle
+
+
+@dataclass(frozen=True, eq=False)
+class YokeFrame(SliderCrank):
+    """A slider-crank whose crosshead pin is held by the piston rod alone.
+
+    gland: distance in m from the stuffing box that guides the piston rod to the crosshead pin at the inner dead centre;
+    None leaves the bending out. Raises RuleError as SliderCrank does, and for a gland that is not positive.
+    """
+
+    gland: float | None = None
+
+    name: ClassVar[str] = "yoke-frame"
+    guided: ClassVar[bool] = False
+    KEYS: ClassVar[Keys] = {
+        **SliderCrank.KEYS,
+        "gland": Key(
+            Physical("length", above=0),
+            "Distance from the stuffing box to the crosshead pin at the inner dead centre",
+            "l_g",
+            absent="no bending of the piston rod",
+        ),
+    }
+
+    @classmethod
+    def from_keys(
+        cls,
+        crank: float | None = None,
+        stroke: float | None = None,
+        rod: float | None = None,
+        rod_ratio: float | None = None,
+        offset: float = 0.0,
+        gland: float | None = None,
+    ) -> YokeFrame:
+        """Return the drive that these keys of a machine file describe; raises RuleError."""
+        plain = SliderCrank.from_keys(crank, stroke, rod, rod_ratio, offset)
+        return cls(plain.crank, plain.rod, plain.offset, gland)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.gland is not None and not 0 < self.gland < float("inf"):
+            raise RuleError(Fault(("gland",), "must be a positive, finite length"))
+
+    def bending_arm(self, angle: CrankAngle) -> Any | None:
+        """Return l_g + x in m, on which N bends the piston rod at the stuffing box; None where `gland` is not given.
+
+        The rod is taken as held by this stuffing box alone, which is on the safe side.
+        """
+        return None if self.gland is None else self.gland + self.coordinate(angle)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Say where N goes."""
+        return ("there is no crosshead guide: the side force N bends the piston rod (R p. 616)",)

@@ -1,0 +1,28 @@
+"""Crank angles and textbook formulas in 50 digits, against which the floats are measured."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath as mp
+
+from kurbel.crank_angle import CrankAngle
+
+mp.mp.dps = 50
+DEGREE = mp.pi / 180
+
+
+def exact_angle(degrees):
+    """A CrankAngle whose sine and cosine are mpmath numbers; `degrees` may be one, too."""
+    turn = mp.mpf(degrees) / 180
+    return CrankAngle(degrees, mp.sinpi(turn), mp.cospi(turn))
+
+
+def by_radian(function, degrees, order=1):
+    """The derivative by φ in radians, at `degrees`, of a function of a CrankAngle."""
+    return mp.diff(lambda phi: function(exact_angle(phi / DEGREE)), mp.mpf(degrees) * DEGREE, order)
+
+
+def ulps(got, want, of=None):
+    """How many units in the last place of `of` (default: of what is wanted) the two lie apart."""
+    return abs(mp.mpf(float(got)) - want) / math.ulp(float(abs(want if of is None else of)))

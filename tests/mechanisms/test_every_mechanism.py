@@ -1,0 +1,214 @@
+"""Laws that hold for every mechanism; a new one joins by its line in MACHINES."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from precise import by_radian, exact_angle
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import RuleError
+from kurbel.keys import load
+from kurbel.mechanisms import MECHANISMS
+from kurbel.mechanisms.four_bar import FourBar
+from kurbel.mechanisms.parallel_crank import ParallelCrank
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.mechanisms.slotted_lever import SlottedLever
+from kurbel.mechanisms.yoke_frame import YokeFrame
+from kurbel.solver.jet import jet_angle
+
+MACHINES = {
+    "straight": SliderCrank(0.4, 2.0),
+    "short rod": SliderCrank(0.4, 0.41),
+    "infinite rod": SliderCrank(0.4, math.inf),
+    "offset": SliderCrank(0.3, 0.5, 0.1),
+    "offset to the other side": SliderCrank(0.3, 1.2, -0.2),
+    "scotch yoke": ScotchYoke(0.25),
+    "yoke frame": YokeFrame(0.1, 0.5),
+    "shaper": SlottedLever(0.3, 0.8, 1.3),
+    "shaper with link": SlottedLever(0.3, 0.8, 1.3, link=0.5),
+    "shaper, ram above": SlottedLever(0.3, 0.8, 1.3, link=0.8, ram_height=1.4),
+    "pin close to the pivot": SlottedLever(0.3, 0.301, 0.7),
+    "Whitworth": SlottedLever(0.15, 0.1, 0.2),
+    "Whitworth with link": SlottedLever(0.15, 0.1, 0.2, link=0.6),
+    "Whitworth, ram beside": SlottedLever(0.15, 0.1, 0.2, link=0.6, ram_height=-0.07),
+    "four-bar": FourBar(0.04, 0.15, 0.08, 0.15),
+    "four-bar, nearly flat": FourBar(0.1, 0.3, 0.25, 0.4499),
+    "four-bar, long rocker": FourBar(0.1, 0.5, 9.0, 9.0),
+    "parallel crank": ParallelCrank(0.3, 2.0),
+}
+STROKES = {name: machine for name, machine in MACHINES.items() if machine.name != "parallel-crank"}
+ANGLES = (3.0, 47.0, 90.0, 118.0, 177.0, 181.0, 233.0, 291.0, 352.0)
+
+
+def every(machines=MACHINES):
+    return pytest.mark.parametrize("machine", machines.values(), ids=machines.keys())
+
+
+def exact_coordinate(machine):
+    """The coordinate as a function for mpmath: an angle by its sine and cosine, a path as it stands."""
+    if machine.slides:
+        return machine.coordinate
+    return lambda angle: mp.atan2(*machine.direction(angle))
+
+
+def exact_swing(machine):
+    return lambda angle: mp.atan2(*machine.direction(angle))
+
+
+@every(STROKES)
+@pytest.mark.parametrize("degrees", ANGLES)
+def test_slope_and_curvature_are_the_derivatives_of_the_coordinate(machine, degrees):
+    function = exact_coordinate(machine)
+    exact = exact_angle(degrees)
+    size = machine.stroke
+    assert abs(by_radian(function, degrees) - machine.slope(exact)) < 1e-14 * (size + abs(machine.slope(exact)))
+    assert abs(by_radian(machine.slope, degrees) - machine.curvature(exact)) < 1e-14 * (
+        size + abs(machine.curvature(exact))
+    )
+
+
+@every({name: machine for name, machine in MACHINES.items() if hasattr(machine, "direction")})
+@pytest.mark.parametrize("degrees", ANGLES)
+def test_the_swing_has_the_derivatives_of_its_angle(machine, degrees):
+    swing = machine.swing_at(CrankAngle.of(degrees))
+    assert float(by_radian(exact_swing(machine), degrees)) == pytest.approx(swing.slope, rel=1e-12, abs=1e-14)
+    assert float(by_radian(exact_swing(machine), degrees, 2)) == pytest.approx(swing.curvature, rel=1e-11, abs=1e-13)
+
+
+@every()
+def test_every_function_is_pointwise(machine):
+    angles = np.linspace(-400.0, 800.0, 211)
+    for function in (machine.coordinate, machine.slope, machine.curvature):
+        values = function(CrankAngle.of(angles))
+        assert values.shape == angles.shape
+        assert np.isfinite(values).all()
+        assert (values[::7] == function(CrankAngle.of(angles[::7]))).all()
+        alone = [function(CrankAngle.of(float(degrees))) for degrees in angles[::30]]
+        assert values[::30] == pytest.approx(alone, rel=1e-14, abs=1e-15 * machine.stroke)
+
+
+@every(STROKES)
+def test_one_turn_later_all_is_the_same(machine):
+    angles = np.arange(0.0, 360.0, 7.5)
+    for function in (machine.coordinate, machine.slope, machine.curvature):
+        assert (function(CrankAngle.of(angles)) == function(CrankAngle.of(angles + 360.0))).all()
+
+
+@every(STROKES)
+def test_the_stroke_runs_from_dead_centre_to_dead_centre(machine):
+    inner, outer = machine.dead_centres()
+    assert 0 < outer - inner < 360
+    ends = machine.coordinate(CrankAngle.of(np.array([inner, outer])))
+    rounding = 3e-15 * max(machine.stroke, abs(machine.start))
+    assert ends == pytest.approx([machine.start, machine.start + machine.stroke], abs=rounding)
+    assert machine.slope(CrankAngle.of(np.array([inner, outer]))) == pytest.approx([0, 0], abs=2e-14 * machine.stroke)
+    out = machine.slope(CrankAngle.of(np.linspace(inner, outer, 91)[1:-1]))
+    back = machine.slope(CrankAngle.of(np.linspace(outer, inner + 360, 91)[1:-1]))
+    assert (out > 0).all()
+    assert (back < 0).all()
+
+
+@every(STROKES)
+@pytest.mark.parametrize("outstroke", [True, False])
+def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, outstroke):
+    way = machine.stroke * np.array([0.0, 1e-12, 1e-6, 0.01, 0.3, 0.5, 0.77, 0.999, 1 - 1e-9, 1.0])
+    angles = machine.crank_angles_at(way, outstroke)
+    inner, outer = machine.dead_centres()
+    low, high = (inner, outer) if outstroke else (outer, inner + 360)
+    assert ((low - 1e-5 <= angles) & (angles <= high + 1e-5)).all()
+    angle = CrankAngle.of(angles)
+    # what the rounding of the angle, and that of the coordinate, leave open
+    rounding = 3e-15 * max(machine.stroke, abs(machine.start)) + 4e-15 * abs(machine.slope(angle))
+    assert (abs(machine.coordinate(angle) - machine.start - way) <= rounding).all()
+
+
+@every(STROKES)
+def test_closed_extremes_are_the_largest_of_many(machine):
+    angles = CrankAngle.of(np.linspace(0.0, 360.0, 3601))
+    for function, extremes in (
+        (machine.slope, machine.velocity_extremes()),
+        (machine.curvature, machine.acceleration_extremes()),
+        (lambda angle: machine.swing_at(angle).slope, machine.swing_extremes()),
+    ):
+        for extreme in extremes:
+            assert function(CrankAngle.of(extreme.degrees)) == pytest.approx(extreme.value, rel=1e-14)
+        if extremes:
+            values = function(angles)
+            tops = [extreme.value for extreme in extremes]
+            assert values.max() == pytest.approx(max(tops), rel=1e-5)
+            assert values.min() == pytest.approx(min(tops), rel=1e-5)
+            assert values.max() <= max(tops) + 1e-14 * abs(max(tops))
+            assert values.min() >= min(tops) - 1e-14 * abs(min(tops))
+
+
+@every()
+def test_the_two_strokes_fill_the_turn(machine):
+    assert machine.phi_work + machine.phi_return == 360
+    assert machine.time_ratio == pytest.approx(machine.phi_work / (360 - machine.phi_work), rel=1e-15)
+    assert not machine.quick_return or machine.time_ratio >= 1
+
+
+@every()
+def test_what_it_offers_fits_what_it_says(machine):
+    angle = CrankAngle.of(40.0)
+    assert (machine.swing_at(angle) is not None) == machine.swings
+    assert machine.slides or machine.swings
+    if machine.rod_angle(angle) is not None:
+        assert math.hypot(*machine.rod_angle(angle)) == pytest.approx(1, rel=1e-15)
+
+
+@every()
+def test_landmarks_are_angles(machine):
+    assert all(-90 <= mark <= 450 for mark in machine.landmarks())
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_every_word_names_a_class_that_is_built_from_its_keys(name):
+    mechanism = load(MECHANISMS[name])
+    assert mechanism.name == name
+    builder = getattr(mechanism, "from_keys", mechanism)
+    taken = inspect.signature(builder).parameters
+    assert set(taken) == set(mechanism.KEYS)
+    assert {key for key, value in taken.items() if value.default is inspect.Parameter.empty} == {
+        key for key, value in mechanism.KEYS.items() if value.required
+    }
+
+
+@every(STROKES)
+@pytest.mark.parametrize("wrong", [0.0, -1.0, math.inf, math.nan])
+def test_lengths_must_be_positive_and_finite(machine, wrong):
+    fields = {field.name: getattr(machine, field.name) for field in dataclasses.fields(machine)}
+    with pytest.raises(RuleError, match=r"positive|reach|meet"):
+        type(machine)(**{**fields, "crank": wrong})
+
+
+@every(STROKES)
+@pytest.mark.parametrize("scale", [2.0**-1000, 2.0**1000])
+def test_size_does_not_matter(machine, scale):
+    fields = {field.name: getattr(machine, field.name) for field in dataclasses.fields(machine)}
+    scaled = type(machine)(**{name: value * scale if value is not None else None for name, value in fields.items()})
+    angle = CrankAngle.of(np.array([0.0, 33.0, 180.0, 271.0]))
+    unit = scale if machine.slides else 1.0
+    assert scaled.dead_centres() == pytest.approx(machine.dead_centres(), rel=1e-15)
+    for function, original in zip(
+        (scaled.coordinate, scaled.slope, scaled.curvature), (machine.coordinate, machine.slope, machine.curvature)
+    ):
+        assert function(angle) / unit == pytest.approx(original(angle), rel=1e-13, abs=1e-15 * machine.stroke)
+
+
+@every()
+def test_jets_pass_through_and_carry_the_derivatives(machine):
+    angles = np.linspace(-30.0, 400.0, 87)
+    plain, jets = CrankAngle.of(angles), jet_angle(angles)
+    size = machine.stroke + abs(machine.curvature(plain)).max()
+    if machine.slides:
+        assert machine.coordinate(jets).slope == pytest.approx(machine.slope(plain), abs=1e-13 * size)
+    assert machine.slope(jets).slope == pytest.approx(machine.curvature(plain), abs=1e-12 * size)
+    assert np.isfinite(machine.curvature(jets).slope).all()

@@ -1,0 +1,201 @@
+"""Four-bar linkage: loop closure in 50 digits, limits, the slider-crank as its own limit, and Grashof's rule."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from precise import DEGREE, exact_angle
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import RuleError
+from kurbel.mechanisms.four_bar import FourBar
+from kurbel.mechanisms.slider_crank import SliderCrank
+
+LINKAGES = {
+    "usual": FourBar(0.04, 0.15, 0.08, 0.15),
+    "nearly flat at 180": FourBar(0.1, 0.3, 0.25, 0.45 - 1e-11),
+    "nearly flat at 0": FourBar(0.1, 0.3, 0.2 + 1e-11, 0.3),
+    "long coupler": FourBar(0.1, 3.0, 0.3, 2.9),
+    "small crank": FourBar(1e-7, 1.0, 1.3, 1.1),
+}
+PLACES = [0.0, 1e-6, 0.01, 30.0, 90.0, 143.0, 179.99, 180.0, 180.000001, 222.0, 270.0, 359.0]
+
+
+def exact_rocker(machine, phi):
+    """θ by the law of cosines: the direction of the diagonal and the angle of the triangle on it."""
+    a, b, c, d = (mp.mpf(length) for length in (machine.crank, machine.coupler, machine.rocker, machine.frame))
+    square = a * a + d * d - 2 * a * d * mp.cos(phi)
+    triangle = mp.acos((square + c * c - b * b) / (2 * c * mp.sqrt(square)))
+    return mp.pi - mp.atan2(a * mp.sin(phi), d - a * mp.cos(phi)) - triangle
+
+
+def term_sums(machine, phi):
+    """Sums of the absolute terms of θ′ and θ″ as loop closure gives them, lengths over the frame."""
+    a, b, c = (mp.mpf(length) / machine.frame for length in (machine.crank, machine.coupler, machine.rocker))
+    sin, cos = abs(mp.sin(phi)), abs(mp.cos(phi))
+    w = 1 + a * a - 2 * a * mp.cos(phi)
+    H = mp.sqrt(((b + c) ** 2 - w) * (w - (b - c) ** 2)) / 2
+    E, G = w + abs(b - c) * (b + c), b * b + c * c + w
+    slope = (a * sin * E / (2 * H) + a * (a + cos)) / w
+    rise = 2 * a * sin
+    triangle = (2 * a * cos * E + rise**2 * (1 + E * G / (4 * H * H) + E / w)) / (4 * H * w)
+    return slope, a * sin * (1 + a * a) / w**2 + triangle
+
+
+@pytest.mark.parametrize("machine", LINKAGES.values(), ids=LINKAGES.keys())
+@pytest.mark.parametrize("degrees", PLACES)
+def test_loop_closure_in_fifty_digits(machine, degrees):
+    phi, angle = mp.mpf(degrees) * DEGREE, CrankAngle.of(degrees)
+    swing = machine.swing_at(angle)
+    slope, curvature = term_sums(machine, phi)
+    with mp.workdps(80):
+        assert abs(swing.degrees * DEGREE - exact_rocker(machine, phi)) <= 1e-15 * 3
+        assert abs(swing.slope - mp.diff(lambda t: exact_rocker(machine, t), phi)) <= 1e-13 * slope
+        assert abs(swing.curvature - mp.diff(lambda t: exact_rocker(machine, t), phi, 2)) <= 1e-13 * curvature
+
+
+@st.composite
+def linkages(draw):
+    """Crank-rockers of any shape, by the lengths that are left over in Grashof's sums."""
+    crank = draw(st.floats(0.01, 1))
+    flat, coupler_side, rocker_side = (draw(st.floats(1e-3, 2)) for _ in range(3))
+    frame = crank + (coupler_side + rocker_side) / 2
+    coupler = crank + (flat + coupler_side) / 2
+    rocker = crank + (flat + rocker_side) / 2
+    return FourBar(crank, coupler, rocker, frame)
+
+
+@given(linkages())
+@settings(max_examples=100, deadline=None)
+def test_the_loop_stays_closed_on_one_side(machine):
+    angle = CrankAngle.of(np.linspace(0, 360, 91))
+    sin, cos = machine.direction(angle)
+    pin, joint = np.array([machine.crank * angle.cos, machine.crank * angle.sin]), machine.rocker * np.array([cos, sin])
+    joint[0] += machine.frame
+    gap = joint - pin
+    assert np.hypot(*gap) == pytest.approx(machine.coupler, rel=1e-12)
+    # the joint lies to the left of the line pin → rocker pivot all round: the branch never changes
+    assert ((machine.frame - pin[0]) * gap[1] + pin[1] * gap[0] > 0).all()
+    assert (sin > 0).all()
+
+
+@given(linkages(), st.floats(0, 1), st.booleans())
+@settings(max_examples=100, deadline=None)
+def test_inverse_and_limits(machine, fraction, rising):
+    low, high = machine.limits
+    assert machine.swing == pytest.approx(high - low, rel=1e-9, abs=1e-12)
+    way = fraction * machine.stroke
+    degrees = float(machine.crank_angles_at(np.array([way]), rising)[0])
+    angle = CrankAngle.of(degrees)
+    rounding = 1e-14 * (1 + abs(machine.slope(angle)))
+    assert machine.coordinate(angle) - machine.start == pytest.approx(way, abs=rounding)
+
+
+@given(linkages())
+@settings(max_examples=60, deadline=None)
+def test_transmission_angle_at_its_ends(machine):
+    for extreme in machine.transmission:
+        diagonal = machine.frame - machine.crank * math.cos(math.radians(extreme.degrees))
+        wanted = mp.acos(
+            (mp.mpf(machine.coupler) ** 2 + mp.mpf(machine.rocker) ** 2 - mp.mpf(diagonal) ** 2)
+            / (2 * mp.mpf(machine.coupler) * machine.rocker)
+        )
+        assert extreme.value == pytest.approx(float(wanted / DEGREE), abs=1e-6)
+    low, high = machine.transmission
+    assert 0 < low.value < high.value < 180
+    turn = CrankAngle.of(np.linspace(0, 360, 61))
+    sines = machine.loop.at(turn).sin_transmission
+    assert sines.min() >= min(math.sin(math.radians(low.value)), math.sin(math.radians(high.value))) * (1 - 1e-9)
+
+
+def test_the_power_passes_the_coupler():
+    """Coupler force times the coupler's share of the crank's motion is rocker moment times θ′."""
+    machine = LINKAGES["usual"]
+    angle = CrankAngle.of(np.linspace(0, 360, 37))
+    sin, cos = machine.direction(angle)
+    along = np.array([machine.frame + machine.rocker * cos, machine.rocker * sin])
+    along -= machine.crank * np.array([angle.cos, angle.sin])
+    along /= machine.coupler
+    pushed = machine.crank * (along[1] * angle.cos - along[0] * angle.sin)
+    # with the joint above, a coupler in compression turns the rocker clockwise: θ falls
+    assert -machine.coupler_force_factor(angle) * pushed == pytest.approx(machine.slope(angle), abs=1e-14)
+
+
+def test_a_long_rocker_guides_like_a_crosshead():
+    """c → ∞ with the rocker square to the line: its joint runs straight, at the height it has."""
+    crank, rod, offset, rocker = 0.3, 1.0, 0.05, 1e7
+    # pivot far below the stroke line, at the middle of the stroke: the line of the pivots stands upright
+    middle = 1.0
+    frame = math.hypot(middle, rocker - offset)
+    tilt = math.degrees(math.atan2(-(rocker - offset), middle))
+    linkage = FourBar(crank, rod, rocker, frame)
+    slider = SliderCrank(crank, rod, offset)
+    degrees = np.linspace(0, 360, 37)
+    # the crosshead lies ahead of the shaft where φ = 0 points at it; x runs toward the shaft
+    swing = linkage.swing_at(CrankAngle.of(degrees - tilt))
+    assert rocker * swing.slope == pytest.approx(slider.slope(CrankAngle.of(degrees)), abs=1e-6)
+    assert rocker * swing.curvature == pytest.approx(slider.curvature(CrankAngle.of(degrees)), abs=1e-6)
+
+
+def test_equal_strokes_take_equal_times_where_the_diagonals_agree():
+    """a² + d² = b² + c²: the central crank-rocker has no quick return."""
+    machine = FourBar(0.3, 0.7, math.sqrt(0.09 + 1.0 - 0.49), 1.0)
+    assert machine.time_ratio == pytest.approx(1, rel=1e-14)
+    assert machine.swing == pytest.approx(math.degrees(2 * math.asin(0.3 / machine.rocker)), rel=1e-14)
+
+
+def test_the_working_swing_is_the_slower_one():
+    for machine in (FourBar(0.04, 0.15, 0.08, 0.15), FourBar(0.04, 0.08, 0.15, 0.15)):
+        inner, outer = machine.dead_centres()
+        assert machine.phi_work == max(outer - inner, 360 - outer + inner)
+        assert machine.time_ratio > 1
+
+
+@pytest.mark.parametrize(
+    ("lengths", "message"),
+    [
+        (
+            (0.3, 0.36, 0.36, 0.6),
+            "it cannot turn fully: crank 300 mm + frame 600 mm is more than coupler 360 mm + rocker 360 mm (Grashof)",
+        ),
+        ((0.1, 0.2, 0.3, 0.2), "the linkage folds flat once a turn"),
+        ((0.04, 0.08, 0.11, 0.15), "the linkage folds flat once a turn"),
+        ((0.1, 0.1, 0.3, 0.3), "the linkage folds flat once a turn"),
+        ((0.2, 0.15, 0.3, 0.3), "200 mm is longer than the coupler 150 mm; the crank must be the shortest link"),
+        ((0.3, 0.25, 0.3, 0.1), "300 mm is longer than the frame 100 mm"),
+        (
+            (0.1, 0.2, 0.3, 0.7),
+            "the links do not meet: frame 700 mm is no shorter than crank 100 mm + coupler 200 mm + rocker 300 mm",
+        ),
+    ],
+)
+def test_loops_that_do_not_turn(lengths, message):
+    with pytest.raises(RuleError) as raised:
+        FourBar(*lengths)
+    assert str(raised.value).startswith("crank: " + message)
+
+
+@given(st.tuples(*[st.integers(1, 60)] * 4))
+@settings(max_examples=300, deadline=None)
+def test_grashof_decides(lengths):
+    """Every linkage of whole centimetres is taken exactly when its crank is shortest and Grashof's sum is less."""
+    crank, coupler, rocker, frame = lengths
+    longest = max(coupler, rocker, frame)
+    turns = crank < min(coupler, rocker, frame) and 2 * (crank + longest) < sum(lengths)
+    assume(min(lengths) > 0)
+    metres = [length / 100 for length in lengths]
+    if turns:
+        angle = CrankAngle.of(np.linspace(0, 360, 25))
+        assert np.isfinite(FourBar(*metres).curvature(angle)).all()
+    else:
+        with pytest.raises(RuleError):
+            FourBar(*metres)
+
+
+def test_exact_angles_agree_with_floats():
+    assert float(exact_angle(30.0).sin) == 0.5

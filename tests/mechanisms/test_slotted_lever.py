@@ -1,0 +1,147 @@
+"""Slotted lever: R 304, 305, its limits, the connecting link, and the lever that turns fully."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from precise import exact_angle
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import RuleError
+from kurbel.mechanisms.slotted_lever import SlottedLever
+
+TURN = CrankAngle.of(np.linspace(0, 360, 73))
+
+
+def exact_tilt(machine, phi):
+    return mp.atan2(mp.mpf(machine.crank) * mp.sin(phi), mp.mpf(machine.frame) + mp.mpf(machine.crank) * mp.cos(phi))
+
+
+@pytest.mark.parametrize(
+    "machine",
+    [
+        SlottedLever(0.3, 0.8, 1.3),
+        SlottedLever(0.3, 0.3000001, 0.7),
+        SlottedLever(0.3, 0.29999, 0.4),
+        SlottedLever(1e-9, 1.0, 2.0),
+        SlottedLever(1.0, 1e-9, 2.0),
+    ],
+    ids=["shaper", "pin close to the pivot", "barely turning", "hardly a crank", "hardly a frame"],
+)
+@pytest.mark.parametrize("degrees", [0.0, 1e-7, 20.0, 90.0, 111.0, 179.0, 180.0, 180.001, 250.0, 359.0])
+def test_fork_head_against_derivatives_in_fifty_digits(machine, degrees):
+    r, e, lever = mp.mpf(machine.crank), mp.mpf(machine.frame), mp.mpf(machine.lever)
+    exact, angle = exact_angle(degrees), CrankAngle.of(degrees)
+
+    def place(phi):
+        return lever * mp.sin(exact_tilt(machine, phi))
+
+    square = r * r + e * e + 2 * r * e * exact.cos
+    terms = lever * r * (r + e * abs(exact.cos)) * (e + r * abs(exact.cos)) / square**1.5
+    with mp.workdps(80):
+        phi = mp.radians(degrees)
+        assert abs(machine.coordinate(angle) - place(phi)) <= 1e-15 * abs(place(phi)) + 1e-60
+        assert abs(machine.slope(angle) - mp.diff(place, phi)) <= 1e-13 * terms
+        # the acceleration has terms of one sign only: relative, also beside its zeros
+        wanted = mp.diff(place, phi, 2)
+        assert abs(machine.curvature(angle) - wanted) <= 1e-14 * abs(wanted) + 1e-30
+
+
+def test_largest_speeds_of_the_book():
+    machine = SlottedLever(0.3, 0.8, 1.3)
+    work, back = machine.velocity_extremes()
+    assert work == (pytest.approx(1.3 * 0.3 / (0.8 + 0.3), rel=1e-15), 0.0)  # R 304, v = r ω
+    assert back == (pytest.approx(-1.3 * 0.3 / (0.8 - 0.3), rel=1e-15), 180.0)  # R 305
+    assert machine.stroke == pytest.approx(2 * 1.3 * 0.3 / 0.8, rel=1e-15)
+
+
+def test_working_and_return_angle():
+    machine = SlottedLever(0.3, 0.6, 1.0)  # cos β = 1/2
+    assert machine.phi_return == pytest.approx(120, rel=1e-15)
+    assert machine.phi_work == pytest.approx(240, rel=1e-15)
+    assert machine.time_ratio == pytest.approx(2, rel=1e-15)
+    assert machine.swing == pytest.approx(60, rel=1e-15)
+
+
+@given(st.floats(0.01, 0.99), st.floats(0, 360))
+@settings(max_examples=100, deadline=None)
+def test_crank_and_frame_trade_places_between_swinging_and_turning_lever(kappa, degrees):
+    """The triangle shaft, pivot, pin with r and e exchanged: the two levers stand at θ and φ − θ."""
+    swinging, turning = SlottedLever(kappa, 1.0, 1.0), SlottedLever(1.0, kappa, 1.0)
+    angle = CrankAngle.of(degrees)
+    assert swinging.phi_work == turning.phi_work
+    total = swinging.swing_at(angle).degrees + turning.swing_at(angle).degrees
+    assert math.remainder(total - degrees, 360) == pytest.approx(0, abs=1e-12)
+    assert swinging.swing_at(angle).slope + turning.swing_at(angle).slope == pytest.approx(1, abs=1e-11)
+
+
+@pytest.mark.parametrize("frame", [0.8, 0.1])
+def test_a_long_link_comes_near_the_fork_head(frame):
+    fork, link = SlottedLever(0.3, frame, 1.3), SlottedLever(0.3, frame, 1.3, link=1e9)
+    for name in ("coordinate", "slope", "curvature"):
+        assert getattr(link, name)(TURN) == pytest.approx(getattr(fork, name)(TURN), abs=3e-8)
+    assert link.dead_centres() == pytest.approx(fork.dead_centres(), abs=1e-6)
+
+
+@pytest.mark.parametrize("height", [None, 1.1, 1.4])
+@pytest.mark.parametrize("frame", [0.8, 0.25])
+def test_the_link_keeps_its_length(height, frame):
+    if frame == 0.25 and height is not None:
+        height -= 1.2
+    machine = SlottedLever(0.3, frame, 1.3, link=2.0, ram_height=height)
+    sin, cos = machine.direction(TURN)
+    level = machine.ram_height if height is not None else 1.3 * (1 + math.sqrt(1 - (3 / 8) ** 2)) / 2
+    level = level if height is not None or frame == 0.8 else 0.0
+    pin = np.sqrt(4.0 - (level - 1.3 * cos) ** 2) + 1.3 * sin
+    assert np.ptp(pin - machine.coordinate(TURN)) == pytest.approx(0, abs=2e-15)
+    ends = machine.coordinate(CrankAngle.of(np.array(machine.dead_centres())))
+    assert sum(ends) == pytest.approx(0, abs=1e-15)
+
+
+def test_the_pin_force_does_the_work_of_the_ram():
+    """P dx = F ρ dθ, and the force on the pin turns the crank by its lever arm."""
+    for machine in (SlottedLever(0.3, 0.8, 1.3), SlottedLever(0.3, 0.8, 1.3, link=0.6), SlottedLever(0.3, 0.2, 0.4)):
+        reach = np.sqrt(0.09 + machine.frame**2 + 0.6 * machine.frame * TURN.cos)
+        work = machine.pin_force_factor(TURN) * reach * machine.swing_at(TURN).slope
+        assert work == pytest.approx(machine.slope(TURN), rel=1e-14, abs=1e-15)
+
+
+def test_the_block_moves_as_the_pin_leaves_the_pivot():
+    machine = SlottedLever(0.3, 0.8, 1.3)
+    # the speed of the pin, over ω, is r: along the lever and across it
+    reach = np.sqrt(0.09 + 0.64 + 0.48 * TURN.cos)
+    across = reach * machine.swing_at(TURN).slope
+    assert np.hypot(machine.block_slope(TURN), across) == pytest.approx(0.3, rel=1e-15)
+
+
+def test_theta_of_the_turning_lever_runs_on():
+    machine = SlottedLever(0.15, 0.1, 0.2)
+    angles = np.linspace(-360, 720, 217)
+    theta = machine.swing_at(CrankAngle.of(angles)).degrees
+    assert (np.diff(theta) > 0).all()
+    assert theta[-1] == pytest.approx(720, rel=1e-15)
+    assert machine.swing is None
+    assert "Whitworth" in machine.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("lengths", "message"),
+    [
+        ({"frame": 0.3}, "frame: 300 mm is also the crank: the pin would pass through the lever's pivot"),
+        ({"ram_height": 1.0}, "ram_height: has no meaning for a fork head; give 'link' with it"),
+        ({"link": 0.3, "ram_height": 1.7}, "link: 300 mm does not reach the ram at 1700 mm; it must be longer than"),
+        ({"link": 0.19, "ram_height": 1.39}, "link: 190 mm gets into line with the lever within its swing"),
+        ({"frame": 0.2, "link": 1.4, "ram_height": 0.2}, "link: 1400 mm does not reach: as the lever turns fully it"),
+        ({"link": 0.5, "ram_height": math.nan}, "ram_height: must be finite"),
+        ({"link": -0.5}, "link: must be a positive"),
+    ],
+)
+def test_levers_that_do_not_run(lengths, message):
+    with pytest.raises(RuleError) as raised:
+        SlottedLever(**{"crank": 0.3, "frame": 0.8, "lever": 1.3, **lengths})
+    assert str(raised.value).startswith(message)

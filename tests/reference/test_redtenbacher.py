@@ -1,0 +1,119 @@
+"""F. Redtenbacher, Der Maschinenbau (1862): crosshead, inclined plane, piston rings. Equation numbers D are his."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import pytest
+
+from kurbel.errors import NoSolutionError
+from kurbel.machine.friction import Friction, Rings
+from kurbel.machine.indicator import Constant, Indicator
+from kurbel.machine.piston import Piston
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver import friction as rules
+from machines import constant_pressure, one_cylinder
+
+FULL_ADMISSION = Constant.from_keys(expansion=6e5, compression=0.0)
+LOCOMOTIVE = Piston(0.42, indicator=Indicator(FULL_ADMISSION, FULL_ADMISSION))
+
+
+def locomotive() -> object:
+    return one_cylinder(SliderCrank(0.3, 1.8), pistons=(LOCOMOTIVE,), friction=Friction(0.1))
+
+
+def test_loss_of_the_locomotive() -> None:
+    """D 7: r/l = 1/6, f = 1/10: e/(Pv) = 1/120 = 0.83 %."""
+    forces = one_cylinder(SliderCrank(0.3, 1.8), pistons=(LOCOMOTIVE,), friction=Friction(0.1))
+    assert forces.loss_crosshead_redtenbacher == pytest.approx(1 / 120, rel=1e-15)
+
+
+def test_loss_over_the_way_is_half_as_much_again() -> None:
+    """∮ f|N||dx|/(P s) at constant P, by quadrature in high precision from D 3; his mean is over the rod angle."""
+    lam, f = mpmath.mpf(1) / 6, mpmath.mpf(1) / 10
+
+    def share(phi: mpmath.mpf) -> mpmath.mpf:
+        sin_psi = lam * mpmath.sin(phi)
+        cos_psi = mpmath.sqrt(1 - sin_psi**2)
+        slope = mpmath.sin(phi) + mpmath.cos(phi) * sin_psi / cos_psi
+        return f * sin_psi / (cos_psi + f * sin_psi) * slope / 2
+
+    with mpmath.workdps(30):
+        expected = float(mpmath.quad(share, mpmath.linspace(0, mpmath.pi, 9)))
+    forces = one_cylinder(SliderCrank(0.3, 1.8), pistons=(LOCOMOTIVE,), friction=Friction(0.1))
+    assert expected == pytest.approx(0.01304, abs=5e-6)
+    assert forces.loss_crosshead == pytest.approx(expected, rel=1e-13)
+
+
+def test_three_forms_of_his_mean() -> None:
+    """D 5 exactly, D 5 with cos β = 1 and sin β = β, D 6: 0.8242 %, 0.8280 %, 0.8333 %."""
+    assert rules.redtenbacher_logarithm(1 / 6, 0.1) == pytest.approx(0.008242, abs=5e-7)
+    assert rules.mean_friction_over_rod_angle(1 / 6, 0.1) == pytest.approx(0.008280, abs=5e-7)
+    assert rules.redtenbacher_loss(1 / 6, 0.1) == pytest.approx(0.008333, abs=5e-7)
+
+
+@pytest.mark.parametrize("gamma", [1e-12, 1e-6, 0.05, 0.19, 0.21, 0.7, 1.5])
+@pytest.mark.parametrize("f", [1e-8, 0.01, 0.1, 1.0, 10.0])
+def test_mean_over_the_rod_angle_against_quadrature(gamma: float, f: float) -> None:
+    """D 5 as it stands, integrated with 60 digits."""
+    with mpmath.workdps(60):
+        g, k = mpmath.mpf(gamma), mpmath.mpf(f)
+        exact = (
+            mpmath.quad(lambda b: k * mpmath.sin(b) / (mpmath.cos(b) + k * mpmath.sin(b)), mpmath.linspace(0, g, 5)) / g
+        )
+        assert abs(rules.mean_friction_over_rod_angle(gamma, f) / exact - 1) < 2e-15
+
+
+@pytest.mark.parametrize("product", [1e-12, 1e-3, 0.0099, 0.0101, 0.5, 30.0])
+def test_logarithm_form_against_high_precision(product: float) -> None:
+    with mpmath.workdps(40):
+        p = mpmath.mpf(product)
+        assert abs(rules.redtenbacher_logarithm(product, 1.0) / (1 - mpmath.log1p(p) / p) - 1) < 3e-14
+
+
+def test_guide_force_while_driving_and_while_driven() -> None:
+    """D 3 on the outstroke; pushed back against its motion, the friction changes sides and N grows."""
+    lam_sin, f = 1 / 6, 0.1
+    cos_psi = math.sqrt(1 - lam_sin**2)
+    for pressure, sign in ((6e5, +1), (-6e5, -1)):
+        piston = Piston(0.42, indicator=Indicator(constant_pressure(pressure)))
+        state = one_cylinder(SliderCrank(0.3, 1.8), pistons=(piston,), friction=Friction(f)).at([90])
+        force = pressure * piston.head_area
+        assert state.N[0] == pytest.approx(force * lam_sin / (cos_psi + sign * f * lam_sin), rel=1e-14)
+        assert state.S[0] * lam_sin == pytest.approx(state.N[0], rel=1e-14)  # D 2
+        assert state.S[0] * cos_psi + sign * f * state.N[0] == pytest.approx(force, rel=1e-14)  # D 1
+        assert state.F_friction[0] < 0
+
+
+def test_rings() -> None:
+    """Friction D π h p_r f, share 4 h p_r f/(D p) of the piston force (Kolbenreibung)."""
+    rings = Rings(1, 0.05, 0.4e5, 0.1)
+    assert rules.ring_force(rings, 0.42) == pytest.approx(math.pi * 0.42 * 0.05 * 0.4e5 * 0.1, rel=1e-15)
+    forces = one_cylinder(SliderCrank(0.3, 1.8), pistons=(LOCOMOTIVE,), friction=Friction(None, rings))
+    assert forces.loss_rings == pytest.approx(4 * 0.05 * 0.4e5 * 0.1 / (0.42 * 6e5), rel=1e-14)
+
+
+def test_inclined_plane() -> None:
+    """D 1 to D 5 of the section before."""
+    alpha, f, beta = 20.0, 0.15, 12.0
+    a, b, rho = math.radians(alpha), math.radians(beta), math.atan(f)
+    assert rules.holding_force(alpha, f, beta) == pytest.approx(math.sin(a + rho) / math.cos(b - rho), rel=1e-14)  # D 1
+    assert rules.holding_force(alpha, -f, beta) == pytest.approx(
+        math.sin(a - rho) / math.cos(b + rho), rel=1e-14
+    )  # D 2
+    assert rules.holding_force(alpha, f, -alpha) == pytest.approx(math.tan(a + rho), rel=1e-14)  # D 3
+    assert rules.holding_force(math.degrees(rho), -f) == pytest.approx(0, abs=1e-16)  # D 4
+    with pytest.raises(NoSolutionError, match="locks itself"):
+        rules.holding_force(math.degrees(math.atan(1 / f)) + 1e-9, f, -(math.degrees(math.atan(1 / f)) + 1e-9))  # D 5
+
+
+def test_a_driven_machine_locks_where_f_tan_psi_reaches_one() -> None:
+    """D 5 for the crosshead: N = −P tan ψ/(1 − f tan ψ) has no value beyond f tan ψ = 1."""
+    piston = Piston(0.2, indicator=Indicator(Constant.from_keys(0.0, 5e5), Constant.from_keys(0.0, 5e5)))  # takes work
+    free = one_cylinder(SliderCrank(0.89, 1.0), pistons=(piston,), friction=Friction(0.5))
+    locked = one_cylinder(SliderCrank(0.9, 1.0), pistons=(piston,), friction=Friction(0.5))
+    assert free.friction_work is not None
+    assert free.friction_work > 0
+    with pytest.raises(NoSolutionError, match="locks itself near φ = "):
+        _ = locked.friction_work
