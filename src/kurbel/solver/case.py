@@ -1,0 +1,27 @@
+"""The machine as a whole, solved: results hang on each other and are computed when they are asked for."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from kurbel.machine import Machine
+from kurbel.solver.forces import CylinderForces
+
+
+class Case:
+    """A machine with its results.
+
+    >>> from kurbel.machine import Cylinder, Machine
+    >>> from kurbel.mechanisms.slider_crank import SliderCrank
+    >>> case = Case(Machine((Cylinder(SliderCrank(crank=0.4, rod=2.0)),), speed=50 / 60))
+    >>> round(case.cylinders[0].motion.c_max.value, 6)
+    2.135933
+    """
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+
+    @cached_property
+    def cylinders(self) -> tuple[CylinderForces, ...]:
+        """Motion, forces and key values of every cylinder, in the order of the machine file."""
+        return tuple(CylinderForces(self.machine, cylinder) for cylinder in self.machine.cylinders)

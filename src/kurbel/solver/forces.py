@@ -1,0 +1,202 @@
+"""Forces and key values of one cylinder; each is computed when it is asked for, and none depends on a step."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurbel.machine import Cylinder, Machine
+from kurbel.mechanisms import Extreme
+from kurbel.solver.drive import Drive
+from kurbel.solver.friction import redtenbacher_loss
+from kurbel.solver.grid import Extremes, Grid, Sampled, distinct_angles, extremes, roots, sign_changes
+from kurbel.solver.motion import Motion
+from kurbel.solver.state import State
+
+Array = NDArray[np.float64]
+
+
+class CylinderForces:
+    """What `kurbel forces` answers for one cylinder. Attributes are named by the ids of the key values, in SI.
+
+    A key value that the machine does not have is None. `at(degrees)` gives the columns.
+    """
+
+    def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
+        self.drive = Drive(machine, cylinder)
+        self.motion = Motion(cylinder.mechanism, machine.speed)
+
+    def at(self, degrees: Any) -> State:
+        """Return every quantity at crank angles (n,) in degrees: `forces.at([0, 10]).T` in N, …
+
+        At a jump the value just after it is meant.
+        """
+        return self.drive.at(np.asarray(degrees, dtype=float))
+
+    @cached_property
+    def _grid(self) -> Grid:
+        """The cycle in smooth pieces, cut also where the guide force changes sides, if friction makes that a kink."""
+        grid = Grid(self.drive.breaks())
+        if not self.drive.crosshead_friction:
+            return grid
+        sense = self.drive.jets_at(grid.degrees, grid.within).guide_sense
+        turns = roots(
+            lambda phi, within: self.drive.jets_at(phi, within).guide_sense.value, sign_changes(grid, sense.value)
+        )
+        return grid.split_at(turns)
+
+    @cached_property
+    def _samples(self) -> State:
+        return self.drive.jets_at(self._grid.degrees, self._grid.within, self._grid.beyond)
+
+    @cached_property
+    def _force_extremes(self) -> dict[str, Extremes]:
+        names = [name for name in ("P", "P_start", "S", "N", "T") if getattr(self._samples, name) is not None]
+
+        def sampled(state: State) -> dict[str, Sampled]:
+            shape = state.phi.shape
+            jets = {name: getattr(state, name) for name in names}
+            return {
+                name: Sampled(
+                    np.broadcast_to(getattr(j, "value", j), shape), np.broadcast_to(getattr(j, "slope", 0.0), shape)
+                )
+                for name, j in jets.items()
+            }
+
+        def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
+            return sampled(self.drive.jets_at(degrees, within))
+
+        return extremes(self._grid, sampled(self._samples), evaluate)
+
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes in N of `P`, `P_start`, `P_inertia`, `S`, `N` or `T`, None where it is left out."""
+        if column == "P_inertia":
+            return self._inertia_extremes
+        return self._force_extremes.get(column) if self.drive.has_force else None
+
+    @cached_property
+    def _inertia_extremes(self) -> Extremes | None:
+        """Largest and smallest inertia force −m b in N, R 298."""
+        highest, lowest = self.motion.b_max, self.motion.b_min
+        if not self.drive.has_inertia or highest is None or lowest is None:
+            return None
+        mass = self.drive.mass
+        return Extremes(Extreme(-mass * lowest.value, lowest.degrees), Extreme(-mass * highest.value, highest.degrees))
+
+    @cached_property
+    def phi_reversal(self) -> tuple[float, ...] | None:
+        """Druckwechsel: crank angles in degrees at which P changes sign, through zero or by a jump."""
+        if not self.drive.has_force:
+            return None
+        force = self._samples.P
+        values = np.broadcast_to(getattr(force, "value", force), self._grid.degrees.shape)
+        inside = roots(lambda phi, within: _value(self.drive.jets_at(phi, within).P), sign_changes(self._grid, values))
+        before, after = values[:, -1], np.roll(values[:, 0], -1)
+        jumps = self._grid.breaks[1:][before * after < 0]
+        return distinct_angles(np.concatenate((inside, jumps)), self.drive.cycle)
+
+    # work
+
+    @cached_property
+    def piston_works(self) -> tuple[float, ...] | None:
+        """Indicated work in J per cycle of each piston that has an indicator, in the order of the machine file."""
+        return tuple(gas.work for gas in self.drive.gas) if self.drive.gas else None
+
+    @cached_property
+    def work(self) -> float | None:
+        """Indicated work in J per cycle of all pistons on the rod."""
+        return None if self.piston_works is None else math.fsum(w for gas in self.drive.gas for w in gas.works)
+
+    @cached_property
+    def work_driving(self) -> float | None:
+        """Sum in J of the positive indicated works: what the driving pistons give."""
+        return None if self.piston_works is None else math.fsum(work for work in self.piston_works if work > 0)
+
+    @cached_property
+    def work_driven(self) -> float | None:
+        """Sum in J of the negative indicated works: what the driven pistons take."""
+        return None if self.piston_works is None else math.fsum(work for work in self.piston_works if work < 0)
+
+    @cached_property
+    def power(self) -> float | None:
+        """Indicated power in W; None without a speed or at rest."""
+        speed = self.drive.machine.speed
+        return None if self.work is None or not speed else self.work * speed / self.drive.machine.revolutions
+
+    @cached_property
+    def mean_pressure(self) -> float | None:
+        """Mean indicated pressure p_i of the cylinder's own piston in Pa: its work over the volume it sweeps."""
+        gas = self.drive.own_gas
+        return None if gas is None else gas.work / gas.swept_volume
+
+    @cached_property
+    def crosshead_work(self) -> float | None:
+        """∮ f |N| |dx| in J per cycle."""
+        if not self.drive.has_force or not self.drive.crosshead_friction:
+            return 0.0 if self._has_crosshead else None
+        return self._grid.integral(self._samples.crosshead_power.value)
+
+    @property
+    def _has_crosshead(self) -> bool:
+        friction = self.drive.cylinder.friction
+        return self.drive.has_force and friction is not None and friction.crosshead is not None
+
+    @cached_property
+    def ring_work(self) -> float | None:
+        """Work of ring friction in J per cycle: the ring force over every stroke."""
+        friction = self.drive.cylinder.friction
+        if friction is None or friction.rings is None:
+            return None
+        return self.drive.ring_force * 2 * self.motion.stroke * self.drive.machine.revolutions
+
+    @cached_property
+    def friction_work(self) -> float | None:
+        """Work of all friction in J per cycle."""
+        given = [work for work in (self.crosshead_work, self.ring_work) if work is not None]
+        return math.fsum(given) if given and self.drive.has_force else None
+
+    @cached_property
+    def W(self) -> float | None:
+        """Mean tangential force in N over the cycle: what is left of the indicated work over the way of the pin."""
+        if not self.drive.has_force:
+            return None
+        way = 2 * math.pi * self.drive.mechanism.crank * self.drive.machine.revolutions
+        return math.fsum((self.work or 0.0, -(self.friction_work or 0.0))) / way
+
+    @cached_property
+    def loss_crosshead(self) -> float | None:
+        """Work lost at the crosshead over that of the driving pistons."""
+        return None if self.crosshead_work is None or not self.work_driving else self.crosshead_work / self.work_driving
+
+    @cached_property
+    def loss_crosshead_redtenbacher(self) -> float | None:
+        """½ λ f, D 7."""
+        lam = getattr(self.drive.mechanism, "lam", None)
+        return (
+            redtenbacher_loss(lam, self.drive.crosshead_friction) if self._has_crosshead and lam is not None else None
+        )
+
+    @cached_property
+    def loss_rings(self) -> float | None:
+        """Work lost at the rings over that of the driving pistons."""
+        return None if self.ring_work is None or not self.work_driving else self.ring_work / self.work_driving
+
+    @cached_property
+    def energy_residual(self) -> float | None:
+        """(∮ T R dφ − indicated work + friction work) over ∮ |T| R dφ: quadrature against closed work."""
+        if not self.drive.has_force:
+            return None
+        torque = _value(self._samples.M)
+        turnover = self._grid.integral(np.abs(torque))
+        if not turnover:
+            return 0.0
+        left = math.fsum((self._grid.integral(torque), -(self.work or 0.0), self.friction_work or 0.0))
+        return left / turnover
+
+
+def _value(quantity: Any) -> Any:
+    return getattr(quantity, "value", quantity)

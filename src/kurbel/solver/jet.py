@@ -1,0 +1,89 @@
+"""Jets: arrays that carry their slope by the crank angle, so that one formula gives a value and its derivative.
+
+The formulas of the mechanisms use only + − × ÷, √ and a choice by sign. Fed with the jets of sin φ and cos φ they
+return the exact derivative of whatever they compute, with no second set of formulas to keep in step.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurbel.crank_angle import CrankAngle
+
+Array = NDArray[np.float64]
+
+
+class Jet:
+    """Value and slope d/dφ (per radian), arrays of one shape."""
+
+    __slots__ = ("slope", "value")
+    __array_ufunc__ = None  # an array on the left lets the jet take over
+
+    def __init__(self, value: Any, slope: Any) -> None:
+        self.value = value
+        self.slope = slope
+
+    def __add__(self, other: Any) -> Jet:
+        if isinstance(other, Jet):
+            return Jet(self.value + other.value, self.slope + other.slope)
+        return Jet(self.value + other, self.slope)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Jet:
+        return Jet(-self.value, -self.slope)
+
+    def __sub__(self, other: Any) -> Jet:
+        if isinstance(other, Jet):
+            return Jet(self.value - other.value, self.slope - other.slope)
+        return Jet(self.value - other, self.slope)
+
+    def __rsub__(self, other: Any) -> Jet:
+        return Jet(other - self.value, -self.slope)
+
+    def __mul__(self, other: Any) -> Jet:
+        if isinstance(other, Jet):
+            return Jet(self.value * other.value, self.slope * other.value + self.value * other.slope)
+        return Jet(self.value * other, self.slope * other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Jet:
+        if isinstance(other, Jet):
+            quotient = self.value / other.value
+            return Jet(quotient, (self.slope - quotient * other.slope) / other.value)
+        return Jet(self.value / other, self.slope / other)
+
+    def __rtruediv__(self, other: Any) -> Jet:
+        quotient = other / self.value
+        return Jet(quotient, -quotient * self.slope / self.value)
+
+    def __abs__(self) -> Jet:
+        sign = np.where(self.value >= 0, 1.0, -1.0)
+        return Jet(self.value * sign, self.slope * sign)
+
+    def __ge__(self, other: float) -> Any:
+        return self.value >= other
+
+    def __lt__(self, other: float) -> Any:
+        return self.value < other
+
+    def sqrt(self) -> Jet:
+        """Return √ of the jet."""
+        root = np.sqrt(self.value)
+        return Jet(root, self.slope / (2 * root))
+
+    @staticmethod
+    def where(condition: Any, value: Any, otherwise: Any) -> Jet:
+        """Return the jet that is `value` where the condition holds, and `otherwise` elsewhere."""
+        first, second = (x if isinstance(x, Jet) else Jet(x, 0.0) for x in (value, otherwise))
+        return Jet(np.where(condition, first.value, second.value), np.where(condition, first.slope, second.slope))
+
+
+def jet_angle(degrees: Array, beyond: Array | float = 0.0) -> CrankAngle:
+    """Return the crank angles (n,) in degrees, as `CrankAngle.of`, with sine and cosine as jets."""
+    angle = CrankAngle.of(degrees, beyond)
+    return CrankAngle(degrees, Jet(angle.sin, angle.cos), Jet(angle.cos, -angle.sin))

@@ -1,0 +1,199 @@
+"""Key values against an independent calculation with 40 digits: textbook formulas, no tricks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from itertools import pairwise
+
+import mpmath
+import numpy as np
+import pytest
+
+from kurbel.machine.friction import Friction
+from kurbel.machine.indicator import Card, Constant, Indicator
+from kurbel.machine.masses import Masses
+from kurbel.machine.piston import Piston
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.state import GRAVITY
+from machines import AT, STEAM_CARD, one_cylinder
+
+mp = mpmath.mp
+LAMBDAS = [1e-12, 1e-3, 0.2, 0.25, 0.6, 0.9, 0.99, 1 - 1e-6, 1 - 1e-10]
+
+
+class Oracle:
+    """A double-acting machine with straight rod, written down as the textbooks do."""
+
+    def __init__(self, forces: CylinderForces) -> None:
+        drive = forces.drive
+        self.piston = drive.cylinder.pistons[0]
+        self.crank, self.rod = mpmath.mpf(drive.mechanism.crank), mpmath.mpf(drive.mechanism.rod)
+        self.omega = 2 * mp.pi * mpmath.mpf(drive.machine.speed or 0)
+        self.mass = mpmath.mpf(drive.mass)
+        self.f = mpmath.mpf(drive.crosshead_friction)
+        self.guide_weight = self.mass * mpmath.mpf(GRAVITY) if drive.weight else mpmath.mpf(0)
+
+    def x(self, phi: mpmath.mpf) -> mpmath.mpf:
+        r, length = self.crank, self.rod
+        return r * (1 - mp.cos(phi)) + length - mp.sqrt(length**2 - (r * mp.sin(phi)) ** 2)
+
+    def slope(self, phi: mpmath.mpf) -> mpmath.mpf:
+        psi = mp.asin(self.crank / self.rod * mp.sin(phi))
+        return self.crank * mp.sin(phi + psi) / mp.cos(psi)
+
+    def gas(self, phi: mpmath.mpf) -> mpmath.mpf:
+        out = mp.sin(phi) >= 0
+        fraction = self.x(phi) / (2 * self.crank)
+        head, crank = self.piston.indicator.head_end, self.piston.indicator.crank_end
+        p_head = _pressure(head, 0 if out else 1, fraction)
+        p_crank = _pressure(crank, 1 if out else 0, 1 - fraction)
+        return p_head * mpmath.mpf(self.piston.head_area) - p_crank * mpmath.mpf(self.piston.crank_area)
+
+    def force(self, phi: mpmath.mpf) -> mpmath.mpf:
+        lam = self.crank / self.rod
+        psi = mp.asin(lam * mp.sin(phi))
+        b = self.crank * self.omega**2 * (mp.cos(phi + psi) / mp.cos(psi) + lam * mp.cos(phi) ** 2 / mp.cos(psi) ** 3)
+        return self.gas(phi) - self.mass * b
+
+    def guide(self, phi: mpmath.mpf) -> mpmath.mpf:
+        psi = mp.asin(self.crank / self.rod * mp.sin(phi))
+        direction = mp.sign(mp.sin(phi))
+        lifted = self.force(phi) * mp.sin(psi) + self.guide_weight * mp.cos(psi)
+        return lifted / (mp.cos(psi) + direction * mp.sign(lifted) * self.f * mp.sin(psi))
+
+    def rod_force(self, phi: mpmath.mpf) -> mpmath.mpf:
+        psi = mp.asin(self.crank / self.rod * mp.sin(phi))
+        drag = mp.sign(mp.sin(phi)) * self.f * abs(self.guide(phi))
+        return (self.force(phi) - drag) / mp.cos(psi)
+
+    def tangential(self, phi: mpmath.mpf) -> mpmath.mpf:
+        psi = mp.asin(self.crank / self.rod * mp.sin(phi))
+        return self.rod_force(phi) * mp.sin(phi + psi)
+
+
+def _pressure(card: Card, index: int, fraction: mpmath.mpf) -> mpmath.mpf:
+    points = sorted(zip(card.lines[index].fractions, card.lines[index].pressures, strict=True))
+    for (z, p), (next_z, next_p) in pairwise(points):
+        if z <= fraction <= next_z and next_z > z:
+            return mpmath.mpf(p) + (mpmath.mpf(next_p) - p) * (fraction - z) / (mpmath.mpf(next_z) - z)
+    raise AssertionError(fraction)
+
+
+def machine(lam: float, weight: bool = False, f: float = 0.1) -> CylinderForces:
+    piston = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
+    return one_cylinder(
+        SliderCrank(0.4, 0.4 / lam),
+        120,
+        pistons=(piston,),
+        masses=Masses(900),
+        friction=Friction(f),
+        inclination=0.0 if weight else None,
+    )
+
+
+def edges(forces: CylinderForces) -> list[mpmath.mpf]:
+    """All bends of the machine; more of them than needed do the quadrature no harm."""
+    return [mpmath.mpf(float(angle)) * mp.pi / 180 for angle in forces._grid.breaks]
+
+
+@pytest.mark.parametrize("weight", [False, True])
+@pytest.mark.parametrize("lam", LAMBDAS)
+def test_friction_work(lam: float, weight: bool) -> None:
+    forces = machine(lam, weight, f=0.1 if lam < 0.9 else 0.02 if lam < 0.999 else 1e-7)
+    with mpmath.workdps(30):
+        oracle = Oracle(forces)
+        exact = mpmath.mpf(0)
+        cuts = edges(forces)
+        for low, high in pairwise(cuts):
+            exact += mp.quad(lambda phi: oracle.f * abs(oracle.guide(phi) * oracle.slope(phi)), [low, high])
+        assert forces.friction_work is not None
+        assert abs(forces.friction_work / exact - 1) < 1e-13
+
+
+@pytest.mark.parametrize("column", ["P", "S", "N", "T"])
+@pytest.mark.parametrize("lam", [0.2, 0.6, 0.95])
+def test_extremes(lam: float, column: str) -> None:
+    """Brute force over 20,000 angles finds the hill, high precision climbs it."""
+    forces = machine(lam)
+    found = forces.extremes_of(column)
+    assert found
+    dense = getattr(forces.at(np.linspace(0, 360, 20001)), column)
+    with mpmath.workdps(40):
+        oracle = Oracle(forces)
+        function = {"P": oracle.force, "S": oracle.rod_force, "N": oracle.guide, "T": oracle.tangential}[column]
+        for extreme, sign in ((found.largest, 1), (found.smallest, -1)):
+            assert sign * extreme.value >= (sign * dense).max() * (1 - 1e-12)
+            exact = _climb(function, forces, extreme.degrees, sign)
+            assert abs(extreme.value / exact - 1) < 1e-13
+
+
+def _climb(
+    function: Callable[[mpmath.mpf], mpmath.mpf], forces: CylinderForces, degrees: float, sign: int
+) -> mpmath.mpf:
+    """Return the extreme within the smooth pieces that touch the angle, one-sided at their ends, by ternary search."""
+    breaks = forces._grid.breaks
+    pieces = [(low, high) for low, high in pairwise(breaks) if low - 1e-9 <= degrees <= high + 1e-9]
+    best = None
+    for low, high in pieces:
+        tiny = mpmath.mpf(10) ** -28
+        start = max(mpmath.mpf(low), mpmath.mpf(degrees) - mpmath.mpf("0.5")) * mp.pi / 180 + tiny
+        stop = min(mpmath.mpf(high), mpmath.mpf(degrees) + mpmath.mpf("0.5")) * mp.pi / 180 - tiny
+        for _ in range(110):
+            a, b = start + (stop - start) / 3, stop - (stop - start) / 3
+            start, stop = (a, stop) if sign * function(a) < sign * function(b) else (start, b)
+        value = function((start + stop) / 2)
+        best = value if best is None or sign * value > sign * best else best
+    assert best is not None
+    return best
+
+
+def exact_area(card: Card) -> Fraction:
+    total = Fraction(0)
+    for line in card.lines:
+        points = [(Fraction(z), Fraction(p)) for z, p in zip(line.fractions, line.pressures, strict=True)]
+        total += sum(((p + q) / 2 * (w - z) for (z, p), (w, q) in pairwise(points)), Fraction(0))
+    return total
+
+
+def test_work_is_the_exact_polygon_area() -> None:
+    forces = machine(0.2)
+    piston = forces.drive.cylinder.pistons[0]
+    exact = exact_area(STEAM_CARD) * Fraction(0.8) * (Fraction(piston.head_area) + Fraction(piston.crank_area))
+    assert forces.work is not None
+    assert abs(Fraction(forces.work) / exact - 1) < Fraction(1, 10**15)
+
+
+def test_work_of_a_card_that_nearly_cancels() -> None:
+    """Lines 1e-12 apart: a difference of two sums would keep four digits."""
+    out = [(i / 40, 5.0 + 3.0 * i / 40 + 0.1 * (i % 3)) for i in range(41)]
+    back = [(x, p * (1 - 1e-12)) for x, p in reversed(out)]
+    card = Card.from_keys(unit=(AT, 1), expansion=out, compression=back)
+    forces = one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(0.3, indicator=Indicator(card)),))
+    exact = exact_area(card) * Fraction(0.8) * Fraction(Piston(0.3).head_area)
+    assert forces.work is not None
+    assert abs(Fraction(forces.work) / exact - 1) < Fraction(1, 10**15)
+
+
+@pytest.mark.parametrize("lam", LAMBDAS)
+def test_columns_at_any_angle(lam: float) -> None:
+    forces = machine(lam, weight=True, f=0.02)
+    degrees = [1e-9, 10.0, 79.1, 123.4, 179.999, 200.0, 271.0, 359.0]
+    state = forces.at(degrees)
+    with mpmath.workdps(40):
+        oracle = Oracle(forces)
+        for i, degree in enumerate(degrees):
+            phi = mpmath.mpf(degree) * mp.pi / 180
+            scale = float(abs(oracle.gas(phi)) + abs(oracle.force(phi) - oracle.gas(phi)))
+            for column, function in (("P", oracle.force), ("S", oracle.rod_force), ("N", oracle.guide)):
+                factor = 1 / float(mp.cos(mp.asin(lam * mp.sin(phi))))
+                assert abs(getattr(state, column)[i] - function(phi)) < 2e-14 * scale * factor
+
+
+def test_constant_force_has_its_extreme_at_the_first_angle_of_the_plateau() -> None:
+    card = Constant.from_keys(3e5, 1e5)
+    found = one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(0.2, indicator=Indicator(card)),)).extremes_of("P")
+    assert found
+    assert found.largest.degrees == 0
+    assert found.smallest.degrees == 180
