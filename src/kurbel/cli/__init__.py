@@ -1,0 +1,127 @@
+"""The command line: the group, and the one place where errors become messages and exit statuses.
+
+At import only click is loaded; a command module is imported when it is called or listed, and imports what it computes
+with inside its function.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import Any, NoReturn
+
+import click
+
+from kurbel import __version__
+from kurbel.errors import KurbelError, MachineFileError
+
+# before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+COMMANDS = ("table", "forces", "check", "example", "schema")
+"""In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""
+
+_INTERRUPTED = 130
+_INTERNAL = 70
+_DEBUG = "KURBEL_DEBUG"
+
+
+class _Kurbel(click.Group):
+    """The group, which imports its commands on need and ends every run with a message instead of a traceback."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        from importlib import import_module
+
+        command: click.Command = getattr(import_module(f"kurbel.cli.{cmd_name}"), cmd_name)
+        return command
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        name = args[0]
+        if name in COMMANDS or name.startswith("-"):
+            return super().resolve_command(ctx, args)
+        from kurbel.report.tables import did_you_mean
+
+        raise click.UsageError(f"no command '{name}'{did_you_mean(name, COMMANDS)}", ctx)
+
+    def main(self, *args: Any, **extra: Any) -> NoReturn:
+        _survive_missing_characters()
+        try:
+            status = super().main(*args, **(extra | {"standalone_mode": False}))
+        except click.ClickException as error:
+            error.show()
+            status = error.exit_code
+        except click.Abort:
+            status = _INTERRUPTED
+        except MachineFileError as error:
+            status = _failed(error.pretty(), error.exit_status)
+        except KurbelError as error:
+            status = _failed(f"Error: {error}", error.exit_status)
+        except OSError as error:
+            status = _output_failed(error)
+        except Exception as error:
+            if os.environ.get(_DEBUG):
+                raise
+            status = _failed(
+                f"Error: this is a fault in kurbel, not in your input: {type(error).__name__}: {error}\n"
+                f"Please report it; {_DEBUG}=1 shows where it happened.",
+                _INTERNAL,
+            )
+        sys.exit(status if isinstance(status, int) else 0)
+
+
+def _survive_missing_characters() -> None:
+    """Let no message fail because the output encoding lacks one of its characters."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+
+
+def _failed(message: str, status: int) -> int:
+    from kurbel.render.charset import Charset
+
+    charset = Charset(getattr(sys.stderr, "encoding", None) or "utf-8")
+    click.echo("\n".join(charset.text(line) for line in message.splitlines()), err=True)
+    return status
+
+
+def _output_failed(error: OSError) -> int:
+    from kurbel.render.output import silence_stdout
+
+    silence_stdout()
+    named = f"{error.filename}: " if error.filename else ""
+    return _failed(f"Error: {named}{error.strerror or error}", KurbelError.exit_status)
+
+
+@click.group(cls=_Kurbel, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="kurbel", message="%(prog)s %(version)s")
+def kurbel() -> None:
+    """Calculate crank drives: motion, forces and friction of piston machines.
+
+    A machine is described in a YAML file, every value with its unit; kurbel answers in the tables and
+    symbols of the old machine-element books. Start with
+
+    \b
+      kurbel table                              the factors of any slider-crank
+      kurbel example                            the machines that come with kurbel
+      kurbel example waterworks > engine.yaml   take one as a pattern
+      kurbel check engine.yaml                  what will be computed, what is left out
+      kurbel forces engine.yaml                 forces and key values
+
+    Results go to standard output, everything else to standard error. Exit status: 0 done, 1 a limit
+    is broken (check), 2 wrong usage or input, 3 no solution.
+    """
+
+
+def main() -> NoReturn:
+    """Run the command line."""
+    import gc
+
+    try:
+        kurbel.main()
+    finally:
+        gc.freeze()  # saves the collector's last tour through everything imported, a tenth of the run of `kurbel table`

@@ -1,0 +1,26 @@
+"""`kurbel check`: reads a machine, says what will be computed, and holds it against its limits."""
+
+from __future__ import annotations
+
+import click
+
+from kurbel.cli.output_options import machine_file
+
+
+@click.command(short_help="Read and check a machine file and its limits.")
+@machine_file
+def check(file: str) -> int:
+    """Read the machine in FILE and say what will be computed, what is left out and why.
+
+    Where the file gives 'limits', compare the key values with them. Exit status: 0 all is well, 1 a limit is
+    broken, 2 the file has faults.
+    """
+    from kurbel.cli import COMMANDS
+    from kurbel.machine_file import load
+    from kurbel.render.listing import listing
+    from kurbel.render.output import stdout_charset, write_stdout
+    from kurbel.report.check import checked
+
+    result = checked(load(file), COMMANDS)
+    write_stdout(listing(result, stdout_charset()))
+    return int(result.broken)

@@ -1,0 +1,56 @@
+"""`kurbel example`: the machines that come with kurbel."""
+
+from __future__ import annotations
+
+import os
+
+import click
+
+_FOLDER = os.path.join(os.path.dirname(os.path.dirname(__file__)), "configs")
+_SUFFIX = ".yaml"
+
+
+@click.command(short_help="List the shipped machines, or print one.")
+@click.argument("name", required=False)
+@click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
+def example(name: str | None, file_name: str | None) -> None:
+    """List the machines that come with kurbel, or print the file of the machine NAME.
+
+    \b
+      kurbel example waterworks > engine.yaml
+      kurbel example waterworks | kurbel forces -
+    """
+    from kurbel.render.output import stdout_charset, write_stdout, write_text
+
+    if name is not None:
+        write_text(_read(_known(name)), file_name)
+    elif file_name is not None:
+        write_text("".join(line + "\n" for line in _listing()), file_name)
+    else:
+        write_stdout("".join(stdout_charset().text(line) + "\n" for line in _listing()))
+
+
+def _names() -> tuple[str, ...]:
+    return tuple(sorted(file[: -len(_SUFFIX)] for file in os.listdir(_FOLDER) if file.endswith(_SUFFIX)))
+
+
+def _known(name: str) -> str:
+    from kurbel.errors import UsageError
+    from kurbel.report.tables import did_you_mean
+
+    bare, names = name.removesuffix(_SUFFIX), _names()
+    if bare not in names:
+        raise UsageError(f"no example '{name}'{did_you_mean(bare, names)} (known: {', '.join(names)})")
+    return bare
+
+
+def _read(name: str) -> str:
+    with open(os.path.join(_FOLDER, name + _SUFFIX), encoding="utf-8") as file:
+        return file.read()
+
+
+def _listing() -> list[str]:
+    """Return a line for each machine: its name and the first comment line of its file."""
+    names = _names()
+    longest = max(map(len, names))
+    return [f"{name:<{longest}}  {_read(name).partition(chr(10))[0].lstrip('# ')}" for name in names]

@@ -1,0 +1,160 @@
+"""Options shared by the commands that print a table, and what they mean."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import click
+
+from kurbel.render import FORMATS, LAYOUTS, Look
+
+if TYPE_CHECKING:
+    from kurbel.report.tables import Report
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+class Number(click.ParamType[float]):
+    """A finite number with a decimal point; `words` are texts allowed instead, with their values."""
+
+    name = "number"
+
+    def __init__(self, **words: float) -> None:
+        self.words = words
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the number, or end with a usage error that says what to write."""
+        if not isinstance(value, str):
+            return float(value)
+        if value in self.words:
+            return self.words[value]
+        from kurbel.errors import UnitError
+        from kurbel.units import parse_number
+
+        try:
+            return parse_number(value)
+        except UnitError as error:
+            self.fail(str(error), param, ctx)
+
+
+class Numbers(click.ParamType[tuple[float, ...]]):
+    """Numbers, separated by commas."""
+
+    name = "numbers"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
+        """Return the numbers in the order given."""
+        if not isinstance(value, str):
+            return tuple(value)
+        return tuple(Number().convert(text, param, ctx) for text in value.split(","))
+
+
+class Words(click.ParamType[tuple[str, ...]]):
+    """Words, separated by commas."""
+
+    name = "words"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
+        """Return the words in the order given, without those that are empty."""
+        words = value.split(",") if isinstance(value, str) else value
+        return tuple(word.strip() for word in words if word.strip())
+
+
+class Columns(Words):
+    """Ids of columns, separated by commas; one that kurbel has nowhere is a usage error."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
+        """Return the ids in the order given."""
+        from kurbel.quantities import COLUMNS
+        from kurbel.report.tables import did_you_mean
+
+        ids = super().convert(value, param, ctx)
+        for id in ids:
+            if id not in COLUMNS:
+                near = did_you_mean(id, tuple(COLUMNS))
+                self.fail(f"unknown column '{id}'{near} (known: {', '.join(COLUMNS)})", param, ctx)
+        return ids
+
+
+class Output(NamedTuple):
+    """Where a report goes and how it looks."""
+
+    look: Look
+    file_name: str | None
+
+    def write(self, report: Report) -> None:
+        """Write the report."""
+        from kurbel.render.output import write_report
+
+        write_report(report, self.look, self.file_name)
+
+
+def _stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    def decorate(command: Command) -> Command:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return decorate
+
+
+machine_file = click.argument("file", metavar="FILE")
+"""The machine file, or - for standard input."""
+
+angle_options = _stacked(
+    click.option(
+        "--step", type=Number(), default=10.0, metavar="DEGREES", help="Step of the crank angle; 10 if not given."
+    ),
+    click.option(
+        "--angles", type=Numbers(), metavar="A,B,...", help="These crank angles in degrees instead of a step."
+    ),
+)
+"""`--step` and `--angles`: see `crank_angles`."""
+
+columns_option = click.option(
+    "--columns", type=Columns(), metavar="ID,ID,...", help="Only these columns, in this order."
+)
+units_option = click.option(
+    "--units", type=click.Choice(["si", "technical"]), default="si", help="technical: mm, kgf, at, as the old books."
+)
+_look_options = _stacked(
+    click.option(
+        "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
+    ),
+    click.option("--format", "-f", "format", type=click.Choice(FORMATS), default="table", help="table if not given."),
+    click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."),
+    click.option(
+        "--decimal",
+        type=click.Choice(["point", "comma"]),
+        default="point",
+        help="Decimal sign; a comma makes csv use ';'.",
+    ),
+    click.option(
+        "--digits", type=click.IntRange(1, 17), help="Significant digits; if not given 4, and all in csv and json."
+    ),
+)
+
+
+def output_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command --layout, --format, --output, --decimal and --digits, which reach it as one `output: Output`."""
+
+    @wraps(command)
+    def with_output(
+        layout: str, format: str, file_name: str | None, decimal: str, digits: int | None, **others: Any
+    ) -> None:
+        if decimal == "comma" and format == "json":
+            raise click.UsageError("--decimal comma: JSON has the decimal point only.")
+        command(output=Output(Look(format, layout, decimal == "comma", digits), file_name), **others)
+
+    return _look_options(with_output)
+
+
+def crank_angles(step: float, angles: tuple[float, ...] | None, end: float) -> tuple[float, ...]:
+    """Return the angles given, or 0, step, 2 step, … `end` in degrees."""
+    if angles is not None:
+        return angles
+    from kurbel.report.angles import stepped
+
+    return stepped(step, end)

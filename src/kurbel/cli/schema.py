@@ -1,0 +1,25 @@
+"""`kurbel schema`: the JSON Schema of the machine file."""
+
+from __future__ import annotations
+
+import click
+
+
+@click.command(short_help="JSON Schema of the machine file, for editors.")
+@click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
+def schema(file_name: str | None) -> None:
+    """Print the JSON Schema (draft-07) of the machine file; editors complete and check with it.
+
+    \b
+      kurbel schema > kurbel.schema.json
+      first line of a machine file:
+      # yaml-language-server: $schema=./kurbel.schema.json
+    """
+    import json
+
+    from kurbel.machine_file.schema import json_schema
+    from kurbel.render.output import write_text
+
+    # escapes instead of Greek: valid in whatever encoding a shell redirects to
+    text = json.dumps(json_schema(), indent=2, allow_nan=False) + "\n"
+    write_text(text, file_name)

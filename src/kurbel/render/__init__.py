@@ -1,0 +1,54 @@
+"""From a neutral report to text: the page of the book, one line per angle, CSV, JSON and Markdown."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from kurbel.render.charset import Charset
+
+if TYPE_CHECKING:
+    from kurbel.report.tables import Report
+
+FORMATS = ("table", "csv", "json", "markdown")
+LAYOUTS = ("book", "rows")
+
+
+class Look(NamedTuple):
+    """How a report is to look.
+
+    format, layout: of FORMATS and LAYOUTS; comma: decimal comma; digits: significant digits, where None means four in
+    print and all of them in csv and json; width: columns of the terminal, None for a pipe or a file;
+    encoding: of the output.
+    """
+
+    format: str = "table"
+    layout: str = "book"
+    comma: bool = False
+    digits: int | None = None
+    width: int | None = None
+    encoding: str = "utf-8"
+
+    @property
+    def charset(self) -> Charset:
+        """What the output can show."""
+        return Charset(self.encoding)
+
+
+def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
+    """Return the report as text that ends with a newline; the same report gives the same text every time."""
+    if look.format == "csv":
+        from kurbel.render.csv_text import csv_text
+
+        return csv_text(report, look)
+    if look.format == "json":
+        from kurbel.render.json_text import json_text
+
+        return json_text(report, look)
+    if look.format == "markdown":
+        from kurbel.render.markdown import markdown
+
+        return markdown(report, look)
+    from kurbel.render.lines import plain
+    from kurbel.render.page import page
+
+    return plain(page(report, look))

@@ -1,0 +1,69 @@
+"""CSV: one head row, one row per crank angle, numbers in full; names of the columns in ASCII with their units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from kurbel.render.numbers import exact, whole_if_integral
+
+if TYPE_CHECKING:
+    from kurbel.render import Look
+    from kurbel.report.tables import Column, Part, Report, Value
+
+
+def csv_text(report: Report, look: Look) -> str:
+    """Return the table as CSV with `\\n` line ends; with the decimal comma, `;` separates the columns.
+
+    Several cylinders stand under one another, told apart by a first column; a column that one of them has not is
+    empty there.
+    """
+    separator = ";" if look.comma else ","
+    return "".join(separator.join(_quoted(text, separator) for text in row) + "\n" for row in _rows(report, look))
+
+
+def _rows(report: Report, look: Look) -> Iterator[list[str]]:
+    parts = [part for part in report.all_parts if part.columns]
+    heads = list(dict.fromkeys(head(column) for part in parts for column in part.columns))
+    named = report.group == "ratios" or len(parts) > 1
+    first = "rod_ratio" if report.group == "ratios" else "cylinder"
+    yield [*([first] if named else []), *heads]
+    for part in parts:
+        columns = {head(column): column for column in part.columns}
+        texts = [_texts(columns.get(name), len(part.columns[0].values), look) for name in heads]
+        name = _name(part, look)
+        for row in zip(*texts):
+            yield [*([name] if named else []), *row]
+
+
+def head(column: Column) -> str:
+    """Return id and unit: `x_m`, `b_m/s^2`, `M_Nm`, or the id alone for a ratio."""
+    unit = column.unit.replace(" ", "")
+    return f"{column.id}_{unit}" if unit else column.id
+
+
+def _name(part: Part, look: Look) -> str:
+    if isinstance(part.name, str):
+        return look.charset.text(part.name)
+    return _number(whole_if_integral(part.name), None, look)
+
+
+def _texts(column: Column | None, count: int, look: Look) -> list[str]:
+    if column is None:
+        return [""] * count
+    if column.id == "phi":
+        return ["" if value is None else _number(whole_if_integral(value), None, look) for value in column.values]
+    return [_number(value, look.digits, look) for value in column.values]
+
+
+def _number(value: Value, digits: int | None, look: Look) -> str:
+    if value is None:
+        return ""
+    text = exact(value, digits)
+    return text.replace(".", ",") if look.comma else text
+
+
+def _quoted(text: str, separator: str) -> str:
+    if any(character in text for character in (separator, '"', "\n", "\r")):
+        return '"' + text.replace('"', '""') + '"'
+    return text

@@ -1,0 +1,27 @@
+"""Lines of a printed page, as pieces that say what they are; a terminal may colour them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+
+class Piece(NamedTuple):
+    """A piece of a line; `role` is what it is: title, head, rule, name, symbol, unit, cell, mark or text."""
+
+    text: str
+    role: str = "text"
+
+
+Line = tuple[Piece, ...]
+BLANK: Line = ()
+
+
+def line(text: str, role: str = "text") -> Line:
+    """Return a line of one piece."""
+    return (Piece(text, role),)
+
+
+def plain(lines: Iterable[Line]) -> str:
+    """Return the lines as text, without blanks at their ends."""
+    return "".join("".join(piece.text for piece in pieces).rstrip() + "\n" for pieces in lines)

@@ -1,0 +1,27 @@
+"""The printed page: title, tables, key values, and what was left out, from top to bottom."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kurbel.render.lines import BLANK, Line, line
+from kurbel.render.prose import prose
+from kurbel.render.sheet import sheets
+
+if TYPE_CHECKING:
+    from kurbel.render import Look
+    from kurbel.report.tables import Report
+
+
+def page(report: Report, look: Look) -> list[Line]:
+    """Return the lines of the whole page."""
+    if look.layout == "rows":
+        from kurbel.render.rows import table
+    else:
+        from kurbel.render.book import table
+    lines = [line(look.charset.text(report.title), "title")]
+    for sheet in sheets(report, look):
+        lines += [BLANK, *table(sheet, look)]
+    for paragraph in prose(report, look):
+        lines += [BLANK, *paragraph]
+    return lines

@@ -1,0 +1,121 @@
+"""What stands below the table: notes, key values, what was left out and why, warnings."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+from kurbel.render.charset import left, right, width
+from kurbel.render.lines import Line, Piece, line
+from kurbel.render.numbers import DIGITS, angle, single
+from kurbel.render.sheet import part_name
+
+if TYPE_CHECKING:
+    from kurbel.render import Look
+    from kurbel.report.tables import KeyValue, LeftOut, Part, Report
+
+_LEAST_BESIDE = 24  # narrower than this a sentence is folded below its head instead
+
+
+def prose(report: Report, look: Look) -> Iterator[list[Line]]:
+    """Yield the paragraphs below the tables."""
+    if notes := [note for note in (report.mirrored, *report.notes) if note]:
+        yield [one for note in notes for one in _sentence("", note, look)]
+    for part in report.all_parts:
+        yield from _of_part(part_name(report, part, look), part, look)
+
+
+def _of_part(name: str, part: Part, look: Look) -> Iterator[list[Line]]:
+    said = f": {name}" if name else ""
+    if part.key_values:
+        yield [line(f"Key values{said}", "name"), *key_value_lines(part.key_values, look)]
+    if part.left_out:
+        yield [line(f"Left out{said}", "name"), *_left_out(part.left_out, look)]
+    if part.warnings:
+        warnings = (one for warning in part.warnings for one in _sentence("  ", warning, look))
+        yield [line(f"Warnings{said}", "name"), *warnings]
+
+
+def _left_out(left_out: tuple[LeftOut, ...], look: Look) -> Iterator[Line]:
+    column = max(width(look.charset.text(one.what)) for one in left_out)
+    for one in left_out:
+        yield from _sentence(f"  {left(look.charset.text(one.what), column)}  ", one.why, look)
+
+
+class _Shown(NamedTuple):
+    """A key value as text; `whole` and `fraction` are its number, split where the decimal points align."""
+
+    symbol: str
+    whole: str
+    fraction: str
+    unit: str
+    place: str
+    text: str
+
+
+def key_value_lines(key_values: tuple[KeyValue, ...], look: Look) -> Iterator[Line]:
+    """Yield a line for each key value: symbol, value, unit, where it stands, what it is; decimal points in one line."""
+    shown = [_shown(one, look) for one in key_values]
+    symbol, unit, place = (max(width(s[field]) for s in shown) for field in (0, 3, 4))
+    whole = max((width(s.whole) for s in shown if s.fraction), default=0)
+    number = max(width(_aligned(s, whole)) for s in shown)
+    for one in shown:
+        value = left(_aligned(one, whole), number)
+        head = f"  {left(one.symbol, symbol)}  {value}  {left(one.unit, unit)}  "
+        yield from _sentence(head + (f"{left(one.place, place)}  " if place else ""), one.text, look)
+
+
+def _aligned(one: _Shown, whole: int) -> str:
+    return right(one.whole, whole) + one.fraction if one.fraction else one.whole
+
+
+def _shown(one: KeyValue, look: Look) -> _Shown:
+    charset = look.charset
+    whole, fraction = _number(one, look)
+    place = "" if one.at_deg is None else f"at {angle(one.at_deg, look.comma)}{charset.degree}"
+    return _Shown(
+        charset.symbol(one.symbol, one.ascii_symbol), whole, fraction, charset.unit(one.unit), place, one.text
+    )
+
+
+def _number(one: KeyValue, look: Look) -> tuple[str, str]:
+    """Return the number up to its decimal point and from there; a list, or no value, is not split."""
+    if one.value is None or one.value == ():
+        return look.charset.no_value, ""
+    if isinstance(one.value, tuple):
+        return ("; " if look.comma else ", ").join(angle(value, look.comma) for value in one.value), ""
+    text, exponent = value_text(one, look)
+    whole, point, fraction = text.partition("," if look.comma else ".")
+    # a whole number is split too, at its end, so that its units stand under those of the others
+    return whole, (point + fraction + (look.charset.times_power(exponent) if exponent else "")) or " "
+
+
+def value_text(one: KeyValue, look: Look) -> tuple[str, int]:
+    """Return a single key value and its power of ten; angles have two decimals where no digits are asked for."""
+    assert isinstance(one.value, (float, int))
+    if one.unit == "deg" and look.digits is None:
+        return angle(one.value, look.comma), 0
+    return single(one.value, look.digits or DIGITS, look.comma)
+
+
+def sentence_text(text: str, look: Look) -> str:
+    """Return a sentence in the characters of the output, its numbers with the decimal comma where that is asked for."""
+    text = look.charset.text(text)
+    return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if look.comma else text
+
+
+def _sentence(head: str, text: str, look: Look) -> Iterator[Line]:
+    """Yield head and sentence; on a terminal the sentence is folded beside its head, or below it if that is narrow."""
+    text = sentence_text(text, look)
+    if look.width is None or width(head) + width(text) <= look.width:
+        yield (Piece(head, "cell"), Piece(text))
+        return
+    from textwrap import wrap
+
+    indent = width(head)
+    if look.width - indent < _LEAST_BESIDE:
+        yield line(head, "cell")
+        head, indent = "", 6
+    for index, folded in enumerate(wrap(text, max(look.width - indent, _LEAST_BESIDE))):
+        yield (Piece(head if head and index == 0 else " " * indent, "cell"), Piece(folded))

@@ -1,0 +1,47 @@
+"""Colours for a terminal; the lines themselves are those of the plain page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.text import Text
+
+from kurbel.render.charset import width
+
+if TYPE_CHECKING:
+    from kurbel.render import Look
+    from kurbel.render.lines import Line
+
+_STYLES = {
+    "title": "bold",
+    "head": "bold cyan",
+    "rule": "dim",
+    "name": "bold",
+    "symbol": "cyan",
+    "unit": "dim",
+    "mark": "bold red",
+    "cell": "",
+    "text": "",
+}
+
+
+def write_lines(lines: Iterable[Line], look: Look) -> bool:
+    """Write the lines in colour and return True, or nothing and False where a table is wider than the terminal."""
+    lines = list(lines)
+    if look.width is not None and any(_is_table_line(line) and _width(line) > look.width for line in lines):
+        return False
+    console = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
+    for pieces in lines:
+        # Text objects: a string would lose its brackets as markup
+        console.print(Text.assemble(*((piece.text, _STYLES[piece.role]) for piece in pieces)))
+    return True
+
+
+def _is_table_line(line: Line) -> bool:
+    return any(piece.role in ("rule", "head") for piece in line)
+
+
+def _width(line: Line) -> int:
+    return sum(width(piece.text) for piece in line)

@@ -1,0 +1,142 @@
+"""Zusammenstellung 112: the factors of the straight slider-crank over the crank angle, for any L/R. Needs no numpy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import UsageError
+from kurbel.mechanisms import crank_formulas as formulas
+from kurbel.quantities import COLUMNS, FACTORS, Quantity
+from kurbel.report.tables import Column, Part, Report, Value, did_you_mean
+
+RATIOS = (5.0, 4.5, 4.0)
+ROWS = {
+    "b": "acceleration_factor",
+    "c": "velocity_factor",
+    "x": "displacement_factor",
+    "psi": "psi",
+    "S": "rod_force_factor",
+    "N": "guide_force_factor",
+    "D": "radial_force_factor",
+}
+"""What `--rows` calls a row -> its id."""
+
+FORMULAS = ("book", "exact", "first-order")
+_ODD = ("velocity_factor", "psi", "guide_force_factor")  # they change their sign on the return stroke
+
+
+class _Rod(NamedTuple):
+    """R/L, and ρ = 1 − (R/L)² without its cancellation."""
+
+    lam: float
+    rho: float
+
+
+Factor = Callable[[CrankAngle, _Rod], float]
+
+
+def _guide(angle: CrankAngle, rod: _Rod) -> float:
+    """Return N/P = tan ψ, R 301."""
+    return float(rod.lam * angle.sin / formulas.cos_rod_angle(angle.sin, angle.cos, rod.rho))
+
+
+def _psi(angle: CrankAngle, rod: _Rod) -> float:
+    return math.degrees(math.atan(_guide(angle, rod)))
+
+
+_EXACT: dict[str, Factor] = {
+    "acceleration_factor": lambda a, rod: formulas.acceleration_factor(a.sin, a.cos, rod.lam, rod.rho),
+    "velocity_factor": lambda a, rod: formulas.velocity_factor(a.sin, a.cos, rod.lam, rod.rho),
+    "displacement_factor": lambda a, rod: formulas.displacement_factor(a.sin, a.cos, rod.lam, rod.rho),
+    "psi": _psi,
+    "rod_force_factor": lambda a, rod: 1 / formulas.cos_rod_angle(a.sin, a.cos, rod.rho),
+    "guide_force_factor": _guide,
+    "radial_force_factor": lambda a, rod: formulas.radial_factor(a.sin, a.cos, rod.lam, rod.rho),
+}
+_BOOK = _EXACT | {
+    "acceleration_factor": lambda a, rod: formulas.first_order_acceleration(a.sin, a.cos, rod.lam),
+}
+_FIRST_ORDER = _BOOK | {
+    "velocity_factor": lambda a, rod: formulas.first_order_velocity(a.sin, a.cos, rod.lam),
+    "displacement_factor": lambda a, rod: formulas.first_order_displacement(a.sin, a.cos, rod.lam),
+}
+_FACTORS = {"book": _BOOK, "exact": _EXACT, "first-order": _FIRST_ORDER}
+
+_OTHER_SYMBOLS = {
+    ("exact", "acceleration_factor"): ("b R/v²", "b R/v^2"),
+    ("first-order", "velocity_factor"): ("sin φ + ½ R/L sin 2φ", "sin phi + 1/2 R/L sin 2phi"),
+    ("first-order", "displacement_factor"): ("1 − cos φ + ½ R/L sin² φ", "1 - cos phi + 1/2 R/L sin^2 phi"),
+}
+"""Symbols of rows whose formula is not the book's."""
+
+
+def zusammenstellung(
+    ratios: tuple[float, ...] = RATIOS,
+    rows: tuple[str, ...] = ("b", "c"),
+    angles: tuple[float, ...] = tuple(range(0, 181, 10)),
+    formula: str = "book",
+    compare: bool = False,
+) -> Report:
+    """Return the table for these L/R, rows (names or ids of ROWS), crank angles in degrees, and formula.
+
+    formula: `book`: acceleration of first order (R 291), all else exact; `exact`; or `first-order`: x, c and b
+    (R 286, B 25, R 291), while ψ and the forces have no such form and stay exact. `compare` sets the printed figures
+    below the computed ones and marks the misprints. Raises UsageError for L/R that do not turn and unknown rows.
+    """
+    ids = tuple(dict.fromkeys(_row_id(row) for row in rows))
+    if not ids:
+        raise UsageError(f"--rows: no row asked for (known: {', '.join(ROWS)})")
+    ratios = tuple(dict.fromkeys(ratios))
+    parts = tuple(_part(ratio, ids, angles, formula) for ratio in ratios)
+    symbols = [column.symbol for column in parts[0].columns[1:]]
+    title = f"Zusammenstellung 112. Werte für {_listed(symbols, 'und')} am geraden Kurbeltrieb."
+    report = Report(title, "table", None, "ratios", parts, mirrored=_mirrored(parts[0], angles))
+    if not compare:
+        return report
+    from kurbel.report.misprints import compared
+
+    return compared(report, formula)
+
+
+def _row_id(row: str) -> str:
+    if row in ROWS:
+        return ROWS[row]
+    if row in ROWS.values():
+        return row
+    known = tuple(ROWS)
+    raise UsageError(f"--rows: no row '{row}'{did_you_mean(row, (*known, *ROWS.values()))} (known: {', '.join(known)})")
+
+
+def _part(ratio: float, ids: tuple[str, ...], angles: tuple[float, ...], formula: str) -> Part:
+    if not ratio > 1:
+        raise UsageError(f"--ratio: L/R must be larger than 1 for the crank to turn, got {ratio:g}")
+    rod = _Rod(1 / ratio, 1.0 if math.isinf(ratio) else (ratio - 1) / ratio * ((ratio + 1) / ratio))
+    crank_angles = [CrankAngle.of(degrees) for degrees in angles]
+    columns = [_column(COLUMNS["phi"], tuple(angles), formula)]
+    for id in ids:
+        factor = _FACTORS[formula][id]
+        columns.append(_column(FACTORS[id], tuple(factor(angle, rod) for angle in crank_angles), formula))
+    return Part(ratio, tuple(columns))
+
+
+def _column(quantity: Quantity, values: tuple[Value, ...], formula: str) -> Column:
+    symbols = _OTHER_SYMBOLS.get((formula, quantity.id), (quantity.symbol, quantity.ascii_symbol))
+    return Column(quantity.id, *symbols, "deg" if quantity.kind == "angle" else "", values, quantity.text)
+
+
+def _mirrored(part: Part, angles: tuple[float, ...]) -> str:
+    if min(angles) < 0 or max(angles) > 180:
+        return ""
+    odd = [column.symbol for column in part.columns if column.id in _ODD]
+    if not odd:
+        return "On the return stroke (360° − φ) the values are the same."
+    return (
+        f"On the return stroke (360° − φ) {_listed(odd, 'and')} {'has' if len(odd) == 1 else 'have'} the opposite sign."
+    )
+
+
+def _listed(words: list[str], last: str) -> str:
+    return f" {last} ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

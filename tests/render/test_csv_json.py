@@ -1,0 +1,140 @@
+"""CSV and JSON for scripts: exact, readable by other readers, to the letter of the contract."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurbel.errors import UsageError
+from kurbel.render import Look, render
+from kurbel.report.tables import Column, Part, Report, choose_columns
+from render.sample_report import HIGH, ONE, PHI, REPORT
+
+VALUES = st.lists(st.none() | st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=6)
+
+
+def report_of(values: list[float | None], name: str = "one") -> Report:
+    columns = (PHI._replace(values=tuple(range(len(values)))), Column("x", "x", "x", "m", tuple(values)))
+    return Report("t", "forces", "m", "cylinders", (Part(name, columns),))
+
+
+def read_csv(text: str, delimiter: str = ",") -> list[list[str]]:
+    assert "\r" not in text
+    return list(csv.reader(io.StringIO(text), delimiter=delimiter))
+
+
+@given(VALUES)
+def test_csv_reads_back_exactly(values: list[float | None]) -> None:
+    rows = read_csv(render(report_of(values), Look("csv")))
+    assert rows[0] == ["phi_deg", "x_m"]
+    assert [None if text == "" else float(text) for _, text in rows[1:]] == values
+    assert [phi for phi, _ in rows[1:]] == [str(index) for index in range(len(values))]
+
+
+@given(VALUES)
+def test_csv_with_decimal_comma_reads_back_exactly(values: list[float | None]) -> None:
+    rows = read_csv(render(report_of(values), Look("csv", comma=True)), ";")
+    assert [None if text == "" else float(text.replace(",", ".")) for _, text in rows[1:]] == values
+
+
+@given(VALUES)
+def test_json_reads_back_exactly(values: list[float | None]) -> None:
+    content = json.loads(render(report_of(values), Look("json")))
+    assert content["cylinders"][0]["columns"][1]["values"] == values
+
+
+@given(st.text(st.characters(blacklist_categories=["Cs", "Cc"]), min_size=1))
+def test_any_name_survives_in_csv(name: str) -> None:
+    report = report_of([1.0], name)
+    two = report._replace(parts=report.parts * 2)
+    assert read_csv(render(two, Look("csv")))[1][0] == name
+
+
+@given(st.text(st.characters(blacklist_categories=["Cs"])), st.sampled_from(["utf-8", "ascii"]))
+def test_any_name_survives_in_json(name: str, encoding: str) -> None:
+    text = render(report_of([1.0], name), Look("json", encoding=encoding))
+    assert json.loads(text.encode(encoding))["cylinders"][0]["name"] == name
+
+
+def test_heads_carry_ascii_units_without_blanks() -> None:
+    heads = read_csv(render(ONE, Look("csv")))[0]
+    assert heads == ["phi_deg", "psi_deg", "b_m/s^2", "P_N", "M_Nm"]
+
+
+def test_several_cylinders_share_one_table() -> None:
+    rows = read_csv(render(REPORT, Look("csv")))
+    assert rows[0] == ["cylinder", "phi_deg", "psi_deg", "b_m/s^2", "P_N", "M_Nm", "F_friction_N", "T_N"]
+    assert [rows[index][0] for index in (1, 14, 27)] == [HIGH.name, "LP", "machine"]
+    assert rows[14][4:] == ["", "", "0.0", ""]
+    assert all(len(row) == 8 for row in rows)
+
+
+def test_json_fields_as_in_the_contract() -> None:
+    content = json.loads(render(REPORT, Look("json")))
+    assert {key: content[key] for key in ("format", "command", "machine")} == {
+        "format": 1,
+        "command": "forces",
+        "machine": "Demo",
+    }
+    cylinder = content["cylinders"][0]
+    assert list(cylinder) == ["name", "columns", "key_values", "left_out", "warnings"]
+    assert cylinder["columns"][0]["values"][:3] == [0, 30, 60]
+    assert cylinder["columns"][1]["values"][:3] == [0.0, 5.7391, None]
+    assert cylinder["key_values"][1] == {
+        "id": "c_max",
+        "symbol": "c_max",
+        "unit": "m/s",
+        "value": 2.1359,
+        "at_deg": 79.10014,
+    }
+    assert cylinder["key_values"][3]["value"] == [79.10014, 280.89986]
+    assert cylinder["left_out"][0] == {"what": "weight", "why": "no inclination given"}
+    assert content["machine_columns"][1]["id"] == "T"
+    assert content["machine_key_values"][0]["id"] == "W"
+    assert content["cylinders"][1]["warnings"] == []
+
+
+def test_json_never_holds_nan() -> None:
+    with pytest.raises(ValueError, match="JSON compliant"):
+        render(report_of([float("nan")]), Look("json"))
+
+
+def test_digits_round_scripts_output_only_when_asked_for() -> None:
+    report = report_of([123456.789, 0.000123456])
+    assert read_csv(render(report, Look("csv", digits=3)))[1:] == [["0", "123000.0"], ["1", "0.000123"]]
+    assert json.loads(render(report, Look("json", digits=2)))["cylinders"][0]["columns"][1]["values"] == [
+        1.2e5,
+        0.00012,
+    ]
+
+
+def test_json_has_no_decimal_comma() -> None:
+    with pytest.raises(UsageError, match="decimal point only"):
+        render(ONE, Look("json", comma=True))
+
+
+def test_chosen_columns_keep_the_angle_and_the_order_asked_for() -> None:
+    chosen = choose_columns(REPORT, ("F_friction", "b"))
+    assert [[column.id for column in part.columns] for part in chosen.all_parts] == [
+        ["phi", "b"],
+        ["phi", "F_friction", "b"],
+        ["phi"],
+    ]
+
+
+def test_unknown_column_is_named_with_the_nearest() -> None:
+    with pytest.raises(UsageError, match="no column 'F_fricton' here; did you mean 'F_friction'"):
+        choose_columns(REPORT, ("F_fricton",))
+
+
+@given(st.lists(st.text(st.characters(blacklist_categories=["Cs", "Cc", "Zl", "Zp"])), min_size=2, max_size=2))
+def test_markdown_tables_keep_their_columns(names: list[str]) -> None:
+    symbols = tuple(column._replace(symbol=names[0]) for column in ONE.parts[0].columns)
+    report = ONE._replace(title=names[1], parts=(ONE.parts[0]._replace(columns=symbols),))
+    lines = [line for line in render(report, Look("markdown")).split("\n") if line.startswith("| ")][:15]
+    assert {line.replace("\\\\", "").replace("\\|", "").count("|") for line in lines} == {len(symbols) + 1}

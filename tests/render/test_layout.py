@@ -1,0 +1,112 @@
+"""The printed page: golden files, widths, blocks, characters."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurbel.render import Look, render
+from kurbel.render.book import _book_sizes, _fitting_sizes
+from kurbel.render.charset import Charset, width
+from kurbel.report.zusammenstellung import zusammenstellung
+from render.sample_report import ONE, REPORT
+
+GOLDEN = Path(__file__).parent.parent / "golden"
+
+PAGES = {
+    "table.txt": (zusammenstellung(), Look()),
+    "table-compare-comma.txt": (zusammenstellung(compare=True), Look(comma=True)),
+    "table-rows.txt": (zusammenstellung((4.5,), ("b", "c", "psi", "N")), Look(layout="rows")),
+    "table-80.txt": (zusammenstellung(), Look(width=80)),
+    "table-ascii.txt": (zusammenstellung(formula="first-order", rows=("b", "c", "x", "psi")), Look(encoding="ascii")),
+    "table.md": (zusammenstellung((5.0,)), Look("markdown")),
+    "forces.txt": (ONE, Look()),
+    "forces-cylinders.txt": (REPORT, Look()),
+    "forces-rows-ascii.txt": (REPORT, Look(layout="rows", encoding="ascii")),
+    "forces-40.txt": (ONE, Look(width=40)),
+    "forces-comma.md": (REPORT, Look("markdown", comma=True)),
+    "forces.csv": (REPORT, Look("csv")),
+    "forces.json": (REPORT, Look("json")),
+}
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_golden(name: str) -> None:
+    """To see a wanted change: KURBEL_GOLDEN=1 pytest, then read the diff."""
+    text = render(*PAGES[name])
+    if os.environ.get("KURBEL_GOLDEN"):
+        (GOLDEN / name).write_text(text, encoding="utf-8", newline="\n")
+    assert text == (GOLDEN / name).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("count", "sizes"), [(0, [0]), (1, [1]), (9, [9]), (10, [10]), (11, [9, 2]), (19, [9, 10]), (37, [9, 9, 9, 10])]
+)
+def test_blocks_as_in_the_book(count: int, sizes: list[int]) -> None:
+    assert _book_sizes(count) == sizes
+
+
+@given(st.integers(1, 400), st.integers(-5, 60))
+def test_blocks_that_fit_are_even_and_complete(count: int, most: int) -> None:
+    sizes = _fitting_sizes(count, most)
+    assert sum(sizes) == count
+    assert max(sizes) <= max(most, 1)
+    assert max(sizes) - min(sizes) <= 1
+
+
+@pytest.mark.parametrize("columns", [40, 60, 80, 120, 200])
+def test_tables_fit_the_terminal(columns: int) -> None:
+    for report in (ONE, zusammenstellung()):
+        lines = render(report, Look(width=columns)).splitlines()[1:]
+        assert max(map(width, lines)) <= columns
+
+
+def test_a_pipe_is_not_folded() -> None:
+    assert "Largest velocity toward the shaft" in render(ONE)
+    assert len(render(ONE._replace(title="x" * 500)).splitlines()[0]) == 500
+
+
+@pytest.mark.parametrize("look", [Look(), Look(layout="rows"), Look("markdown"), Look("csv"), Look("json")])
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "cp850", "latin-1", "utf-8"])
+def test_every_character_can_be_written(look: Look, encoding: str) -> None:
+    for report in (
+        REPORT,
+        ONE,
+        zusammenstellung(compare=True),
+        zusammenstellung(formula="first-order", rows=("c", "x")),
+    ):
+        text = render(report, look._replace(encoding=encoding))
+        assert "?" not in text.encode(encoding).decode(encoding)
+
+
+def test_no_line_ends_in_a_blank() -> None:
+    for look in (Look(), Look(layout="rows"), Look("markdown"), Look("csv")):
+        text = render(REPORT, look)
+        assert text.endswith("\n")
+        assert not any(line != line.rstrip() for line in text.splitlines())
+
+
+@given(st.text())
+def test_names_cannot_steer_the_terminal(name: str) -> None:
+    report = ONE._replace(title=name, parts=(ONE.parts[0]._replace(name=name),) * 2)
+    text = render(report)
+    assert all(character == "\n" or (ord(character) >= 32 and not 127 <= ord(character) < 160) for character in text)
+
+
+@given(st.text(), st.sampled_from(["ascii", "cp1252", "utf-8"]))
+def test_charset_always_encodes(text: str, encoding: str) -> None:
+    written = Charset(encoding).text(text)
+    assert isinstance(written.encode(encoding, "strict" if encoding != "utf-8" else "replace"), bytes)
+
+
+def test_same_text_every_time() -> None:
+    for look in (Look(), Look("csv"), Look("json"), Look("markdown")):
+        assert render(REPORT, look) == render(REPORT, look)
+
+
+def test_width_counts_cells() -> None:
+    assert (width("θ̇"), width("漢"), width("abc")) == (1, 2, 3)

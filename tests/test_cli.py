@@ -1,0 +1,226 @@
+"""The command line as a process: pipes, terminals, encodings, full disks, start-up."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from kurbel import __version__
+from kurbel.cli import COMMANDS, kurbel
+
+ESCAPE = b"\x1b"
+POSIX_ONLY = pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell or terminal")
+
+
+def process(
+    *arguments: str, stdout: object = subprocess.PIPE, **environment: str
+) -> subprocess.CompletedProcess[bytes]:
+    kept = {
+        key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "FORCE_COLOR", "COLUMNS", "TERM")
+    }
+    return subprocess.run(
+        [sys.executable, "-m", "kurbel", *arguments],
+        stdout=stdout,  # type: ignore[call-overload]
+        stderr=subprocess.PIPE,
+        env=kept | {"PYTHONIOENCODING": "utf-8"} | environment,
+        check=False,
+    )
+
+
+def on_terminal(*arguments: str, columns: int = 120, **environment: str) -> bytes:
+    """Return what the command writes to a terminal of this width."""
+    import fcntl
+    import pty
+    import struct
+    import termios
+
+    leader, follower = pty.openpty()
+    fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
+    settings = {"TERM": "xterm-256color", "COLUMNS": str(columns)} | environment
+    with subprocess.Popen(
+        [sys.executable, "-m", "kurbel", *arguments],
+        stdout=follower,
+        stderr=follower,
+        env={key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "FORCE_COLOR")}
+        | {"PYTHONIOENCODING": "utf-8"}
+        | settings,
+    ):
+        os.close(follower)
+        written = b""
+        while True:
+            try:
+                piece = os.read(leader, 65536)
+            except OSError:  # the other end is closed
+                break
+            if not piece:
+                break
+            written += piece
+    os.close(leader)
+    return written
+
+
+def test_version_and_help() -> None:
+    runner = CliRunner()
+    assert runner.invoke(kurbel, ["--version"]).stdout == f"kurbel {__version__}\n"
+    text = runner.invoke(kurbel, ["--help"]).stdout
+    listed = [line.split()[0] for line in text.partition("Commands:")[2].splitlines() if line.strip()]
+    assert tuple(listed) == COMMANDS
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help_that_any_encoding_can_show(command: str) -> None:
+    result = CliRunner().invoke(kurbel, [command, "--help"])
+    assert result.exit_code == 0
+    assert result.stdout.startswith(f"Usage: kurbel {command}")
+    assert result.stdout.isascii()
+
+
+def test_unknown_command_is_named_with_the_nearest() -> None:
+    result = CliRunner().invoke(kurbel, ["tabel"])
+    assert result.exit_code == 2
+    assert "no command 'tabel'; did you mean 'table'?" in result.stderr
+
+
+def test_a_fault_in_kurbel_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    from kurbel.report import zusammenstellung
+
+    monkeypatch.setattr(zusammenstellung, "zusammenstellung", lambda *_: 1 / 0)
+    result = CliRunner().invoke(kurbel, ["table"])
+    assert result.exit_code == 70
+    assert "ZeroDivisionError" in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_interrupt_is_130(monkeypatch: pytest.MonkeyPatch) -> None:
+    from kurbel.report import zusammenstellung
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(zusammenstellung, "zusammenstellung", interrupted)
+    assert CliRunner().invoke(kurbel, ["table"]).exit_code == 130
+
+
+@pytest.mark.parametrize("arguments", [["table"], ["table", "-f", "csv"], ["--help"], ["table", "--compare"]])
+def test_quick_commands_import_nothing_heavy(arguments: list[str]) -> None:
+    code = (
+        "import sys\nfrom kurbel.cli import kurbel\n"
+        f"try:\n    kurbel.main({arguments!r})\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
+        "heavy = {'numpy', 'yaml', 'rich', 'json', 'dataclasses', 'importlib.metadata'} & set(sys.modules)\n"
+        "assert not heavy, heavy"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, encoding="utf-8")
+    assert result.returncode == 0, result.stderr
+
+
+def test_a_pipe_gets_plain_text_whatever_the_environment_says() -> None:
+    plain = process("table").stdout
+    assert ESCAPE not in plain
+    for environment in ("FORCE_COLOR=1", "COLUMNS=40", "TERM=dumb FORCE_COLOR=1", "NO_COLOR=1", "TTY_COMPATIBLE=1"):
+        assert process("table", **dict(pair.split("=") for pair in environment.split())).stdout == plain
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "cp850"])
+def test_poor_encodings(encoding: str) -> None:
+    for arguments in (["table"], ["table", "-f", "json"], ["table", "-f", "markdown"], ["example"], ["--help"]):
+        result = process(*arguments, PYTHONIOENCODING=encoding, PYTHONUTF8="0", LC_ALL="C")
+        assert result.returncode == 0, result.stderr
+        assert result.stderr == b""
+        assert "?" not in result.stdout.decode(encoding)
+
+
+def test_error_message_in_ascii() -> None:
+    result = process("table", "--rows", "φ", PYTHONIOENCODING="ascii", PYTHONUTF8="0", LC_ALL="C.UTF-8")
+    assert result.returncode == 2
+    assert b"no row 'phi'" in result.stderr
+
+
+@POSIX_ONLY
+def test_reader_that_leaves_early() -> None:
+    command = f"{sys.executable} -m kurbel table --step 0.01 -f csv | head -1"
+    result = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, check=False)
+    assert (result.returncode, result.stderr) == (0, b"")
+    assert result.stdout == b"rod_ratio,phi_deg,acceleration_factor,velocity_factor\n"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+@pytest.mark.parametrize("arguments", [["table"], ["table", "-f", "csv"], ["example", "waterworks"], ["--help"]])
+def test_full_disk(arguments: list[str]) -> None:
+    with open("/dev/full", "wb") as full:
+        result = process(*arguments, stdout=full)
+    assert result.returncode == 2
+    assert b"No space left on device" in result.stderr
+    assert b"Traceback" not in result.stderr
+    assert b"Exception" not in result.stderr
+
+
+@POSIX_ONLY
+def test_closed_standard_output() -> None:
+    result = subprocess.run(["bash", "-c", f"{sys.executable} -m kurbel table >&-"], capture_output=True, check=False)
+    assert result.returncode == 2
+    assert b"standard output" in result.stderr
+    assert b"Traceback" not in result.stderr
+
+
+@POSIX_ONLY
+def test_a_terminal_gets_colour_and_as_many_angles_as_fit() -> None:
+    wide, narrow = on_terminal("table", columns=220), on_terminal("table", columns=80)
+    assert ESCAPE in wide
+    assert wide.count("360° − φ".encode()) == 2  # in the head once, and below the table
+    assert narrow.count("360° − φ".encode()) == 5
+
+
+@POSIX_ONLY
+@pytest.mark.parametrize("environment", [{"NO_COLOR": "1"}, {"TERM": "dumb"}, {"NO_COLOR": "1", "FORCE_COLOR": "1"}])
+def test_a_terminal_without_colours(environment: dict[str, str]) -> None:
+    written = on_terminal("table", **environment)
+    assert ESCAPE not in written
+    assert "sin(φ+ψ)/cos ψ".encode() in written
+
+
+@POSIX_ONLY
+def test_colours_change_no_character() -> None:
+    import re
+
+    coloured = re.sub(rb"\x1b\[[0-9;]*m", b"", on_terminal("table", "--compare"))
+    plain = on_terminal("table", "--compare", NO_COLOR="1")
+    assert [line.rstrip() for line in coloured.splitlines()] == [line.rstrip() for line in plain.splitlines()]
+
+
+@POSIX_ONLY
+@pytest.mark.parametrize("format", ["csv", "json", "markdown"])
+def test_a_terminal_gets_other_formats_as_they_are(format: str) -> None:
+    piped = process("table", "-f", format).stdout
+    assert on_terminal("table", "-f", format).replace(b"\r\n", b"\n") == piped
+
+
+def test_output_file_is_utf8_and_the_same_every_time(tmp_path: Path) -> None:
+    for name in ("a.txt", "b.txt"):
+        result = process("table", "-o", str(tmp_path / name), PYTHONIOENCODING="ascii", PYTHONUTF8="0")
+        assert (result.returncode, result.stdout, result.stderr) == (0, b"", b"")
+    assert (tmp_path / "a.txt").read_bytes() == (tmp_path / "b.txt").read_bytes()
+    assert "sin(φ+ψ)/cos ψ" in (tmp_path / "a.txt").read_text(encoding="utf-8")
+
+
+def test_example_lists_every_machine_with_its_first_line() -> None:
+    folder = Path(__file__).parent.parent / "src" / "kurbel" / "configs"
+    lines = CliRunner().invoke(kurbel, ["example"]).stdout.splitlines()
+    assert [line.split()[0] for line in lines] == sorted(path.stem for path in folder.glob("*.yaml"))
+    assert all(len(line.split()) > 3 for line in lines)
+
+
+def test_example_prints_the_file_unchanged_in_any_encoding() -> None:
+    shipped = (Path(__file__).parent.parent / "src" / "kurbel" / "configs" / "waterworks.yaml").read_bytes()
+    assert process("example", "waterworks").stdout == shipped
+    assert process("example", "waterworks.yaml", PYTHONIOENCODING="ascii", PYTHONUTF8="0").stdout == shipped
+
+
+def test_unknown_example() -> None:
+    result = CliRunner().invoke(kurbel, ["example", "../waterworks"])
+    assert result.exit_code == 2
+    assert "no example '../waterworks'" in result.stderr

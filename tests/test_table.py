@@ -1,0 +1,229 @@
+"""`kurbel table` against the book, against independent formulas, and at its limits."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+
+import mpmath
+import pytest
+from click.testing import CliRunner
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurbel.cli import kurbel
+from kurbel.errors import UsageError
+from kurbel.report.tables import Report
+from kurbel.report.zusammenstellung import ROWS, zusammenstellung
+from reference.zusammenstellung_112 import MISPRINTS, PRINTED
+
+
+def run(*arguments: str) -> str:
+    result = CliRunner().invoke(kurbel, ["table", *arguments])
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+
+def values(report: Report, ratio: float, row: str) -> dict[float, float]:
+    part = next(part for part in report.parts if part.name == ratio)
+    phi, column = part.columns[0], next(column for column in part.columns if column.id == row)
+    return dict(zip(phi.values, column.values))
+
+
+@pytest.mark.parametrize(("ratio", "phi", "acceleration", "velocity"), PRINTED)
+@pytest.mark.parametrize("row", ["acceleration_factor", "velocity_factor"])
+def test_every_legible_figure_is_reproduced_or_a_known_misprint(ratio, phi, acceleration, velocity, row) -> None:
+    printed = acceleration if row == "acceleration_factor" else velocity
+    computed = values(zusammenstellung(), ratio, row)[phi]
+    agrees = abs(computed - printed) <= 0.0005 * (1 + 1e-9)
+    assert agrees != ((ratio, phi) in MISPRINTS[row])
+
+
+def test_compare_marks_exactly_the_misprints() -> None:
+    report = zusammenstellung(compare=True)
+    for row, expected in MISPRINTS.items():
+        marked = {
+            (part.name, part.columns[0].values[index])
+            for part in report.parts
+            for column in part.columns
+            if column.id == f"{row}_printed"
+            for index in column.marked
+        }
+        assert marked == expected
+    assert len(report.notes) == 1 + sum(map(len, MISPRINTS.values()))
+
+
+def test_compare_prints_the_books_figures() -> None:
+    report = zusammenstellung(compare=True)
+    for ratio, phi, acceleration, velocity in PRINTED:
+        assert values(report, ratio, "acceleration_factor_printed")[phi] == acceleration
+        assert values(report, ratio, "velocity_factor_printed")[phi] == velocity
+    illegible = [v for part in report.parts for c in part.columns[2::2] for v in c.values if v is None]
+    assert len(illegible) == 3 * 19 * 2 - 2 * len(PRINTED)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["--ratio", "6"], ["--step", "5"], ["--formula", "exact"], ["--rows", "x"], ["--angles", "0,10"]],
+)
+def test_compare_refuses_what_the_book_does_not_print(arguments: list[str]) -> None:
+    result = CliRunner().invoke(kurbel, ["table", "--compare", *arguments])
+    assert result.exit_code == 2
+    assert "the book prints nothing for" in result.stderr
+
+
+RATIO = st.floats(1.001, 1e6)
+PHI = st.floats(0, 180)
+
+
+def textbook(ratio: float, phi: float) -> dict[str, mpmath.mpf]:
+    """The formulas as R 285 to 303 print them, in 60 digits."""
+    angle, lam = mpmath.radians(mpmath.mpf(phi)), 1 / mpmath.mpf(ratio)
+    psi = mpmath.asin(lam * mpmath.sin(angle))
+    cos_psi = mpmath.cos(psi)
+    return {
+        "b": mpmath.cos(angle + psi) / cos_psi + lam * mpmath.cos(angle) ** 2 / cos_psi**3,
+        "c": mpmath.sin(angle + psi) / cos_psi,
+        "x": 1 - mpmath.cos(angle) + (1 - cos_psi) / lam,
+        "psi": mpmath.degrees(psi),
+        "S": 1 / cos_psi,
+        "N": mpmath.tan(psi),
+        "D": mpmath.cos(angle + psi) / cos_psi,
+    }
+
+
+@given(RATIO, PHI)
+def test_exact_rows_against_the_textbook_formulas(ratio: float, phi: float) -> None:
+    report = zusammenstellung((ratio,), tuple(ROWS), (phi,), "exact")
+    with mpmath.workdps(60):
+        for name, expected in textbook(ratio, phi).items():
+            assert values(report, ratio, ROWS[name])[phi] == pytest.approx(float(expected), rel=1e-9, abs=1e-13)
+
+
+@given(RATIO, PHI)
+def test_first_order_rows(ratio: float, phi: float) -> None:
+    report = zusammenstellung((ratio,), ("b", "c", "x"), (phi,), "first-order")
+    angle = math.radians(phi)
+    # R 291, B 25, R 286
+    assert values(report, ratio, "acceleration_factor")[phi] == pytest.approx(
+        math.cos(angle) + math.cos(2 * angle) / ratio, abs=1e-14
+    )
+    assert values(report, ratio, "velocity_factor")[phi] == pytest.approx(
+        math.sin(angle) + math.sin(2 * angle) / (2 * ratio), abs=1e-14
+    )
+    assert values(report, ratio, "displacement_factor")[phi] == pytest.approx(
+        1 - math.cos(angle) + math.sin(angle) ** 2 / (2 * ratio), abs=1e-14
+    )
+
+
+@given(PHI)
+def test_infinite_rod_is_harmonic(phi: float) -> None:
+    report = zusammenstellung((math.inf,), tuple(ROWS), (phi,), "exact")
+    angle = math.radians(phi)
+    expected = {"b": math.cos(angle), "c": math.sin(angle), "x": 1 - math.cos(angle), "psi": 0, "S": 1, "N": 0,
+                "D": math.cos(angle)}  # fmt: skip
+    for name, value in expected.items():
+        assert values(report, math.inf, ROWS[name])[phi] == pytest.approx(value, abs=1e-14)
+
+
+def test_book_is_first_order_in_b_and_exact_in_c() -> None:
+    book, exact, first = (zusammenstellung(formula=formula) for formula in ("book", "exact", "first-order"))
+    for ratio in (5.0, 4.5, 4.0):
+        assert values(book, ratio, "acceleration_factor") == values(first, ratio, "acceleration_factor")
+        assert values(book, ratio, "velocity_factor") == values(exact, ratio, "velocity_factor")
+
+
+def test_dead_centres_are_exact() -> None:
+    report = zusammenstellung(rows=("c", "psi", "x"))
+    assert values(report, 5, "velocity_factor")[180] == 0
+    assert values(report, 5, "psi")[180] == 0
+    assert values(report, 5, "displacement_factor")[180] == 2
+
+
+def test_csv_head_and_integral_angles() -> None:
+    rows = list(csv.reader(io.StringIO(run("-f", "csv", "--step", "45"))))
+    assert rows[0] == ["rod_ratio", "phi_deg", "acceleration_factor", "velocity_factor"]
+    assert [row[:2] for row in rows[1:6]] == [["5", phi] for phi in ("0", "45", "90", "135", "180")]
+    assert [row[0] for row in rows[1::5]] == ["5", "4.5", "4"]
+
+
+def test_json_as_in_the_contract() -> None:
+    content = json.loads(run("-f", "json", "--ratio", "5", "--ratio", "inf", "--step", "90"))
+    assert list(content) == ["kurbel", "format", "command", "ratios"]
+    assert (content["format"], content["command"]) == (1, "table")
+    assert [ratio["rod_ratio"] for ratio in content["ratios"]] == [5, "inf"]
+    assert [column["id"] for column in content["ratios"][0]["columns"]] == [
+        "phi",
+        "acceleration_factor",
+        "velocity_factor",
+    ]
+    assert content["ratios"][0]["columns"][0] == {"id": "phi", "symbol": "φ", "unit": "deg", "values": [0, 90, 180]}
+
+
+def test_csv_round_trips_to_the_same_floats() -> None:
+    report = zusammenstellung()
+    read = {(float(r["rod_ratio"]), float(r["phi_deg"])): r for r in csv.DictReader(io.StringIO(run("-f", "csv")))}
+    for ratio in (5.0, 4.5, 4.0):
+        for phi, value in values(report, ratio, "velocity_factor").items():
+            assert float(read[ratio, phi]["velocity_factor"]) == value
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--ratio", "1"], "L/R must be larger than 1"),
+        (["--ratio", "0.5"], "L/R must be larger than 1"),
+        (["--ratio", "-5"], "L/R must be larger than 1"),
+        (["--ratio", "5:1"], "a ratio is written as one number"),
+        (["--ratio", "4,5"], "write the decimal point: 4.5"),
+        (["--ratio", "nan"], "it must be finite"),
+        (["--step", "7,5"], "write the decimal point: 7.5"),
+        (["--step", "nan"], "it must be finite"),
+        (["--step", "inf"], "it must be finite"),
+        (["--step", "0"], "positive"),
+        (["--step", "-10"], "positive"),
+        (["--step", "1e-9"], "more than"),
+        (["--angles", "0,x"], "expected a number, got 'x'"),
+        (["--rows", "accelaration_factor"], "did you mean 'acceleration_factor'?"),
+        (["--rows", ","], "no row asked for"),
+        (["--format", "xml"], "xml"),
+        (["--digits", "0"], "0"),
+        (["--decimal", "comma", "-f", "json"], "JSON has the decimal point only"),
+        (["-o", "/nonexistent/folder/t.txt"], "cannot write /nonexistent/folder/t.txt: No such file"),
+        (["-o", "."], "cannot write .: Is a directory"),
+    ],
+)
+def test_wrong_usage_is_named(arguments: list[str], said: str) -> None:
+    result = CliRunner().invoke(kurbel, ["table", *arguments])
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert result.stdout == ""
+
+
+def test_unknown_row_is_a_usage_error_of_the_library_too() -> None:
+    with pytest.raises(UsageError, match="no row 'q'"):
+        zusammenstellung(rows=("q",))
+
+
+@pytest.mark.parametrize("ratio", ["1.0000000000000002", "1e300", "1.7976931348623157e308"])
+def test_extreme_ratios_stay_finite(ratio: str) -> None:
+    content = json.loads(run("--ratio", ratio, "--rows", "b,c,x,psi,S,N,D", "-f", "json"))
+    for column in content["ratios"][0]["columns"]:
+        assert all(math.isfinite(value) for value in column["values"])
+
+
+def test_second_head_line_only_on_the_outstroke() -> None:
+    assert "360° − φ" in run()
+    assert "360° − φ" not in run("--angles", "0,90,270")
+
+
+def test_misprint_sentences() -> None:
+    assert "L/R = 4,5, φ = 20°: sin(φ+ψ)/cos ψ is 0,414, printed 0,413" in run("--compare", "--decimal", "comma")
+
+
+def test_steps_are_written_as_people_write_them() -> None:
+    lines = run("--ratio", "5", "--step", "0.1", "-f", "csv").splitlines()
+    assert [line.split(",")[1] for line in lines[1:9]] == ["0", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7"]
+    assert lines[-1].startswith("5,180,")
