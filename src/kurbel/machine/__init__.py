@@ -1,0 +1,226 @@
+"""The machine: one immutable description in SI, complete at birth, from a file or from Python.
+
+Records check their own rules and raise RuleError. They hold numbers only; what the numbers lead to is in
+`kurbel.solver`. Records that few machines need live in modules of their own and are imported when a machine names them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import (
+    Choice,
+    Count,
+    Inline,
+    Key,
+    Keys,
+    Limits,
+    Listing,
+    Number,
+    OneOf,
+    Physical,
+    Record,
+    Text,
+    Variant,
+)
+from kurbel.mechanisms import MECHANISMS, Mechanism
+
+if TYPE_CHECKING:
+    from kurbel.machine.crankshaft import Crankshaft
+    from kurbel.machine.friction import Friction
+    from kurbel.machine.masses import Masses
+    from kurbel.machine.piston import Piston
+    from kurbel.machine.turning import Coupling, Effort, Flywheel, Load
+
+FORMAT = 1
+"""Number of the machine-file format that this version reads."""
+STANDARD_ATMOSPHERE = 101325.0
+CYCLES = {"two-stroke": 1, "four-stroke": 2}
+"""Cycle -> revolutions of the shaft."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cylinder:
+    """One cylinder with its crank mechanism and everything that hangs on the same rod.
+
+    pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
+    is left out; crank_position: degrees by which this crank follows crank 1.
+    """
+
+    mechanism: Mechanism
+    name: str = "cylinder 1"
+    pistons: tuple[Piston, ...] = ()
+    masses: Masses | None = None
+    friction: Friction | None = None
+    inclination: float | None = None
+    crank_position: float = 0.0
+
+    KEYS: ClassVar[Keys] = {
+        "name": Key(Text(), "Name of the cylinder", absent="cylinder 1, cylinder 2, …"),
+        "mechanism": Key(
+            Variant("mechanism", "slider-crank", tuple(MECHANISMS.items())),
+            "Kind of crank mechanism",
+            absent="slider-crank",
+        ),
+        "inclination": Key(
+            Physical("angle", least=-90, most=90),
+            "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft",
+            absent="weight left out",
+        ),
+        "piston": Key(Inline(Record("kurbel.machine.piston:Piston")), "The cylinder's own piston"),
+        "tandem": Key(
+            Listing(Record("kurbel.machine.piston:Piston")),
+            "Further pistons on the same rod, such as a directly driven pump",
+            absent="none",
+        ),
+        "masses": Key(Record("kurbel.machine.masses:Masses"), "Masses of the moving parts", absent="no inertia"),
+        "friction": Key(
+            Record("kurbel.machine.friction:Friction"), "Friction of crosshead and piston rings", absent="no friction"
+        ),
+        "crank_position": Key(Physical("angle"), "Angle by which this crank follows crank 1", absent="0 deg"),
+    }
+
+    @classmethod
+    def from_keys(
+        cls,
+        mechanism: Mechanism,
+        name: str = "",
+        piston: Piston | None = None,
+        tandem: tuple[Piston, ...] = (),
+        masses: Masses | None = None,
+        friction: Friction | None = None,
+        inclination: float | None = None,
+        crank_position: float = 0.0,
+    ) -> Cylinder:
+        """Return the cylinder that these keys of a machine file describe."""
+        own = () if piston is None else (piston,)
+        return cls(mechanism, name, own + tandem, masses, friction, inclination, crank_position)
+
+    def __post_init__(self) -> None:
+        rings = self.friction and self.friction.rings
+        if rings and not self.pistons:
+            raise RuleError(Fault(("friction", "rings"), "rings rub on the bore; give the cylinder a 'bore'"))
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """A whole machine.
+
+    speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
+    pressure in Pa; efficiency η scales the turning effort of the whole machine; limits: key-value id -> bound in SI.
+    """
+
+    cylinders: tuple[Cylinder, ...]
+    name: str = "machine"
+    speed: float | None = None
+    cycle: str = "two-stroke"
+    efficiency: float = 1.0
+    ambient: float = STANDARD_ATMOSPHERE
+    flywheel: Flywheel | None = None
+    load: Load | None = None
+    effort: Effort | None = None
+    coupling: Coupling | None = None
+    crankshaft: Crankshaft | None = None
+    limits: tuple[tuple[str, float], ...] = ()
+
+    KEYS: ClassVar[Keys] = {
+        "kurbel": Key(Count(least=FORMAT, most=FORMAT), "Number of the file format", absent="1"),
+        "name": Key(Text(), "Name of the machine", absent="the file name"),
+        "speed": Key(
+            Physical("speed", least=0),
+            "Speed of rotation",
+            "n",
+            absent="no velocities, accelerations or inertia in physical units",
+        ),
+        "cycle": Key(Choice(tuple(CYCLES)), "Working cycle: 360° or 720°", absent="two-stroke"),
+        "efficiency": Key(
+            Number(above=0, most=1),
+            "Mechanical efficiency; scales the turning effort of the whole machine (R p. 611)",
+            "η",
+            absent="1",
+            commands=("flywheel",),
+        ),
+        "ambient": Key(Physical("pressure", least=0), "Absolute pressure round the machine", absent="1.01325 bar"),
+        "cylinder": Key(Inline(Record("kurbel.machine:Cylinder"), unless="cylinders"), "The keys of the only cylinder"),
+        "cylinders": Key(
+            Listing(Record("kurbel.machine:Cylinder")),
+            "Several cylinders; their keys then do not stand at the top",
+            absent="one cylinder, flat",
+        ),
+        "flywheel": Key(
+            Record("kurbel.machine.turning:Flywheel"), "Flywheel", absent="no speed line", commands=("flywheel",)
+        ),
+        "load": Key(
+            OneOf((Choice(("constant",)), Record("kurbel.machine.turning:Load"))),
+            "Resistance at the shaft",
+            absent="constant",
+            commands=("flywheel",),
+        ),
+        "effort": Key(
+            Record("kurbel.machine.turning:Effort"),
+            "A turning-moment diagram known from elsewhere, instead of cylinders",
+            absent="from the cylinders",
+            commands=("flywheel",),
+        ),
+        "coupling": Key(
+            Record("kurbel.machine.turning:Coupling"),
+            "Elastic coupling to a driven moment of inertia",
+            absent="rigid",
+            commands=("flywheel",),
+        ),
+        "crankshaft": Key(
+            Record("kurbel.machine.crankshaft:Crankshaft"),
+            "One throw between bearings A and B",
+            absent="no strength check",
+            commands=("stress",),
+        ),
+        "limits": Key(Limits(), "Bounds for key values, checked by `kurbel check`", absent="none"),
+    }
+
+    @classmethod
+    def from_keys(
+        cls,
+        name: str = "machine",
+        cylinder: Cylinder | None = None,
+        cylinders: tuple[Cylinder, ...] = (),
+        load: Load | str | None = None,
+        kurbel: int = FORMAT,
+        **keys: object,
+    ) -> Machine:
+        """Return the machine that these keys of a machine file describe; raises RuleError."""
+        from dataclasses import replace
+
+        given = cylinders if cylinder is None else (cylinder,)
+        named = tuple(c if c.name else replace(c, name=f"cylinder {i}") for i, c in enumerate(given, 1))
+        return cls(named, name, load=None if isinstance(load, str) else load, **keys)  # type: ignore[arg-type]
+
+    def __post_init__(self) -> None:
+        if not self.cylinders and self.effort is None:
+            raise RuleError(Fault((), "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"))
+        if self.cylinders and self.effort is not None:
+            raise RuleError(Fault(("effort",), "'effort' stands instead of cylinders; leave one of them out"))
+        names = [cylinder.name for cylinder in self.cylinders]
+        for index, name in enumerate(names):
+            if name in names[:index]:
+                raise RuleError(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
+        faults = [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
+        for key, diagram in (("effort", self.effort), ("load", self.load)):
+            if diagram is not None and (message := diagram.cycle_fault(self.cycle)):
+                faults.append(Fault((key, "points"), message))
+        if faults:
+            raise RuleError(*faults)
+
+    def _cycle_faults(self, index: int) -> list[Fault]:
+        """A four-stroke cycle needs four-line cards, a two-stroke one two-line cards."""
+        return [
+            Fault(("cylinders", index, *path), message)
+            for number, piston in enumerate(self.cylinders[index].pistons)
+            for path, message in piston.cycle_faults(self.cycle, () if number == 0 else ("tandem", number - 1))
+        ]
+
+    @property
+    def revolutions(self) -> int:
+        """Revolutions of the shaft per working cycle: 1 or 2."""
+        return CYCLES[self.cycle]

@@ -1,0 +1,117 @@
+"""One crank throw between two bearings, with a flywheel (formulas.md 3.7, after G)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Key, Keys, Physical
+from kurbel.units import show
+
+
+def _length(text: str, symbol: str, required: bool = True, absent: str = "") -> Key:
+    return Key(Physical("length", above=0), text, symbol, required, absent)
+
+
+@dataclass(frozen=True, eq=False)
+class Crankshaft:
+    """A crank throw between bearing A and bearing B, the one on the side of the flywheel; lengths in m.
+
+    a, b: from the middle of the pin to A and B; web_distance: from there to the middle of each web; flywheel_position:
+    from B, positive outward, negative between the bearings; flywheel_mass in kg; allowable stresses in Pa or None.
+    Without the journals' diameter they are not examined.
+    """
+
+    a: float
+    b: float
+    web_distance: float
+    web_thickness: float
+    web_width: float
+    pin_diameter: float
+    pin_length: float
+    journal_diameter: float | None = None
+    journal_length: float | None = None
+    flywheel_mass: float = 0.0
+    flywheel_position: float = 0.0
+    allowable_bending: float | None = None
+    allowable_torsion: float | None = None
+
+    KEYS: ClassVar[Keys] = {
+        "a": _length("From the middle of the crank pin to bearing A, away from the flywheel", "a"),
+        "b": _length("From the middle of the crank pin to bearing B, beside the flywheel", "b"),
+        "web_distance": _length("From the middle of the crank pin to the middle of a web", "e"),
+        "web_thickness": _length("Thickness of a web along the shaft", "t"),
+        "web_width": _length("Width of a web across the arm", "w"),
+        "pin_diameter": _length("Diameter of the crank pin", "d_z"),
+        "pin_length": _length("Length of the crank pin", "l_z"),
+        "journal_diameter": _length("Diameter of the journals", "d_j", False, "journals not examined"),
+        "journal_length": _length("Length of a journal", "l_j", False, "no journal pressure"),
+        "flywheel_mass": Key(Physical("mass", least=0), "Mass of the flywheel", "m_s", absent="no flywheel"),
+        "flywheel_position": Key(
+            Physical("length"), "Middle of the flywheel from bearing B, positive outward", absent="no flywheel"
+        ),
+        "allowable_bending": Key(
+            Physical("pressure", above=0), "Allowable stress in bending", "k_b", absent="no safety figures"
+        ),
+        "allowable_torsion": Key(
+            Physical("pressure", above=0), "Allowable stress in torsion", "k_d", absent="no safety figures"
+        ),
+    }
+
+    @classmethod
+    def from_keys(
+        cls, flywheel_mass: float | None = None, flywheel_position: float | None = None, **keys: float
+    ) -> Crankshaft:
+        """Return the crankshaft that these keys of a machine file describe; raises RuleError."""
+        if (flywheel_mass is None) != (flywheel_position is None):
+            given, missing = ("flywheel_mass", "flywheel_position")
+            if flywheel_mass is None:
+                given, missing = missing, given
+            raise RuleError(Fault((given,), f"'{given}' needs '{missing}' beside it"))
+        return cls(flywheel_mass=flywheel_mass or 0.0, flywheel_position=flywheel_position or 0.0, **keys)
+
+    def __post_init__(self) -> None:
+        faults = [*self._web_faults(), *self._place_faults()]
+        if faults:
+            raise RuleError(*faults)
+
+    def _web_faults(self) -> list[Fault]:
+        thickness, width = show(self.web_thickness, "length"), show(self.web_width, "length")
+        faults = []
+        if self.web_thickness >= self.web_width:
+            faults.append(
+                Fault(
+                    ("web_thickness",),
+                    f"{thickness} is not less than the width ({width}); the thickness lies along the shaft",
+                )
+            )
+        if self.web_distance <= self.web_thickness / 2:
+            faults.append(
+                Fault(
+                    ("web_distance",),
+                    f"{show(self.web_distance, 'length')} leaves no pin between the webs; "
+                    f"it must be more than half the thickness ({thickness})",
+                )
+            )
+        return faults
+
+    def _place_faults(self) -> list[Fault]:
+        faults = [
+            Fault(
+                (name,),
+                f"{show(value, 'length')} puts the bearing inside the web "
+                f"({show(self.web_distance, 'length')} from the pin); measure to the middle of the bearing",
+            )
+            for name, value in (("a", self.a), ("b", self.b))
+            if value <= self.web_distance
+        ]
+        if self.flywheel_position <= -(self.a + self.b):
+            faults.append(
+                Fault(
+                    ("flywheel_position",),
+                    f"{show(self.flywheel_position, 'length')} lies beyond bearing A; "
+                    f"A is the bearing away from the flywheel, {show(self.a + self.b, 'length')} from B",
+                )
+            )
+        return faults

@@ -1,0 +1,43 @@
+"""Friction of the crosshead on its guide and of the piston rings in the bore (Redtenbacher 1862)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Count, Key, Keys, Number, Physical, Record
+
+
+@dataclass(frozen=True, eq=False)
+class Rings:
+    """Piston rings: their number, height in m, pressure on the wall in Pa, and coefficient of friction."""
+
+    count: int
+    height: float
+    pressure: float
+    coefficient: float
+
+    KEYS: ClassVar[Keys] = {
+        "count": Key(Count(least=1), "Number of rings", required=True),
+        "height": Key(Physical("length", above=0), "Height of one ring along the bore", "h", required=True),
+        "pressure": Key(Physical("pressure", least=0), "Pressure of the ring on the wall", "p_r", required=True),
+        "coefficient": Key(Number(least=0), "Coefficient of friction", "f", required=True),
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class Friction:
+    """Coefficient f of the crosshead, None where it is left out, and the piston rings."""
+
+    crosshead: float | None = None
+    rings: Rings | None = None
+
+    KEYS: ClassVar[Keys] = {
+        "crosshead": Key(Number(least=0), "Coefficient of friction of the crosshead on its guide", "f"),
+        "rings": Key(Record("kurbel.machine.friction:Rings"), "Piston rings"),
+    }
+
+    def __post_init__(self) -> None:
+        if self.crosshead is None and self.rings is None:
+            raise RuleError(Fault((), "no friction is given; leave 'friction' out or give 'crosshead' or 'rings'"))

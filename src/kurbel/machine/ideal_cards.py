@@ -1,0 +1,221 @@
+"""Ideal cards: the few numbers from which theoretical indicator diagrams are drawn.
+
+Fractions are fractions of the stroke from the chamber's smallest volume, as on every card; a clearance is a volume over
+the stroke volume. Exponents are those of p V^n.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Key, Keys, Number, Physical
+from kurbel.units import show
+
+_CLEARANCE = Key(Number(above=0), "Clearance volume over stroke volume", "c", required=True)
+AIR_EXPONENT = 1.4
+"""Exponent of the adiabatic line of air."""
+
+
+def _pressure(text: str, required: bool = True, absent: str = "") -> Key:
+    return Key(Physical("pressure"), text, required=required, absent=absent)
+
+
+def _exponent(text: str, absent: str) -> Key:
+    return Key(Number(above=0), text, "n", absent=absent)
+
+
+def _order_fault(key: str, high: float, low_name: str, low: float) -> list[Fault]:
+    """Return a fault unless the pressure under `key` is larger than the other one."""
+    if high > low:
+        return []
+    return [Fault((key,), f"{show(high, 'pressure')} is not above the {low_name} pressure ({show(low, 'pressure')})")]
+
+
+def _raise(faults: list[Fault]) -> None:
+    if faults:
+        raise RuleError(*faults)
+
+
+@dataclass(frozen=True, eq=False)
+class Steam:
+    """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression.
+
+    Pressures in Pa; cut_off, release, compression: fractions of the stroke at which admission ends, exhaust opens, and
+    exhaust closes on the way back; exponent 1 is the hyperbola of the old books.
+    """
+
+    admission: float
+    exhaust: float
+    cut_off: float
+    clearance: float
+    release: float = 1.0
+    compression: float = 0.0
+    exponent: float = 1.0
+
+    KEYS: ClassVar[Keys] = {
+        "admission": _pressure("Pressure while steam is admitted"),
+        "exhaust": _pressure("Pressure while steam leaves"),
+        "cut_off": Key(Number(above=0, most=1), "Fraction of the stroke at which admission ends", required=True),
+        "release": Key(Number(above=0, most=1), "Fraction of the stroke at which the exhaust opens", absent="1"),
+        "compression": Key(
+            Number(least=0, below=1), "Fraction of the stroke at which the exhaust closes on the way back", absent="0"
+        ),
+        "clearance": _CLEARANCE,
+        "exponent": _exponent("Exponent of expansion and compression", "1, the hyperbola"),
+    }
+
+    def __post_init__(self) -> None:
+        faults = _order_fault("admission", self.admission, "exhaust", self.exhaust)
+        if self.release < self.cut_off:
+            faults.append(
+                Fault(("release",), f"the exhaust opens at {self.release:g}, before the cut-off at {self.cut_off:g}")
+            )
+        _raise(faults)
+
+    def cycle_fault(self, cycle: str) -> str:
+        """Return what does not fit the cycle of the machine, or an empty text."""
+        return _two_stroke_only("steam", cycle)
+
+
+@dataclass(frozen=True, eq=False)
+class Compressor:
+    """A compressor: suction, compression, delivery, and expansion of what is left in the clearance. Pressures in Pa."""
+
+    suction: float
+    delivery: float
+    clearance: float
+    exponent: float = AIR_EXPONENT
+
+    KEYS: ClassVar[Keys] = {
+        "suction": _pressure("Pressure while the chamber fills"),
+        "delivery": _pressure("Pressure while the chamber empties"),
+        "clearance": _CLEARANCE,
+        "exponent": _exponent("Exponent of compression and expansion", "1.4, air"),
+    }
+
+    def __post_init__(self) -> None:
+        _raise(_order_fault("delivery", self.delivery, "suction", self.suction))
+
+    def cycle_fault(self, cycle: str) -> str:
+        """Return what does not fit the cycle of the machine, or an empty text."""
+        return _two_stroke_only("compressor", cycle)
+
+
+_ENGINE_KEYS: Keys = {
+    "intake": _pressure("Pressure in the cylinder when compression begins, and while it fills"),
+    "exhaust": _pressure("Pressure while the burnt gas leaves"),
+    "compression_ratio": Key(Number(above=1), "Largest over smallest volume; or give `clearance`", "ε"),
+    "clearance": Key(
+        Number(above=0),
+        "Clearance volume over stroke volume; or give `compression_ratio`",
+        "c",
+        instead="compression_ratio",
+    ),
+    "exponent": _exponent("Exponent of the compression", "1.4, air"),
+    "expansion_exponent": _exponent("Exponent of the expansion", "that of the compression"),
+}
+"""What every combustion engine gives."""
+
+
+def _clearance(compression_ratio: float | None, clearance: float | None) -> float:
+    """Return the clearance c = 1/(ε − 1) from the one of both that is given; raises RuleError."""
+    if compression_ratio is not None and clearance is not None:
+        raise RuleError(
+            Fault(("clearance",), "'compression_ratio' and 'clearance' say the same thing; leave one of them out")
+        )
+    if compression_ratio is not None:
+        return 1 / (compression_ratio - 1)
+    if clearance is None:
+        raise RuleError(
+            Fault((), "'compression_ratio' or 'clearance' is missing; write for instance 'compression_ratio: 8'")
+        )
+    return clearance
+
+
+@dataclass(frozen=True, eq=False)
+class Otto:
+    """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume. Pressures in Pa."""
+
+    intake: float
+    exhaust: float
+    peak: float
+    clearance: float
+    exponent: float = AIR_EXPONENT
+    expansion_exponent: float = AIR_EXPONENT
+
+    KEYS: ClassVar[Keys] = {**_ENGINE_KEYS, "peak": _pressure("Largest pressure, after combustion")}
+
+    @classmethod
+    def from_keys(
+        cls,
+        intake: float,
+        exhaust: float,
+        peak: float,
+        compression_ratio: float | None = None,
+        clearance: float | None = None,
+        exponent: float = AIR_EXPONENT,
+        expansion_exponent: float | None = None,
+    ) -> Otto:
+        """Return the card that these keys of a machine file describe; raises RuleError."""
+        volume = _clearance(compression_ratio, clearance)
+        return cls(intake, exhaust, peak, volume, exponent, expansion_exponent or exponent)
+
+    def __post_init__(self) -> None:
+        _raise(_order_fault("peak", self.peak, "intake", self.intake))
+
+    def cycle_fault(self, cycle: str) -> str:
+        """Return an empty text: the card serves both cycles."""
+        return ""
+
+
+@dataclass(frozen=True, eq=False)
+class Diesel:
+    """A Diesel engine: injection at constant pressure up to the cut-off. Pressures in Pa.
+
+    peak: where it is given, the pressure first rises to it at constant volume (mixed cycle, Seiliger); None: the
+    pressure of injection is that at the end of the compression.
+    """
+
+    intake: float
+    exhaust: float
+    cut_off: float
+    clearance: float
+    peak: float | None = None
+    exponent: float = AIR_EXPONENT
+    expansion_exponent: float = AIR_EXPONENT
+
+    KEYS: ClassVar[Keys] = {
+        **_ENGINE_KEYS,
+        "cut_off": Key(Number(above=0, below=1), "Fraction of the stroke at which injection ends", required=True),
+        "peak": _pressure("Pressure of injection, reached at constant volume", False, "that at the end of compression"),
+    }
+
+    @classmethod
+    def from_keys(
+        cls,
+        intake: float,
+        exhaust: float,
+        cut_off: float,
+        peak: float | None = None,
+        compression_ratio: float | None = None,
+        clearance: float | None = None,
+        exponent: float = AIR_EXPONENT,
+        expansion_exponent: float | None = None,
+    ) -> Diesel:
+        """Return the card that these keys of a machine file describe; raises RuleError."""
+        volume = _clearance(compression_ratio, clearance)
+        return cls(intake, exhaust, cut_off, volume, peak, exponent, expansion_exponent or exponent)
+
+    def __post_init__(self) -> None:
+        if self.peak is not None:
+            _raise(_order_fault("peak", self.peak, "intake", self.intake))
+
+    def cycle_fault(self, cycle: str) -> str:
+        """Return an empty text: the card serves both cycles."""
+        return ""
+
+
+def _two_stroke_only(card: str, cycle: str) -> str:
+    return "" if cycle == "two-stroke" else f"a {card} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"

@@ -1,0 +1,195 @@
+"""Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple, Protocol
+
+from kurbel.errors import Fault, Path, RuleError
+from kurbel.keys import Choice, Key, Keyed, Keys, Number, OneOf, Physical, Points, Record, UnitName
+from kurbel.units import Factor
+
+Point = tuple[float, float]
+
+
+class Chamber(Protocol):
+    """What stands in one end of a cylinder: a card or a trace."""
+
+    def cycle_fault(self, cycle: str) -> str:
+        """Return what does not fit the cycle of the machine, or an empty text."""
+        ...
+
+
+class Line(NamedTuple):
+    """One line of a card: pressures in Pa over fractions of the chamber's stroke, in the order of the process.
+
+    Two points at one fraction are a vertical jump. `start` is the fraction at which the line begins, 0 or 1.
+    """
+
+    name: str
+    fractions: tuple[float, ...]
+    pressures: tuple[float, ...]
+    start: int
+
+
+STROKES = {"two-stroke": ("expansion", "compression"), "four-stroke": ("expansion", "exhaust", "intake", "compression")}
+"""Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Card:
+    """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
+
+    interpolate: `linear`, or `polytropic`: straight in log p over log V, which needs the clearance volume over
+    the stroke volume. `notes` tells what was tidied up.
+    """
+
+    lines: tuple[Line, ...]
+    interpolate: str = "linear"
+    clearance: float | None = None
+    notes: tuple[str, ...] = ()
+
+    KEYS: ClassVar[Keys] = {
+        "unit": Key(UnitName("pressure"), "Unit of the pressures", required=True),
+        "expansion": Key(Points("stroke fraction", "pressure"), "Line while the burnt or admitted gas expands"),
+        "compression": Key(Points("stroke fraction", "pressure"), "Line while the chamber is compressed or empties"),
+        "intake": Key(Points("stroke fraction", "pressure"), "Suction line of a four-stroke cycle"),
+        "exhaust": Key(Points("stroke fraction", "pressure"), "Exhaust line of a four-stroke cycle"),
+        "interpolate": Key(Choice(("linear", "polytropic")), "How points are joined", absent="linear"),
+        "clearance": Key(Number(above=0), "Clearance volume over stroke volume, for `polytropic`", absent="not known"),
+    }
+
+    @classmethod
+    def from_keys(
+        cls,
+        unit: Factor,
+        expansion: list[Point] | None = None,
+        compression: list[Point] | None = None,
+        intake: list[Point] | None = None,
+        exhaust: list[Point] | None = None,
+        interpolate: str = "linear",
+        clearance: float | None = None,
+    ) -> Card:
+        """Return the card that these keys of a machine file describe; raises RuleError with every fault."""
+        given = {"expansion": expansion, "compression": compression, "intake": intake, "exhaust": exhaust}
+        cycle = "two-stroke" if intake is None and exhaust is None else "four-stroke"
+        faults = [
+            Fault((), f"the '{name}' line of the {cycle} card is missing") for name in STROKES[cycle] if not given[name]
+        ]
+        lines, notes = [], []
+        for index, name in enumerate(STROKES[cycle]):
+            points = given[name]
+            if points:
+                line, line_notes, line_faults = _line(name, points, unit, index % 2)
+                lines.append(line)
+                notes += line_notes
+                faults += line_faults
+        if interpolate == "polytropic" and clearance is None:
+            faults.append(Fault(("interpolate",), "'polytropic' needs the 'clearance' volume over the stroke volume"))
+        if faults:
+            raise RuleError(*faults)
+        return cls(tuple(lines), interpolate, clearance, tuple(notes))
+
+    def cycle_fault(self, cycle: str) -> str:
+        """Return what does not fit the cycle of the machine, or an empty text."""
+        wanted = STROKES[cycle]
+        if len(self.lines) == len(wanted):
+            return ""
+        return f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
+
+
+def _line(name: str, points: list[Point], unit: Factor, start: int) -> tuple[Line, list[str], list[Fault]]:
+    """Bring one line into process order and check that it runs once through the whole stroke."""
+    up, down = unit
+    faults = [
+        Fault((name, i), f"{x:g} is no fraction of the stroke; fractions run from 0 to 1")
+        for i, (x, _) in enumerate(points)
+        if not 0 <= x <= 1
+    ]
+    forward = points[0][0] <= points[-1][0]
+    if not faults:
+        faults = _order_faults(name, points, forward)
+    ordered = points if forward == (start == 0) else points[::-1]
+    kept = [point for i, point in enumerate(ordered) if i == 0 or point != ordered[i - 1]]
+    notes = [f"{name}: a point given twice counts once"] if len(kept) < len(ordered) else []
+    line = Line(name, tuple(x for x, _ in kept), tuple(p * up / down for _, p in kept), start)
+    return line, notes, faults
+
+
+def _order_faults(name: str, points: list[Point], forward: bool) -> list[Fault]:
+    fractions = [x for x, _ in points]
+    low, high = (fractions[0], fractions[-1]) if forward else (fractions[-1], fractions[0])
+    if (low, high) != (0.0, 1.0):
+        return [Fault((name,), f"the line must reach from fraction 0 to 1; it runs from {low:g} to {high:g}")]
+    for i in range(1, len(points)):
+        if (fractions[i] < fractions[i - 1]) if forward else (fractions[i] > fractions[i - 1]):
+            return [Fault((name, i), f"fraction {fractions[i]:g} after {fractions[i - 1]:g}: the line turns back")]
+        if i >= 2 and fractions[i] == fractions[i - 2] and len(set(points[i - 2 : i + 1])) == 3:
+            return [Fault((name, i), f"three points at fraction {fractions[i]:g}; a jump has two")]
+    return []
+
+
+class Constant:
+    """Constant pressure on each stroke: an ideal pump."""
+
+    KEYS: ClassVar[Keys] = {
+        "expansion": Key(Physical("pressure"), "Pressure while the chamber grows: suction", required=True),
+        "compression": Key(Physical("pressure"), "Pressure while the chamber shrinks: delivery", required=True),
+    }
+
+    @staticmethod
+    def from_keys(expansion: float, compression: float) -> Card:
+        """Return the card with two horizontal lines."""
+        return Card(
+            (
+                Line("expansion", (0.0, 1.0), (expansion, expansion), 0),
+                Line("compression", (1.0, 0.0), (compression, compression), 1),
+            )
+        )
+
+
+_CHAMBER = Keyed(
+    cases=(
+        ("constant", Record("kurbel.machine.indicator:Constant")),
+        ("trace", Record("kurbel.machine.trace:Trace")),
+        ("steam", Record("kurbel.machine.ideal_cards:Steam")),
+        ("compressor", Record("kurbel.machine.ideal_cards:Compressor")),
+        ("otto", Record("kurbel.machine.ideal_cards:Otto")),
+        ("diesel", Record("kurbel.machine.ideal_cards:Diesel")),
+    ),
+    otherwise=Record("kurbel.machine.indicator:Card"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Indicator:
+    """The pressures in the two ends of a cylinder; an end that is None is open to the ambient.
+
+    absolute: the pressures of both ends are absolute, not gauge.
+    """
+
+    head_end: Chamber | None = None
+    crank_end: Chamber | None = None
+    absolute: bool = False
+
+    KEYS: ClassVar[Keys] = {
+        "pressures": Key(Choice(("gauge", "absolute")), "What the pressures count from", absent="gauge"),
+        "head_end": Key(_CHAMBER, "Pressure at the head end", absent="open to the ambient"),
+        "crank_end": Key(
+            OneOf((Choice(("mirrored",)), _CHAMBER)),
+            "Pressure at the crank end, or `mirrored`: the head end's card from the crank end's dead centre",
+            absent="open to the ambient",
+        ),
+    }
+
+    @classmethod
+    def from_keys(
+        cls, pressures: str = "gauge", head_end: Chamber | None = None, crank_end: Chamber | str | None = None
+    ) -> Indicator:
+        """Return the indicator that these keys of a machine file describe; raises RuleError."""
+        if head_end is None and crank_end in (None, "mirrored"):
+            path: Path = () if crank_end is None else ("crank_end",)
+            raise RuleError(Fault(path, "the indicator shows no pressure; give 'head_end'"))
+        # a mirrored card is the same card: each chamber's fractions count from its own dead centre
+        other = head_end if isinstance(crank_end, str) else crank_end
+        return cls(head_end, other, pressures == "absolute")

@@ -1,0 +1,95 @@
+"""Masses of the moving parts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Form, Key, Keys, Listing, Number, OneOf, Physical, Record
+
+_ONE_OR_MORE: Form = OneOf((Physical("mass", least=0), Listing(Physical("mass", least=0))))
+
+
+@dataclass(frozen=True, eq=False)
+class ConnectingRod:
+    """The connecting rod's mass in kg and how it moves.
+
+    share: the part of it that counts as reciprocating; or, exactly, center_of_gravity: its distance in m from the
+    crosshead pin, with inertia: moment of inertia in kg m² about the centre of gravity.
+    """
+
+    mass: float
+    share: float = 0.5
+    center_of_gravity: float | None = None
+    inertia: float | None = None
+
+    KEYS: ClassVar[Keys] = {
+        "mass": Key(Physical("mass", least=0), "Mass of the rod", required=True),
+        "share": Key(Number(least=0, most=1), "Reciprocating share of the mass", absent="1/2"),
+        "center_of_gravity": Key(Physical("length"), "Distance of its centre of gravity from the crosshead pin", "a"),
+        "inertia": Key(Physical("inertia", least=0), "Moment of inertia about the centre of gravity", "I_r"),
+    }
+
+    @classmethod
+    def from_keys(
+        cls,
+        mass: float,
+        share: float | None = None,
+        center_of_gravity: float | None = None,
+        inertia: float | None = None,
+    ) -> ConnectingRod:
+        """Return the rod that these keys of a machine file describe; raises RuleError for contradictions."""
+        if share is not None and (center_of_gravity is not None or inertia is not None):
+            raise RuleError(
+                Fault(("share",), "'share' and 'center_of_gravity' say the same thing; leave one of them out")
+            )
+        return cls(mass, 0.5 if share is None else share, center_of_gravity, inertia)
+
+    def __post_init__(self) -> None:
+        if (self.center_of_gravity is None) != (self.inertia is None):
+            missing, given = ("inertia", "center_of_gravity")
+            if self.center_of_gravity is None:
+                missing, given = given, missing
+            raise RuleError(Fault((given,), f"'{given}' needs '{missing}' beside it"))
+
+    @property
+    def exact(self) -> bool:
+        """Whether the rod is described by centre of gravity and moment of inertia."""
+        return self.center_of_gravity is not None
+
+
+@dataclass(frozen=True, eq=False)
+class Masses:
+    """Reciprocating masses in kg: the sum of piston, piston rod, crosshead and others, and the connecting rod."""
+
+    parts: float
+    connecting_rod: ConnectingRod | None = None
+
+    KEYS: ClassVar[Keys] = {
+        "piston": Key(_ONE_OR_MORE, "Piston, or a list of pistons"),
+        "piston_rod": Key(_ONE_OR_MORE, "Piston rod"),
+        "crosshead": Key(_ONE_OR_MORE, "Crosshead"),
+        "other": Key(_ONE_OR_MORE, "Whatever else goes to and fro"),
+        "connecting_rod": Key(
+            OneOf((Physical("mass", least=0), Record("kurbel.machine.masses:ConnectingRod"))),
+            "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
+        ),
+    }
+
+    @classmethod
+    def from_keys(
+        cls, connecting_rod: float | ConnectingRod | None = None, **parts: float | tuple[float, ...]
+    ) -> Masses:
+        """Return the masses that these keys of a machine file describe."""
+        each = [mass for part in parts.values() for mass in (part if isinstance(part, tuple) else (part,))]
+        if not each and connecting_rod is None:
+            raise RuleError(Fault((), "no mass is given; leave 'masses' out or give 'piston', 'crosshead', …"))
+        rod = ConnectingRod(connecting_rod) if isinstance(connecting_rod, float) else connecting_rod
+        return cls(math.fsum(each), rod)
+
+    @property
+    def reciprocating(self) -> float:
+        """m in kg: all parts and the connecting rod's share (R 298)."""
+        return self.parts + (self.connecting_rod.mass * self.connecting_rod.share if self.connecting_rod else 0.0)

@@ -1,0 +1,64 @@
+"""A piston with the pressures on its two sides."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from kurbel.errors import Fault, Path, RuleError
+from kurbel.keys import Key, Keys, Physical, Record, Text
+from kurbel.units import show
+
+if TYPE_CHECKING:
+    from kurbel.machine.indicator import Indicator
+
+
+@dataclass(frozen=True, eq=False)
+class Piston:
+    """A piston: bore and rod diameters in m, and what the indicator shows on its two sides."""
+
+    bore: float
+    head_end_rod: float = 0.0
+    crank_end_rod: float = 0.0
+    indicator: Indicator | None = None
+    name: str = "piston"
+
+    KEYS: ClassVar[Keys] = {
+        "name": Key(Text(), "Name of the piston", absent="piston"),
+        "bore": Key(Physical("length", above=0), "Diameter of the cylinder", "d", required=True),
+        "head_end_rod": Key(Physical("length", least=0), "Diameter of the rod through the head end", absent="0"),
+        "crank_end_rod": Key(Physical("length", least=0), "Diameter of the rod through the crank end", absent="0"),
+        "indicator": Key(
+            Record("kurbel.machine.indicator:Indicator"), "Pressures on the two sides", absent="no gas force"
+        ),
+    }
+
+    def __post_init__(self) -> None:
+        faults = [
+            Fault((key,), f"{show(rod, 'length')} is no thinner than the bore ({show(self.bore, 'length')})")
+            for key, rod in (("head_end_rod", self.head_end_rod), ("crank_end_rod", self.crank_end_rod))
+            if rod >= self.bore
+        ]
+        if faults:
+            raise RuleError(*faults)
+
+    @property
+    def head_area(self) -> float:
+        """Effective area at the head end in m²."""
+        return math.pi / 4 * (self.bore - self.head_end_rod) * (self.bore + self.head_end_rod)
+
+    @property
+    def crank_area(self) -> float:
+        """Effective area at the crank end in m²."""
+        return math.pi / 4 * (self.bore - self.crank_end_rod) * (self.bore + self.crank_end_rod)
+
+    def cycle_faults(self, cycle: str, path: Path) -> list[Fault]:
+        """Return what of the indicator does not fit the cycle of the machine."""
+        if self.indicator is None:
+            return []
+        return [
+            Fault((*path, "indicator", end), message)
+            for end, chamber in (("head_end", self.indicator.head_end), ("crank_end", self.indicator.crank_end))
+            if chamber is not None and (message := chamber.cycle_fault(cycle))
+        ]

@@ -1,0 +1,135 @@
+"""What turns with the shaft: flywheel, load, a turning-moment diagram known from elsewhere, an elastic coupling."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Key, Keys, Number, Physical, Points, UnitName
+from kurbel.machine.angle_points import Point, angle_faults, beyond_cycle
+from kurbel.units import Factor
+
+_TORQUE_KEYS: Keys = {
+    "unit": Key(UnitName("torque"), "Unit of the torques"),
+    "points": Key(Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Flywheel:
+    """A flywheel: its moment of inertia J in kg m², and the wanted coefficient of fluctuation δ; either may be None."""
+
+    inertia: float | None = None
+    fluctuation: float | None = None
+
+    KEYS: ClassVar[Keys] = {
+        "inertia": Key(Physical("inertia", least=0), "Moment of inertia; or give `gd2`", "J"),
+        "gd2": Key(
+            Physical("gd2", least=0),
+            "Old form of the moment of inertia: 4gJ as a weight times an area, or 4J as a mass times an area",
+            "GD²",
+            instead="inertia",
+        ),
+        "fluctuation": Key(
+            Number(above=0, below=2), "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean", "δ"
+        ),
+    }
+
+    @classmethod
+    def from_keys(
+        cls, inertia: float | None = None, gd2: float | None = None, fluctuation: float | None = None
+    ) -> Flywheel:
+        """Return the flywheel with J = inertia or GD²/4; raises RuleError when both or nothing is given."""
+        if inertia is not None and gd2 is not None:
+            raise RuleError(Fault(("gd2",), "'inertia' and 'gd2' say the same thing; leave one of them out"))
+        return cls(gd2 / 4 if gd2 is not None else inertia, fluctuation)
+
+    def __post_init__(self) -> None:
+        if self.inertia is None and self.fluctuation is None:
+            raise RuleError(Fault((), "a flywheel needs 'inertia', 'gd2' or the wanted 'fluctuation'"))
+
+
+@dataclass(frozen=True, eq=False)
+class Effort:
+    """A turning-moment diagram: torques in N m over crank angles in degrees, ascending; equal neighbours are a jump."""
+
+    angles: tuple[float, ...]
+    torques: tuple[float, ...]
+
+    KEYS: ClassVar[Keys] = {name: key._replace(required=True) for name, key in _TORQUE_KEYS.items()}
+
+    @classmethod
+    def from_keys(cls, unit: Factor, points: list[Point]) -> Effort:
+        """Return the diagram that these keys of a machine file describe; raises RuleError."""
+        faults = angle_faults(points, ("points",))
+        if faults:
+            raise RuleError(*faults)
+        up, down = unit
+        return cls(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
+
+    def cycle_fault(self, cycle: str) -> str:
+        """Return what does not fit the cycle of the machine, or an empty text."""
+        return beyond_cycle(self.angles[-1], cycle)
+
+
+@dataclass(frozen=True, eq=False)
+class Load:
+    """The resistance at the shaft, in exactly one of three forms.
+
+    power: k of a torque ∝ ω^k that equals the mean effort at the nominal speed; slip: s of a torque
+    mean · (1 + (ω/ω_n − 1)/s); diagram: a resistance that varies over the turn.
+    """
+
+    power: float | None = None
+    slip: float | None = None
+    diagram: Effort | None = None
+
+    KEYS: ClassVar[Keys] = {
+        "power_law": Key(Number(), "Torque proportional to ω^k: 2 for a fan, 0 for a hoist", "k"),
+        "slip": Key(Number(above=0), "Slip of a grid-tied generator at mean torque; stiff for small slip", "s"),
+        **_TORQUE_KEYS,
+    }
+
+    @classmethod
+    def from_keys(
+        cls,
+        power_law: float | None = None,
+        slip: float | None = None,
+        unit: Factor | None = None,
+        points: list[Point] | None = None,
+    ) -> Load:
+        """Return the load that these keys of a machine file describe; raises RuleError."""
+        if (unit is None) != (points is None):
+            given, missing = ("points", "unit") if unit is None else ("unit", "points")
+            raise RuleError(Fault((given,), f"'{given}' needs '{missing}' beside it"))
+        diagram = None if unit is None or points is None else Effort.from_keys(unit, points)
+        return cls(power_law, slip, diagram)
+
+    def __post_init__(self) -> None:
+        forms = {"power_law": self.power, "slip": self.slip, "points": self.diagram}
+        given = [name for name, value in forms.items() if value is not None]
+        if not given:
+            raise RuleError(Fault((), "give one of 'power_law', 'slip' or 'points'; or write 'load: constant'"))
+        if len(given) > 1:
+            names = " and ".join(f"'{name}'" for name in given)
+            raise RuleError(Fault((given[1],), f"{names} are different loads; keep one of them"))
+
+    def cycle_fault(self, cycle: str) -> str:
+        """Return what does not fit the cycle of the machine, or an empty text."""
+        return self.diagram.cycle_fault(cycle) if self.diagram else ""
+
+
+@dataclass(frozen=True, eq=False)
+class Coupling:
+    """An elastic coupling: stiffness in N m/rad, damping in N m s/rad, and the driven moment of inertia in kg m²."""
+
+    stiffness: float
+    inertia: float
+    damping: float = 0.0
+
+    KEYS: ClassVar[Keys] = {
+        "stiffness": Key(Physical("stiffness", above=0), "Torque per angle of twist", "k", required=True),
+        "damping": Key(Physical("damping", least=0), "Torque per speed of twist", "d", absent="0"),
+        "inertia": Key(Physical("inertia", above=0), "Moment of inertia of what is driven", "J_2", required=True),
+    }

@@ -1,0 +1,49 @@
+"""Line and column of what is wrong, found by reading the text a second time: a good file pays nothing for it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from kurbel.errors import Path
+from kurbel.machine_file.events import Builder, run
+from kurbel.machine_file.source import Place
+
+
+def locate(text: str, wanted: list[tuple[Path, bool]]) -> list[Place]:
+    """Return the place of each wanted path, in the same order; the text has been read without a syntax error before.
+
+    A path comes with whether its key is meant. Otherwise a text or number is pointed at itself, a mapping or list by
+    its key. Of a path that does not exist, the part that does is pointed at.
+    """
+    locator = _Locator({path[:length] for path, _ in wanted for length in range(len(path) + 1)})
+    run(text, locator)
+    return [locator.place_of(path, at_key) for path, at_key in wanted]
+
+
+class _Locator(Builder):
+    """Builds the tree once more and notes where the nodes on the way to the wanted paths begin."""
+
+    def __init__(self, wanted: set[Path]) -> None:
+        super().__init__()
+        self._wanted = wanted
+        self._keys: dict[Path, Place] = {}
+        self._values: dict[Path, Place] = {}
+
+    def place_of(self, path: Path, at_key: bool) -> Place:
+        """Return the place of the longest part of a path that the text has."""
+        for length in range(len(path), 0, -1):
+            part = path[:length]
+            exact = length == len(path) and not at_key
+            place = (self._values.get(part) if exact else None) or self._keys.get(part)
+            if place:
+                return place
+        return self._keys.get((), Place(0, 0))
+
+    def _place(self, value: Any, event: Any) -> None:
+        is_key = bool(self._open) and self._key is None and isinstance(self._open[-1], dict)
+        path = (*self._steps[1:], str(value)) if is_key else self._here()
+        if path in self._wanted:
+            # an empty value is pointed at by its key, as is a mapping or a list; items of a list have no key
+            noted = self._values if not is_key and isinstance(value, str) and value else self._keys
+            noted.setdefault(path, Place(event.start_mark.line, event.start_mark.column))
+        super()._place(value, event)

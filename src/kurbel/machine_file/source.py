@@ -1,0 +1,125 @@
+"""The bytes of a machine file and the text they make, before any YAML is looked at."""
+
+from __future__ import annotations
+
+import os
+import re
+from typing import NamedTuple
+
+from kurbel.errors import LocatedFault, MachineFileError, Path, UnreadableFileError
+
+SIZE_LIMIT = 16 * 1024 * 1024
+"""Largest machine file in bytes; a longer measurement belongs into a file of its own."""
+_LINE_END = re.compile(r"\r\n|[\n\r\x85\u2028\u2029]")  # what YAML takes for the end of a line, no more
+_UNPRINTABLE = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")  # as YAML has it
+
+
+class Place(NamedTuple):
+    """Line and column in characters, both from 0."""
+
+    line: int
+    column: int
+
+
+class Source(NamedTuple):
+    """A machine file as text: the name that messages show, and the folder that paths in it are relative to."""
+
+    name: str
+    text: str
+    folder: str = ""
+
+    @property
+    def stem(self) -> str:
+        """The name a machine gets from its file."""
+        stem = os.path.splitext(os.path.basename(self.name))[0]
+        return "machine" if self.name.startswith("<") or not stem.isprintable() else stem
+
+    def lines(self) -> list[str]:
+        """Return the lines, split where YAML splits them."""
+        return _LINE_END.split(self.text)
+
+    def error(self, faults: list[tuple[Place, Path, str]]) -> MachineFileError:
+        """Return these faults as an error, each once and in the order of the file."""
+        lines = [*self.lines(), ""]  # the end of a file may be a place, too
+        located = [
+            LocatedFault(place.line + 1, place.column + 1, _shown_path(path), message, lines[place.line])
+            for place, path, message in sorted(dict.fromkeys(faults), key=lambda fault: fault[0])
+        ]
+        return MachineFileError(self.name, located)
+
+
+def read(path: str | os.PathLike[str]) -> Source:
+    """Return the machine file at a path, or standard input for "-".
+
+    Raises UnreadableFileError when there is no such file, and MachineFileError when it is no UTF-8 text.
+    """
+    name = os.fspath(path)
+    if name == "-":
+        import sys
+
+        return decode("<stdin>", sys.stdin.buffer.read(SIZE_LIMIT + 1))
+    try:
+        with open(name, "rb") as file:
+            content = file.read(SIZE_LIMIT + 1)
+    except (OSError, ValueError) as error:  # ValueError: a NUL character in the name
+        raise UnreadableFileError(_why_unreadable(name, error)) from None
+    return decode(name, content, os.path.dirname(name))
+
+
+def _why_unreadable(name: str, error: OSError | ValueError) -> str:
+    if isinstance(error, FileNotFoundError):
+        return f"{name}: there is no such file; 'kurbel example' lists machines to start from"
+    if isinstance(error, IsADirectoryError):
+        return f"{name} is a folder; name the machine file in it"
+    if isinstance(error, PermissionError):
+        return f"{name} may not be read; check its permissions"
+    return f"{name} cannot be read: {error.strerror if isinstance(error, OSError) else error}"
+
+
+def decode(name: str, content: bytes, folder: str = "") -> Source:
+    """Return the text of a machine file, which is UTF-8 with or without a byte-order mark.
+
+    Raises UnreadableFileError when it is too long, and MachineFileError at the first byte that is no UTF-8.
+    """
+    if len(content) > SIZE_LIMIT:
+        raise UnreadableFileError(
+            f"{name} is larger than {SIZE_LIMIT // 2**20} MiB; "
+            "put measured pressures into a csv file and name it under 'trace'"
+        )
+    if content[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in content[:2]:
+        message = "the file is UTF-16; save it as UTF-8"
+        raise Source(name, "").error([(Place(0, 0), (), message)])
+    try:
+        source = Source(name, content.decode("utf-8-sig"), folder)
+    except UnicodeDecodeError as error:
+        raise _encoding_error(name, content, error.start) from None
+    found = _UNPRINTABLE.search(source.text)
+    if found:
+        message = f"the character U+{ord(found.group()):04X} cannot be printed; remove it"
+        raise source.error([(place_of(source.text, found.start()), (), message)])
+    return source
+
+
+def _encoding_error(name: str, content: bytes, start: int) -> MachineFileError:
+    before = content[:start].decode("utf-8-sig")
+    read_as = content[start : start + 1].decode("latin-1")
+    hint = f", in Latin-1 the letter '{read_as}'" if read_as.isalpha() else ""
+    message = f"byte 0x{content[start]:02X} is no UTF-8{hint}; save the file as UTF-8"
+    shown = Source(name, before + content[start:].decode("latin-1"))
+    return shown.error([(place_of(before, len(before)), (), message)])
+
+
+def place_of(text: str, index: int) -> Place:
+    """Return line and column of the character at an index."""
+    lines = _LINE_END.split(text[:index])
+    return Place(len(lines) - 1, len(lines[-1]))
+
+
+def _shown_path(path: Path) -> Path:
+    return tuple(shown(step) if isinstance(step, str) else step for step in path)
+
+
+def shown(text: str) -> str:
+    """Write a text from the file so that it fits into one line of a message and cannot steer a terminal."""
+    flat = "".join(c if c.isprintable() else " " if c.isspace() else f"\\u{ord(c):04x}" for c in text[:200])
+    return flat if len(flat) <= 60 else flat[:57] + "…"

@@ -1,0 +1,123 @@
+"""Machine files that read well: for the tests of the reader, of the schema, and as seeds of the fuzz."""
+
+from __future__ import annotations
+
+DEMO = """\
+name: Demo steam engine
+speed: 50 rpm
+crank: 400 mm              # or stroke: 800 mm
+rod: 2000 mm               # or rod_ratio: 5  (L/R)
+bore: 450 mm
+indicator:
+  head_end:
+    unit: at
+    expansion:   [[0, 9.5], [0.35, 9.5], [0.5, 6.7], [0.7, 4.7], [0.95, 3.3], [1, 2.2]]
+    compression: [[1, 1.2], [0.25, 1.2], [0.1, 2.4], [0.02, 6.5], [0, 9.5]]
+  crank_end: mirrored
+"""
+FULL = """\
+kurbel: 1
+name: Everything
+speed: 50 rpm
+cycle: two-stroke
+efficiency: 0.9
+ambient: 1 bar
+cylinders:
+  - name: HP
+    stroke: 800 mm
+    rod_ratio: 5
+    offset: 0 mm
+    inclination: 90 deg
+    bore: 450 mm
+    head_end_rod: 75 mm
+    crank_end_rod: 100 mm
+    indicator:
+      pressures: gauge
+      head_end:
+        steam: {admission: 8 bar, exhaust: 0.2 bar, cut_off: 0.3, clearance: 0.05, compression: 0.1}
+      crank_end: mirrored
+    tandem:
+      - bore: 285 mm
+        indicator:
+          head_end:
+            constant: {expansion: -0.45 at, compression: 5.4 at}
+    masses:
+      piston: [122 kg, 282 kg]
+      piston_rod: 122 kg
+      crosshead: 190 kg
+      other: 1 kg
+      connecting_rod: {mass: 220 kg, share: 0.5}
+    friction:
+      crosshead: 0.1
+      rings: {count: 3, height: 20 mm, pressure: 0.2 bar, coefficient: 0.08}
+  - name: LP
+    mechanism: slider-crank
+    crank: 400 mm
+    rod: infinite
+    crank_position: 90 deg
+    bore: 700 mm
+    indicator:
+      pressures: absolute
+      head_end:
+        trace: {unit: bar, points: [[0, 3], [180, 1], [180, 0.9], [360, 3]]}
+flywheel: {gd2: 40000 kgf m2, fluctuation: 0.01}
+load: {power_law: 2}
+coupling: {stiffness: 1000 kN m/rad, damping: 10 N m s/rad, inertia: 500 kg m2}
+crankshaft:
+  a: 400 mm
+  b: 400 mm
+  web_distance: 100 mm
+  web_thickness: 60 mm
+  web_width: 90 mm
+  pin_diameter: 100 mm
+  pin_length: 90 mm
+  journal_diameter: 110 mm
+  journal_length: 150 mm
+  flywheel_mass: 3 t
+  flywheel_position: 200 mm
+  allowable_bending: 60 N/mm2
+  allowable_torsion: 40 MPa
+limits:
+  c_max: 6 m/s
+  delta: 1/200
+"""
+GAS_ENGINE = """\
+cycle: four-stroke
+crank: 100 mm
+rod_ratio: 4
+bore: 150 mm
+indicator:
+  head_end:
+    otto: {intake: -0.1 bar, exhaust: 0.1 bar, peak: 25 bar, compression_ratio: 5}
+load: {slip: 0.02}
+flywheel: {inertia: 12 kg m2}
+"""
+DIESEL = """\
+cycle: four-stroke
+crank: 100 mm
+rod_ratio: 4
+bore: 150 mm
+indicator:
+  head_end:
+    diesel: {intake: 0 bar, exhaust: 0 bar, clearance: 0.07, cut_off: 0.1, peak: 35 bar, exponent: 1.35}
+load:
+  unit: N m
+  points: [[0, 100], [90, 100], [90, 500], [720, 100]]
+"""
+COMPRESSOR = """\
+crank: 150 mm
+rod: 750 mm
+bore: 300 mm
+indicator:
+  head_end:
+    compressor: {suction: 0 bar, delivery: 4 bar, clearance: 0.05}
+"""
+EFFORT = "effort: {unit: kgf m, points: [[0, 0], [90, 300], [360, 0]]}\nload: constant\nspeed: 100 1/min\n"
+ALL = {
+    "demo": DEMO,
+    "full": FULL,
+    "gas engine": GAS_ENGINE,
+    "diesel": DIESEL,
+    "compressor": COMPRESSOR,
+    "effort": EFFORT,
+}

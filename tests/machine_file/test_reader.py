@@ -1,0 +1,154 @@
+"""Good machine files: what arrives in the machine, in SI."""
+
+from __future__ import annotations
+
+import math
+import time
+from pathlib import Path
+
+import pytest
+from good_machines import ALL, DEMO, DIESEL, EFFORT, FULL, GAS_ENGINE
+
+from kurbel.errors import MachineFileError
+from kurbel.machine_file import load, loads
+
+
+def test_the_flat_machine_of_the_contract() -> None:
+    machine = loads(DEMO)
+    (cylinder,) = machine.cylinders
+    assert machine.name == "Demo steam engine"
+    assert machine.speed == 50 / 60
+    assert cylinder.name == "cylinder 1"
+    assert (cylinder.mechanism.crank, cylinder.mechanism.rod) == (0.4, 2.0)  # type: ignore[attr-defined]
+    (piston,) = cylinder.pistons
+    assert piston.bore == 0.45
+    assert piston.indicator is not None
+    card = piston.indicator.head_end
+    assert card is piston.indicator.crank_end
+    assert card.lines[0].pressures[0] == 9.5 * 98066.5  # type: ignore[union-attr]
+
+
+def test_several_cylinders_with_everything() -> None:
+    machine = loads(FULL)
+    high, low = machine.cylinders
+    assert [high.name, low.name] == ["HP", "LP"]
+    assert high.mechanism.crank == 0.4
+    assert math.isinf(low.mechanism.rod)  # type: ignore[attr-defined]
+    assert low.crank_position == 90
+    assert [piston.bore for piston in high.pistons] == [0.45, 0.285]
+    assert high.masses is not None
+    assert high.masses.parts == 122 + 282 + 122 + 190 + 1
+    assert high.masses.reciprocating == 717 + 110
+    assert high.friction is not None
+    assert high.friction.rings is not None
+    assert high.friction.rings.count == 3
+    assert machine.limits == (("c_max", 6.0), ("delta", 1 / 200))
+
+
+def test_what_turns_with_the_shaft() -> None:
+    machine = loads(FULL)
+    assert machine.flywheel is not None
+    assert machine.flywheel.inertia == 10000  # GD² of 40000 kgf m² is 4J with J in kg m²
+    assert machine.flywheel.fluctuation == 0.01
+    assert machine.load is not None
+    assert machine.load.power == 2
+    assert machine.coupling is not None
+    assert (machine.coupling.stiffness, machine.coupling.inertia) == (1e6, 500)
+    assert machine.crankshaft is not None
+    assert machine.crankshaft.allowable_bending == 60e6
+
+
+def test_steam_card() -> None:
+    steam = loads(FULL).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
+    assert (steam.admission, steam.exhaust, steam.cut_off, steam.release, steam.exponent) == (8e5, 0.2e5, 0.3, 1, 1)  # type: ignore[union-attr]
+
+
+def test_otto_card_from_its_compression_ratio() -> None:
+    otto = loads(GAS_ENGINE).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
+    assert otto.clearance == 0.25  # type: ignore[union-attr]  # c = 1/(ε − 1), ε = 5
+    assert otto.exponent == otto.expansion_exponent == 1.4  # type: ignore[union-attr]
+
+
+def test_mixed_diesel_card() -> None:
+    diesel = loads(DIESEL).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
+    assert (diesel.peak, diesel.expansion_exponent) == (35e5, 1.35)  # type: ignore[union-attr]
+
+
+def test_load_by_angle() -> None:
+    diagram = loads(DIESEL).load.diagram  # type: ignore[union-attr]
+    assert diagram is not None
+    assert diagram.angles == (0, 90, 90, 720)
+    assert diagram.torques == (100, 100, 500, 100)
+
+
+def test_effort_without_cylinders() -> None:
+    machine = loads(EFFORT)
+    assert machine.cylinders == ()
+    assert machine.load is None
+    assert machine.effort is not None
+    assert machine.effort.torques[1] == 300 * 9.80665
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
+def test_line_ends_do_not_matter(ending: str) -> None:
+    assert loads(DEMO.replace("\n", ending)).name == "Demo steam engine"
+
+
+def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "Tafel I.yaml"
+    path.write_text("crank: 400 mm\nrod_ratio: 5\n")
+    assert load(path).name == "Tafel I"
+
+
+def test_a_trace_file_is_found_beside_the_machine_file(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text("0; 1\n")
+    path = tmp_path / "machine.yaml"
+    path.write_text(
+        "crank: 400 mm\nrod_ratio: 5\nbore: 90 mm\nindicator:\n  head_end:\n"
+        '    trace: {file: p.csv, unit: bar, delimiter: ";", decimal: comma, skip_rows: 2, angle_zero: 360 deg}\n'
+    )
+    trace = load(path).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
+    assert Path(trace.file) == tmp_path / "p.csv"  # type: ignore[union-attr]
+    assert (trace.delimiter, trace.decimal, trace.skip_rows, trace.angle_zero) == (";", ",", 2, 360)  # type: ignore[union-attr]
+    assert (trace.angle_column, trace.pressure_column) == (1, 2)  # type: ignore[union-attr]
+
+
+def test_a_fault_of_a_flat_machine_has_no_cylinder_in_its_path() -> None:
+    with pytest.raises(MachineFileError, match=r":\d+:\d+: indicator.head_end: a four-stroke cycle needs"):
+        loads("cycle: four-stroke\n" + DEMO)
+
+
+def test_rules_wait_until_all_keys_can_be_read() -> None:
+    """A rod that cannot be read is not also too short."""
+    with pytest.raises(MachineFileError) as caught:
+        loads("crank: 400 mm\nrod: 300 mn\n")
+    assert len(caught.value.faults) == 1
+
+
+def test_rules_of_parts_are_told_although_another_part_is_wrong() -> None:
+    with pytest.raises(MachineFileError) as caught:
+        loads("crank: 400 mm\nrod: 300 mm\nbore: 90 mm\nhead_end_rod: 95 mm\nflywheel: {}\n")
+    assert [fault.path for fault in caught.value.faults] == [("rod",), ("head_end_rod",), ("flywheel",)]
+
+
+@pytest.mark.parametrize("text", ALL.values(), ids=ALL)
+def test_reading_twice_gives_the_same(text: str) -> None:
+    assert repr(loads(text)) == repr(loads(text))
+
+
+def test_the_demo_machine_is_read_at_once() -> None:
+    loads(DEMO)
+    best = min(_seconds(DEMO) for _ in range(20))
+    assert best < 0.006  # about 1 ms on the machine this was written on
+
+
+def test_a_hundred_thousand_points_are_read_quickly() -> None:
+    step = 360 / 1e5
+    points = "\n".join(f"  - [{i * step:.4f}, {100 + i % 7}]" for i in range(100_001))
+    assert _seconds(f"effort:\n  unit: N m\n  points:\n{points.replace('  -', '    -')}\n") < 5
+
+
+def _seconds(text: str) -> float:
+    start = time.perf_counter()
+    loads(text)
+    return time.perf_counter() - start

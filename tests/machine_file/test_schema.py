@@ -1,0 +1,80 @@
+"""The JSON Schema says what the reader does."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+import yaml
+from good_machines import ALL
+
+from kurbel.errors import UnitError
+from kurbel.machine_file.schema import json_schema
+from kurbel.units import SI, example, parse_quantity, unit_names
+
+jsonschema = pytest.importorskip("jsonschema")
+
+
+@pytest.fixture(scope="module")
+def validator() -> Any:
+    schema = json_schema()
+    jsonschema.Draft7Validator.check_schema(schema)
+    return jsonschema.Draft7Validator(schema)
+
+
+@pytest.mark.parametrize("text", ALL.values(), ids=ALL)
+def test_accepts_what_the_reader_accepts(text: str, validator: Any) -> None:
+    assert [error.message for error in validator.iter_errors(yaml.safe_load(text))] == []
+
+
+@pytest.mark.parametrize(
+    "machine",
+    [
+        {"crank": 400, "rod": "2 m"},
+        {"crank": "400 kg", "rod": "2 m"},
+        {"crank": "0,4 m", "rod": "2 m"},
+        {"crank": "400 mm", "rod": "2 m", "colour": "green"},
+        {"crank": "400 mm", "rod": "2 m", "rocker": "1 m"},
+        {"mechanism": "four-bar", "crank": "400 mm"},
+        {"mechanism": "gearwheel"},
+        {"crank": "400 mm", "rod": "2 m", "efficiency": 85},
+        {"crank": "400 mm", "rod": "2 m", "cycle": "six-stroke"},
+        {"crank": "400 mm", "rod": "2 m", "head_end_rod": "20 mm"},
+        {"bore": "400 mm", "cylinders": [{"crank": "400 mm", "rod": "2 m"}]},
+        {"cylinders": []},
+        {"crank": "400 mm", "rod": "2 m", "flywheel": {"inertia": "1 kg m2", "gd2": "4 kg m2"}},
+        {"crank": "400 mm", "rod": "2 m", "limits": {"cmax": "6 m/s"}},
+        {"effort": {"unit": "N m", "points": [[0, 1, 5], [360, 2]]}},
+    ],
+)
+def test_refuses_what_the_reader_refuses(machine: dict[str, Any], validator: Any) -> None:
+    assert not validator.is_valid(machine)
+
+
+@pytest.mark.parametrize("kind", [kind for kind in SI if kind != "ratio"])
+def test_patterns_know_every_unit(kind: str) -> None:
+    definitions = json_schema()["definitions"]
+    if f"quantity_{kind}" not in definitions:
+        pytest.skip("no key of this kind")
+    pattern = definitions[f"quantity_{kind}"]["pattern"]
+    for unit in unit_names(kind):
+        for spelt in (unit, unit.replace("2", "²"), unit.replace(" ", "·"), re.sub("(?<=m)2", "^2", unit)):
+            assert re.search(pattern, f"1.5e3 {spelt}"), spelt
+            assert parse_quantity(f"1.5e3 {spelt}", kind) > 0
+    assert re.search(pattern, example(kind))
+    assert not re.search(pattern, "1.5")
+
+
+def test_patterns_refuse_what_the_reader_refuses() -> None:
+    pattern = json_schema()["definitions"]["quantity_length"]["pattern"]
+    for text in ("1,5 mm", "010 mm", "mm", "5", "5 kg", "1_0 mm"):
+        assert not re.search(pattern, text)
+        with pytest.raises(UnitError):
+            parse_quantity(text, "length")
+
+
+def test_every_key_has_a_sentence() -> None:
+    for schema in [json_schema(), *json_schema()["definitions"].values()]:
+        for name, inner in schema.get("properties", {}).items():
+            assert inner["description"], name
