@@ -1,3 +1,84 @@
-"""kurbel: crank-drive calculation."""
+"""kurbel: crank-drive calculation after the old machine-element books, exact where they approximate.
+
+>>> import kurbel
+>>> machine = kurbel.loads('''
+... speed: 50 rpm
+... stroke: 800 mm
+... rod_ratio: 5
+... masses: {piston: 830 kg}
+... ''')
+>>> case = kurbel.solve(machine)
+>>> cylinder = case.cylinders[0]
+>>> round(cylinder.motion.c_max.value, 4), round(cylinder.motion.c_max.degrees, 4)
+(2.1359, 79.1001)
+>>> [round(float(force)) for force in cylinder.at([0, 90, 180]).P_inertia]
+[-10922, 1858, 7282]
+
+Values are SI floats and arrays; crank angles are in degrees. Names below are imported when they are first used.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Case",
+    "Cylinder",
+    "KurbelError",
+    "Machine",
+    "Mechanism",
+    "Piston",
+    "SliderCrank",
+    "load",
+    "loads",
+    "solve",
+]
+
+if TYPE_CHECKING:
+    from kurbel.errors import KurbelError as KurbelError
+    from kurbel.machine import Cylinder as Cylinder
+    from kurbel.machine import Machine as Machine
+    from kurbel.machine.piston import Piston as Piston
+    from kurbel.machine_file import load as load
+    from kurbel.machine_file import loads as loads
+    from kurbel.mechanisms import Mechanism as Mechanism
+    from kurbel.mechanisms.slider_crank import SliderCrank as SliderCrank
+    from kurbel.solver.case import Case as Case
+
+_HOMES = {
+    "Case": "kurbel.solver.case",
+    "Cylinder": "kurbel.machine",
+    "KurbelError": "kurbel.errors",
+    "Machine": "kurbel.machine",
+    "Mechanism": "kurbel.mechanisms",
+    "Piston": "kurbel.machine.piston",
+    "SliderCrank": "kurbel.mechanisms.slider_crank",
+    "load": "kurbel.machine_file",
+    "loads": "kurbel.machine_file",
+}
+"""Public name -> module; nothing is imported before it is used, so that the command line starts quickly."""
+
+
+def solve(machine: Machine) -> Case:
+    """Return the machine with its results, each computed when it is asked for.
+
+    machine: from `load`, `loads`, or built in Python. Raises NoSolutionError, when a result is asked for that does not
+    exist, because a crosshead locks itself for instance.
+    """
+    from kurbel.solver.case import Case
+
+    return Case(machine)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'kurbel' has no attribute '{name}'")
+    from importlib import import_module
+
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])

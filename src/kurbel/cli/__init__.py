@@ -6,6 +6,7 @@ with inside its function.
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from typing import Any, NoReturn

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -33,10 +33,15 @@ def write_lines(lines: Iterable[Line], look: Look) -> bool:
     if look.width is not None and any(_is_table_line(line) and _width(line) > look.width for line in lines):
         return False
     console = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
-    for pieces in lines:
-        # Text objects: a string would lose its brackets as markup
-        console.print(Text.assemble(*((piece.text, _STYLES[piece.role]) for piece in pieces)))
+    for text in coloured(lines):
+        console.print(text)
     return True
+
+
+def coloured(lines: Iterable[Line]) -> Iterator[Text]:
+    """Yield the lines with their colours, as Text objects: a string would lose its brackets as markup."""
+    for pieces in lines:
+        yield Text.assemble(*((piece.text, _STYLES[piece.role]) for piece in pieces))
 
 
 def _is_table_line(line: Line) -> bool:

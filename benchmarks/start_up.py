@@ -1,0 +1,56 @@
+"""Start-up of whole processes with their output in a pipe, as ratios to `python -c 'import numpy'` of the same run.
+
+    python benchmarks/start_up.py [ROUNDS]
+
+The commands take turns, so that a machine that is slow for a while is slow for all of them; medians are compared.
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+BIN = Path(sys.executable).parent
+CONFIGS = Path(__file__).parent.parent / "configs"
+BASE = "import numpy"
+COMMANDS = {
+    BASE: [sys.executable, "-c", "import numpy"],
+    "kurbel --help": [BIN / "kurbel", "--help"],
+    "kurbel table": [BIN / "kurbel", "table"],
+    "kurbel check": [BIN / "kurbel", "check", CONFIGS / "waterworks.yaml"],
+    "kurbel forces -f csv": [BIN / "kurbel", "forces", CONFIGS / "waterworks.yaml", "-f", "csv"],
+}
+BUDGET = {"kurbel --help": 0.65, "kurbel table": 0.7, "kurbel forces -f csv": 1.5}
+
+
+def measure(rounds: int) -> dict[str, list[float]]:
+    """Return the seconds of each round by command."""
+    # without compiled modules every start would compile kurbel anew, which no installation does
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    times: dict[str, list[float]] = {name: [] for name in COMMANDS}
+    for number in range(rounds + 1):
+        for name, command in COMMANDS.items():
+            begin = time.perf_counter()
+            subprocess.run(command, stdout=subprocess.PIPE, check=True, env=environment)
+            if number:  # the first round warms up
+                times[name].append(time.perf_counter() - begin)
+    return times
+
+
+def main() -> None:
+    """Print the table."""
+    times = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 15)
+    base = statistics.median(times[BASE])
+    print(f"{'command':<24}{'median ms':>10}{'least ms':>10}{'ratio':>8}{'budget':>8}")
+    for name, seconds in times.items():
+        median = statistics.median(seconds)
+        budget = f"{BUDGET[name]:.2f}" if name in BUDGET else ""
+        print(f"{name:<24}{median * 1e3:>10.1f}{min(seconds) * 1e3:>10.1f}{median / base:>8.2f}{budget:>8}")
+
+
+if __name__ == "__main__":
+    main()
