@@ -1,0 +1,190 @@
+"""`kurbel forces` and `kurbel check` as a user calls them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+from kurbel.quantities import COLUMNS, KEY_VALUES
+
+CONFIGS = Path(__file__).parent.parent / "configs"
+WATERWORKS = str(CONFIGS / "waterworks.yaml")
+DEMO = """\
+name: Demo steam engine
+speed: 50 rpm
+crank: 400 mm              # or stroke: 800 mm
+rod: 2000 mm               # or rod_ratio: 5  (L/R)
+bore: 450 mm
+indicator:
+  head_end:
+    unit: at
+    expansion:   [[0, 9.5], [0.35, 9.5], [0.5, 6.7], [0.7, 4.7], [0.95, 3.3], [1, 2.2]]
+    compression: [[1, 1.2], [0.25, 1.2], [0.1, 2.4], [0.02, 6.5], [0, 9.5]]
+  crank_end: mirrored
+"""
+
+
+def run(*arguments: str, text: str | None = None) -> Result:
+    return CliRunner().invoke(kurbel, list(arguments), input=text)
+
+
+def answer(*arguments: str, text: str | None = None) -> dict[str, object]:
+    result = run(*arguments, "-f", "json", text=text)
+    assert result.exit_code == 0, result.output
+    parsed: dict[str, object] = json.loads(result.stdout)
+    return parsed
+
+
+def cylinder(parsed: dict[str, object], index: int = 0) -> dict[str, list[dict[str, object]]]:
+    return parsed["cylinders"][index]  # type: ignore[index,no-any-return]
+
+
+def key_value(part: dict[str, list[dict[str, object]]], name: str) -> dict[str, object]:
+    return next(one for one in part["key_values"] if one["id"] == name)
+
+
+def test_demo_machine_of_the_contract() -> None:
+    parsed = answer("forces", "-", text=DEMO)
+    assert parsed["command"] == "forces"
+    assert parsed["machine"] == "Demo steam engine"
+    part = cylinder(parsed)
+    assert [c["id"] for c in part["columns"]][:6] == ["phi", "psi", "x", "c", "b", "p_head"]
+    assert part["columns"][0]["values"] == list(range(0, 361, 10))
+    assert key_value(part, "b_max")["value"] == pytest.approx(13.16, abs=5e-3)
+    assert key_value(part, "b_max")["at_deg"] == 0
+    assert {"what": "friction", "why": "no friction given"} in part["left_out"]
+    assert part["warnings"] == []
+
+
+def test_key_values_do_not_depend_on_the_step() -> None:
+    first, second = (cylinder(answer("forces", WATERWORKS, "--step", step)) for step in ("10", "0.7"))
+    assert first["key_values"] == second["key_values"]
+
+
+def test_every_id_is_declared_and_every_number_finite() -> None:
+    for file in sorted(CONFIGS.glob("*.yaml")):
+        result = run("forces", str(file), "-f", "json")
+        if result.exit_code:
+            continue  # machines for other commands are tested there
+        for part in json.loads(result.stdout)["cylinders"]:
+            for column in part["columns"]:
+                assert column["id"] in COLUMNS
+                assert all(math.isfinite(value) for value in column["values"])
+            for one in part["key_values"]:
+                assert one["id"] in KEY_VALUES
+                values = one["value"] if isinstance(one["value"], list) else [one["value"]]
+                assert all(math.isfinite(value) for value in values)
+
+
+def test_csv_has_the_columns_in_the_order_asked_for() -> None:
+    result = run("forces", WATERWORKS, "--columns", "T,x", "--step", "90", "-f", "csv")
+    rows = list(csv.reader(io.StringIO(result.stdout)))
+    assert rows[0] == ["phi_deg", "T_N", "x_m"]
+    assert [row[0] for row in rows[1:]] == ["0", "90", "180", "270", "360"]
+    assert float(rows[3][2]) == 0.8
+
+
+def test_technical_units_show_the_figures_of_the_book() -> None:
+    """Waterworks engine: 1546,3 cm², about 1115 kg of inertia (with 826 kg instead of 830), pump 3490 and 3710 kg."""
+    part = cylinder(answer("forces", WATERWORKS, "--units", "technical", "--angles", "90,270"))
+    assert key_value(part, "A_head")["value"] == pytest.approx(1546.3, abs=0.05)
+    assert key_value(part, "A_head")["unit"] == "cm^2"
+    assert key_value(part, "P_inertia_min")["value"] == pytest.approx(-1115 * 826 / 830, rel=2e-3)
+    assert key_value(part, "stroke")["value"] == pytest.approx(800, rel=1e-15)
+
+
+def test_several_cylinders_have_a_column_and_a_part_each() -> None:
+    text = DEMO.replace("crank: 400", "cylinders:\n- crank: 400").split("cylinders:")[0] + "cylinders:\n"
+    body = DEMO.split("speed: 50 rpm\n")[1].replace("\n", "\n    ").rstrip()
+    text += f"  - name: HP\n    {body}\n  - name: LP\n    crank_position: 90 deg\n    {body}\n"
+    parsed = answer("forces", "-", text=text)
+    assert [part["name"] for part in parsed["cylinders"]] == ["HP", "LP"]  # type: ignore[index,union-attr]
+    header = run("forces", "-", "-f", "csv", text=text).stdout.splitlines()[0]
+    assert header.startswith("cylinder,phi_deg,")
+
+
+def test_a_column_that_the_machine_lacks_is_an_error() -> None:
+    result = run("forces", "-", "--columns", "F_friction", text=DEMO)
+    assert result.exit_code == 2
+    assert "'F_friction' is left out for this machine" in result.stderr
+
+
+def test_a_machine_without_forces_says_what_is_left_out() -> None:
+    part = cylinder(answer("forces", "-", text="{crank: 1 m, rod: infinite}"))
+    assert [column["id"] for column in part["columns"]] == ["phi", "psi", "x"]
+    reasons = {entry["what"]: entry["why"] for entry in part["left_out"]}  # type: ignore[index]
+    assert reasons["velocity, acceleration"] == "no speed given"
+    assert reasons["forces in the crank train"] == "no force acts"
+
+
+def test_self_locking_ends_with_status_3() -> None:
+    text = (
+        "crank: 95 mm\nrod: 100 mm\nbore: 50 mm\nfriction: {crosshead: 0.5}\n"
+        "indicator: {head_end: {constant: {expansion: 0 bar, compression: 5 bar}}}\n"
+    )
+    result = run("forces", "-", text=text)
+    assert result.exit_code == 3
+    assert "the crosshead locks itself near φ = " in result.stderr
+    assert result.stdout == ""
+
+
+def test_numbers_too_large_are_refused_by_name() -> None:
+    text = "speed: 1e200 rpm\ncrank: 1e200 m\nrod_ratio: 5\nmasses: {piston: 1e200 kg}\n"
+    result = run("forces", "-", text=text)
+    assert result.exit_code == 2
+    assert "too large to compute with" in result.stderr
+    assert "nan" not in result.output.lower()
+
+
+def test_check_compares_limits() -> None:
+    kept = run("check", "-", text=DEMO + "limits: {c_max: 3 m/s, P_min: -200 kN}\n")
+    broken = run("check", "-", text=DEMO + "limits: {c_max: 2 m/s}\n")
+    assert kept.exit_code == 0
+    assert kept.stdout.count("kept") == 2
+    assert broken.exit_code == 1
+    assert "c_max" in broken.stdout
+    assert "BROKEN" in broken.stdout
+
+
+def test_check_names_what_is_computed_and_what_is_left_out() -> None:
+    output = run("check", "-", text=DEMO).stdout
+    assert "gas force" in output.split("computed")[1].splitlines()[0]
+    assert "inertia: no masses given" in output
+
+
+def test_a_limit_of_something_absent_is_a_fault() -> None:
+    result = run("check", "-", text=DEMO + "limits: {loss_crosshead: 0.01}\n")
+    assert result.exit_code == 2
+    assert "limits.loss_crosshead" in result.stderr
+
+
+def modules_after(*arguments: str) -> set[str]:
+    """Return the modules that a fresh interpreter has imported after a command."""
+    code = (
+        "import sys, io, contextlib\nfrom kurbel.cli import kurbel\n"
+        "with contextlib.redirect_stdout(io.StringIO()):\n"
+        "    try: kurbel.main(sys.argv[1:])\n"
+        "    except SystemExit as e: assert not e.code, e.code\n"
+        "print('\\n'.join(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True)
+    return set(done.stdout.split())
+
+
+def test_what_a_machine_does_not_need_is_not_imported(tmp_path: Path) -> None:
+    plain = tmp_path / "plain.yaml"
+    plain.write_text(DEMO, encoding="utf-8")
+    loaded = modules_after("forces", str(plain), "-f", "csv")
+    assert "numpy" in loaded
+    for needless in ("rich", "json", "kurbel.machine.turning", "kurbel.machine.crankshaft", "kurbel.machine.trace"):
+        assert needless not in loaded
+    assert "numpy" not in modules_after("check", str(plain))

@@ -1,0 +1,103 @@
+"""README and docs cannot go stale: every console block is run and compared, every generated page regenerated.
+
+`KURBEL_README=1 pytest tests/test_readme.py` writes the output of the commands into the README; read the diff.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from kurbel.report.symbols import symbols_page
+
+ROOT = Path(__file__).parent.parent
+README = ROOT / "README.md"
+BLOCK = re.compile(r"```console\n(\$ [^\n]*)\n(.*?)```", re.DOTALL)
+# a residual near 1e-16 is rounding, and differs from one processor to the next
+ROUNDING = re.compile(r"ΔA/A +\S+ +")
+BROKEN = """\
+name: Engine with five mistakes
+speed: 50
+crank: 400 mm
+rod: 300 mm
+boore: 450 mm
+indicator:
+  head_end:
+    unit: at
+    expansion:   [[0, 9,5], [1, 2.2]]
+    compression: [[1, 1.2], [0.25, 1.2], [0, 9.5]]
+  crank_end: mirrord
+"""
+
+pytestmark = pytest.mark.skipif(os.name != "posix" or shutil.which("bash") is None, reason="the README speaks to a shell")
+
+
+@pytest.fixture(scope="module")
+def workshop(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the files that the README speaks of, and `kurbel` on the path."""
+    folder = tmp_path_factory.mktemp("readme")
+    demo = re.search(r"```yaml\n(name: Demo.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    assert demo
+    (folder / "demo.yaml").write_text(demo.group(1), encoding="utf-8")
+    (folder / "broken.yaml").write_text(BROKEN, encoding="utf-8")
+    shutil.copytree(ROOT / "src" / "kurbel" / "configs", folder / "configs")
+    script = folder / "bin" / "kurbel"
+    script.parent.mkdir()
+    script.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m kurbel "$@"\n')
+    script.chmod(0o755)
+    return folder
+
+
+def output_of(command: str, folder: Path) -> str:
+    environment = {k: v for k, v in os.environ.items() if k not in ("FORCE_COLOR", "COLUMNS")}
+    environment |= {"PATH": f"{folder / 'bin'}{os.pathsep}{environment['PATH']}", "PYTHONIOENCODING": "utf-8"}
+    done = subprocess.run(
+        ["bash", "-c", command.removeprefix("$ ")],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        check=False,
+    )
+    return done.stdout.decode()
+
+
+def steady(text: str) -> str:
+    return ROUNDING.sub("ΔA/A ", text)
+
+
+BLOCKS = BLOCK.findall(README.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize(("command", "printed"), BLOCKS, ids=[command[2:60] for command, _ in BLOCKS])
+def test_commands_of_the_readme(command: str, printed: str, workshop: Path) -> None:
+    real = output_of(command, workshop)
+    if os.environ.get("KURBEL_README"):
+        text = README.read_text(encoding="utf-8")
+        README.write_text(text.replace(f"{command}\n{printed}```", f"{command}\n{real}```"), encoding="utf-8")
+        return
+    assert steady(real) == steady(printed)
+
+
+def test_the_readme_has_commands() -> None:
+    assert len(BLOCKS) >= 4
+
+
+def test_the_page_of_symbols_is_current() -> None:
+    """Otherwise: python -m kurbel.report.symbols > docs/symbols.md."""
+    assert (ROOT / "docs" / "symbols.md").read_text(encoding="utf-8") == symbols_page()
+
+
+def test_the_python_of_the_readme_runs(workshop: Path) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        code = block.replace("engine.yaml", "demo.yaml")
+        done = subprocess.run([sys.executable, "-c", code], cwd=workshop, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
