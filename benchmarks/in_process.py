@@ -1,6 +1,6 @@
 """Time in the process: all columns at 361 angles and all key values of a machine, against a naive loop over the angles.
 
-    python benchmarks/in_process.py [MACHINE.yaml]
+python benchmarks/in_process.py [MACHINE.yaml]
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ def naive_motion(crank: float, rod: float, omega: float) -> list[tuple[float, fl
         psi = math.asin(crank / rod * math.sin(phi))
         x = crank * (1 - math.cos(phi)) + rod * (1 - math.cos(psi))
         c = crank * omega * math.sin(phi + psi) / math.cos(psi)
-        b = crank * omega**2 * (math.cos(phi + psi) / math.cos(psi) + crank / rod * math.cos(phi) ** 2 / math.cos(psi) ** 3)
+        bend = crank / rod * math.cos(phi) ** 2 / math.cos(psi) ** 3
+        b = crank * omega**2 * (math.cos(phi + psi) / math.cos(psi) + bend)
         rows.append((x, c, b))
     return rows
 

@@ -35,7 +35,8 @@ indicator:
   crank_end: mirrord
 """
 
-pytestmark = pytest.mark.skipif(os.name != "posix" or shutil.which("bash") is None, reason="the README speaks to a shell")
+NO_SHELL = os.name != "posix" or shutil.which("bash") is None
+pytestmark = pytest.mark.skipif(NO_SHELL, reason="the README speaks to a shell")
 
 
 @pytest.fixture(scope="module")

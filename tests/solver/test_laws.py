@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from machines import STEAM_CARD, one_cylinder
 
 from kurbel.errors import NoSolutionError
 from kurbel.machine.friction import Friction, Rings
@@ -17,6 +16,7 @@ from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.forces import CylinderForces
+from machines import STEAM_CARD, one_cylinder
 
 pressures = st.floats(-0.9, 30, allow_nan=False).map(lambda p: round(p, 3))
 
@@ -121,7 +121,8 @@ def test_a_vertical_jump_inside_the_stroke_stands_at_its_exact_angle() -> None:
     # x = 0.3 s of the exact motion: from the triangle of shaft, pin and crosshead
     distance = 0.4 + 2.0 - 0.3 * 0.8
     angle = math.degrees(math.acos((0.4**2 + distance**2 - 2.0**2) / (2 * 0.4 * distance)))
-    assert forces.at([angle - 1e-9, angle + 1e-9]).p_head == pytest.approx([8e5, 2e5], rel=1e-12)
+    around = forces.at([angle - 1e-9, angle + 1e-9])
+    assert list(around.p_head) == pytest.approx([8e5, 2e5], rel=1e-12)
     found = forces.extremes_of("T")
     assert found
     assert found.largest.degrees == pytest.approx(angle, abs=1e-11)
@@ -143,7 +144,7 @@ def test_lengths_of_any_size(scale: float) -> None:
     small = one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(bore, indicator=Indicator(card)),)).at([10, 100, 250])
     large = one_cylinder(SliderCrank(0.4 * scale, 2.0 * scale), pistons=(Piston(bore, indicator=Indicator(card)),))
     state = large.at([10, 100, 250])
-    assert state.T == pytest.approx(small.T, rel=4e-15)
+    assert pytest.approx(small.T, rel=4e-15) == state.T
     assert state.x / scale == pytest.approx(small.x, rel=4e-15)
 
 
@@ -152,5 +153,6 @@ def test_mirrored_card_turns_the_force_by_half_a_turn_for_the_infinite_rod() -> 
         SliderCrank(0.4, math.inf), pistons=(Piston(0.45, indicator=Indicator(STEAM_CARD, STEAM_CARD)),)
     )
     degrees = np.arange(5.0, 180.0, 10.0)
-    assert forces.at(degrees).P == pytest.approx(-forces.at(degrees + 180).P, rel=1e-14)
-    assert forces.at(degrees).N == pytest.approx(np.zeros(18), abs=0)
+    out, back = forces.at(degrees), forces.at(degrees + 180)
+    assert list(out.P) == pytest.approx(list(-back.P), rel=1e-14)
+    assert not out.N.any()

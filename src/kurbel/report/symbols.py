@@ -4,8 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from kurbel.keys import Choice, Count, Form, Inline, Key, Keyed, Listing, Number, OneOf, Physical, Points, Record
-from kurbel.keys import Variant, load
+from kurbel.keys import (
+    Choice,
+    Count,
+    Form,
+    Inline,
+    Key,
+    Keyed,
+    Listing,
+    Number,
+    OneOf,
+    Physical,
+    Points,
+    Record,
+    Variant,
+    load,
+)
 from kurbel.quantities import COLUMNS, FACTORS, KEY_VALUES, Quantity
 from kurbel.units import SI, TECHNICAL, example
 
