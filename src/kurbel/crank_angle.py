@@ -36,8 +36,8 @@ class CrankAngle(NamedTuple):
 
         Raises ValueError for nan or inf.
         """
-        if isinstance(degrees, (int, float)):
-            return cls(degrees, *_sin_cos_scalar(degrees))
+        if isinstance(degrees, (int, float)) and isinstance(beyond, (int, float)):
+            return cls(degrees, *_sin_cos_scalar(degrees, beyond))
         return cls(degrees, *_sin_cos_array(degrees, beyond))
 
     @property
@@ -51,12 +51,12 @@ class CrankAngle(NamedTuple):
         return where(self.cos >= 0, 1 + abs(self.cos), self.sin * self.sin / (1 + abs(self.cos)))
 
 
-def _sin_cos_scalar(degrees: float) -> tuple[float, float]:
+def _sin_cos_scalar(degrees: float, beyond: float) -> tuple[float, float]:
     if not math.isfinite(degrees):
         raise ValueError("a crank angle must be finite")
     rest = math.remainder(degrees, 360.0)
     quarter = round(rest / 90.0)
-    rest = (rest - 90.0 * quarter) * _RADIANS_PER_DEGREE
+    rest = (rest - 90.0 * quarter + beyond) * _RADIANS_PER_DEGREE
     sin, cos = math.sin(rest), math.cos(rest)
     # adding 0.0 turns -0.0 into 0.0
     pair = ((sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin))[quarter % 4]
@@ -64,7 +64,7 @@ def _sin_cos_scalar(degrees: float) -> tuple[float, float]:
 
 
 def _sin_cos_array(
-    degrees: NDArray[np.float64], beyond: float | NDArray[np.float64]
+    degrees: float | NDArray[np.float64], beyond: float | NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     import numpy as np
 

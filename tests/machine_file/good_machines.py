@@ -99,7 +99,7 @@ rod_ratio: 4
 bore: 150 mm
 indicator:
   head_end:
-    diesel: {intake: 0 bar, exhaust: 0 bar, clearance: 0.07, cut_off: 0.1, peak: 35 bar, exponent: 1.35}
+    diesel: {intake: 0 bar, exhaust: 0 bar, clearance: 0.07, cut_off: 0.1, peak: 45 bar, exponent: 1.35}
 load:
   unit: N m
   points: [[0, 100], [90, 100], [90, 500], [720, 100]]

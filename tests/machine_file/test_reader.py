@@ -71,7 +71,7 @@ def test_otto_card_from_its_compression_ratio() -> None:
 
 def test_mixed_diesel_card() -> None:
     diesel = loads(DIESEL).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
-    assert (diesel.peak, diesel.expansion_exponent) == (35e5, 1.35)  # type: ignore[union-attr]
+    assert (diesel.peak, diesel.expansion_exponent) == (45e5, 1.35)  # type: ignore[union-attr]
 
 
 def test_load_by_angle() -> None:
@@ -101,7 +101,7 @@ def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:
 
 
 def test_a_trace_file_is_found_beside_the_machine_file(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text("0; 1\n")
+    (tmp_path / "p.csv").write_text("angle; p\ndeg; bar\n360; 1\n540; 0,5\n720; 1\n")
     path = tmp_path / "machine.yaml"
     path.write_text(
         "crank: 400 mm\nrod_ratio: 5\nbore: 90 mm\nindicator:\n  head_end:\n"
@@ -109,8 +109,9 @@ def test_a_trace_file_is_found_beside_the_machine_file(tmp_path: Path) -> None:
     )
     trace = load(path).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
     assert Path(trace.file) == tmp_path / "p.csv"  # type: ignore[union-attr]
-    assert (trace.delimiter, trace.decimal, trace.skip_rows, trace.angle_zero) == (";", ",", 2, 360)  # type: ignore[union-attr]
-    assert (trace.angle_column, trace.pressure_column) == (1, 2)  # type: ignore[union-attr]
+    assert trace.angle_zero == 360  # type: ignore[union-attr]
+    assert trace.samples.angles.tolist() == [360, 540, 720]  # type: ignore[union-attr]
+    assert trace.samples.pressures.tolist() == [1e5, 5e4, 1e5]  # type: ignore[union-attr]
 
 
 def test_a_fault_of_a_flat_machine_has_no_cylinder_in_its_path() -> None:

@@ -76,10 +76,11 @@ def test_guide_force_while_driving_and_while_driven() -> None:
     """D 3 on the outstroke; pushed back against its motion, the friction changes sides and N grows."""
     lam_sin, f = 1 / 6, 0.1
     cos_psi = math.sqrt(1 - lam_sin**2)
-    for pressure, sign in ((6e5, +1), (-6e5, -1)):
-        piston = Piston(0.42, indicator=Indicator(constant_pressure(pressure)))
+    pushed, pulled = Indicator(constant_pressure(6e5)), Indicator(None, constant_pressure(6e5))
+    for indicator, sign in ((pushed, +1), (pulled, -1)):
+        piston = Piston(0.42, indicator=indicator)
         state = one_cylinder(SliderCrank(0.3, 1.8), pistons=(piston,), friction=Friction(f)).at([90])
-        force = pressure * piston.head_area
+        force = sign * 6e5 * piston.head_area
         assert state.N[0] == pytest.approx(force * lam_sin / (cos_psi + sign * f * lam_sin), rel=1e-14)
         assert state.S[0] * lam_sin == pytest.approx(state.N[0], rel=1e-14)  # D 2
         assert state.S[0] * cos_psi + sign * f * state.N[0] == pytest.approx(force, rel=1e-14)  # D 1

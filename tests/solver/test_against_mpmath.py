@@ -95,7 +95,7 @@ def machine(lam: float, weight: bool = False, f: float = 0.1) -> CylinderForces:
 
 def edges(forces: CylinderForces) -> list[mpmath.mpf]:
     """All bends of the machine; more of them than needed do the quadrature no harm."""
-    return [mpmath.mpf(float(angle)) * mp.pi / 180 for angle in forces._grid.breaks]
+    return [mpmath.mpf(float(angle)) * mp.pi / 180 for angle in forces.grid.breaks]
 
 
 @pytest.mark.parametrize("weight", [False, True])
@@ -110,6 +110,30 @@ def test_friction_work(lam: float, weight: bool) -> None:
             exact += mp.quad(lambda phi: oracle.f * abs(oracle.guide(phi) * oracle.slope(phi)), [low, high])
         assert forces.friction_work is not None
         assert abs(forces.friction_work / exact - 1) < 1e-13
+
+
+@pytest.mark.parametrize(("ratio", "f"), [(1.12, 0.49), (1.1181, 0.5), (1.001, 0.04), (3.0, 2.7)])
+def test_friction_work_of_a_driven_machine_near_self_locking(ratio: float, f: float) -> None:
+    """The integrand has a pole just off the real axis; the way to locking, cos ψ − f sin ψ, keeps so many digits."""
+    driven = Constant.from_keys(0.0, 5e5)
+    piston = Piston(0.45, indicator=Indicator(driven))
+    forces = one_cylinder(SliderCrank(0.4, 0.4 * ratio), pistons=(piston,), friction=Friction(f))
+    left = np.sqrt(1 - 1 / ratio**2) - f / ratio
+    with mpmath.workdps(40):
+        lam = mpmath.mpf(0.4) / mpmath.mpf(0.4 * ratio)
+        force = mpmath.mpf(5e5) * mpmath.mpf(piston.head_area)
+
+        def power(phi: mpmath.mpf) -> mpmath.mpf:
+            sin_psi = lam * mp.sin(phi)
+            cos_psi = mp.sqrt(1 - sin_psi**2)
+            slope = mpmath.mpf(0.4) * (mp.sin(phi) + mp.cos(phi) * sin_psi / cos_psi)
+            return f * force * sin_psi / (cos_psi - f * sin_psi) * slope
+
+        cuts = sorted({0, 1, *(sign * 2 ** mpmath.mpf(-k) for k in range(1, 24) for sign in (-1, 1)), -1})
+        exact = mp.quad(power, [mp.pi / 2 * (1 + cut) for cut in cuts])
+        assert forces.friction_work is not None
+        assert abs(forces.friction_work / exact - 1) < 1e-13 + 4e-16 / left
+    assert abs(forces.energy_residual or 0) < 1e-13 + 4e-16 / left
 
 
 @pytest.mark.parametrize("column", ["P", "S", "N", "T"])
@@ -133,7 +157,7 @@ def _climb(
     function: Callable[[mpmath.mpf], mpmath.mpf], forces: CylinderForces, degrees: float, sign: int
 ) -> mpmath.mpf:
     """Return the extreme within the smooth pieces that touch the angle, one-sided at their ends, by ternary search."""
-    breaks = forces._grid.breaks
+    breaks = forces.grid.breaks
     pieces = [(low, high) for low, high in pairwise(breaks) if low - 1e-9 <= degrees <= high + 1e-9]
     best = None
     for low, high in pieces:

@@ -104,6 +104,25 @@ def test_friction_opposes_the_motion_everywhere() -> None:
     assert (state.F_friction * state.c < 0).any()
 
 
+def reversals_of(
+    expansion: list[tuple[float, float]], compression: list[tuple[float, float]]
+) -> tuple[float, ...] | None:
+    card = Card.from_keys(unit=(1e5, 1), expansion=expansion, compression=compression)
+    return one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(0.2, indicator=Indicator(card)),)).phi_reversal
+
+
+def test_druckwechsel() -> None:
+    """A reversal is a change from one sign to the other; zero in between has none (formulas 3.1)."""
+    never = [(1.0, 0.0), (0.0, 0.0)]
+    assert reversals_of([(0, 5), (0.5, 5), (1, 0)], never) == ()  # exhausts to the ambient
+    assert reversals_of([(0, 5), (0.4, 0), (1, 3)], [(1, 3), (0, 5)]) == ()  # touches zero
+    assert reversals_of([(0, 5), (0.4, 5), (0.4, 0), (0.7, 0), (0.7, 2), (1, 2)], [(1, 2), (0, 5)]) == ()  # + 0 +
+    # + on the outstroke, nothing in the middle, − on the way back: once where − begins, once where + begins
+    assert reversals_of([(0, 5), (1, 5)], [(1, -0.5), (0, -0.5)]) == (0.0, 180.0)
+    found = reversals_of([(0, 5), (0.5, 5), (0.5, 0), (1, 0)], [(1, 0), (0.5, 0), (0.5, -0.5), (0, -0.5)])
+    assert found == pytest.approx((0.0, float(360 - SliderCrank(0.4, 2.0).crank_angles_at(0.4, True))), abs=1e-12)
+
+
 def test_one_sided_values_at_a_jump() -> None:
     """Exhaust opens at the outer dead centre: 2.2 at before it, 1.2 at after it."""
     forces = one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(0.45, indicator=Indicator(STEAM_CARD)),))

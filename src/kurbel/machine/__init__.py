@@ -25,6 +25,7 @@ from kurbel.keys import (
     Text,
     Variant,
 )
+from kurbel.machine.fit import misfits
 from kurbel.mechanisms import MECHANISMS, Mechanism
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from kurbel.machine.friction import Friction
     from kurbel.machine.masses import Masses
     from kurbel.machine.piston import Piston
+    from kurbel.machine.resistance import Moment, RamForce
     from kurbel.machine.turning import Coupling, Effort, Flywheel, Load
 
 FORMAT = 1
@@ -46,7 +48,8 @@ class Cylinder:
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
-    is left out; crank_position: degrees by which this crank follows crank 1.
+    is left out; crank_position: degrees by which this crank follows crank 1; ram_force, moment: what the output works
+    against, where it slides or only swings. Raises RuleError for parts that the mechanism cannot have.
     """
 
     mechanism: Mechanism
@@ -56,6 +59,9 @@ class Cylinder:
     friction: Friction | None = None
     inclination: float | None = None
     crank_position: float = 0.0
+    ram_force: RamForce | None = None
+    moment: Moment | None = None
+    cycle: str | None = None
 
     KEYS: ClassVar[Keys] = {
         "name": Key(Text(), "Name of the cylinder", absent="cylinder 1, cylinder 2, …"),
@@ -80,6 +86,16 @@ class Cylinder:
             Record("kurbel.machine.friction:Friction"), "Friction of crosshead and piston rings", absent="no friction"
         ),
         "crank_position": Key(Physical("angle"), "Angle by which this crank follows crank 1", absent="0 deg"),
+        "ram_force": Key(
+            Record("kurbel.machine.resistance:RamForce"),
+            "Force on a ram against its motion, constant on each stroke",
+            absent="none",
+        ),
+        "moment": Key(
+            Record("kurbel.machine.resistance:Moment"),
+            "Moment against the motion of a mechanism whose output only swings or turns",
+            absent="none",
+        ),
     }
 
     @classmethod
@@ -93,15 +109,22 @@ class Cylinder:
         friction: Friction | None = None,
         inclination: float | None = None,
         crank_position: float = 0.0,
+        ram_force: RamForce | None = None,
+        moment: Moment | None = None,
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe."""
-        own = () if piston is None else (piston,)
-        return cls(mechanism, name, own + tandem, masses, friction, inclination, crank_position)
+        if tandem and piston is None:
+            raise RuleError(Fault(("tandem",), "a tandem piston stands beside the cylinder's own one; give its 'bore'"))
+        pistons = () if piston is None else (piston, *tandem)
+        return cls(mechanism, name, pistons, masses, friction, inclination, crank_position, ram_force, moment)
 
     def __post_init__(self) -> None:
         rings = self.friction and self.friction.rings
-        if rings and not self.pistons:
-            raise RuleError(Fault(("friction", "rings"), "rings rub on the bore; give the cylinder a 'bore'"))
+        faults = list(misfits(self))
+        if rings and not self.pistons and self.mechanism.slides:
+            faults.append(Fault(("friction", "rings"), "rings rub on the bore; give the cylinder a 'bore'"))
+        if faults:
+            raise RuleError(*faults)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +132,8 @@ class Machine:
     """A whole machine.
 
     speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
-    pressure in Pa; efficiency η scales the turning effort of the whole machine; limits: key-value id -> bound in SI.
+    pressure in Pa; efficiency η scales the turning effort of the whole machine; brake_power: measured, in W; limits:
+    key-value id -> bound in SI.
     """
 
     cylinders: tuple[Cylinder, ...]
@@ -118,6 +142,7 @@ class Machine:
     cycle: str = "two-stroke"
     efficiency: float = 1.0
     ambient: float = STANDARD_ATMOSPHERE
+    brake_power: float | None = None
     flywheel: Flywheel | None = None
     load: Load | None = None
     effort: Effort | None = None
@@ -143,6 +168,12 @@ class Machine:
             commands=("flywheel",),
         ),
         "ambient": Key(Physical("pressure", least=0), "Absolute pressure round the machine", absent="1.01325 bar"),
+        "brake_power": Key(
+            Physical("power", least=0),
+            "Power measured at the shaft; a warning tells when less is indicated",
+            "N_e",
+            absent="not compared",
+        ),
         "cylinder": Key(Inline(Record("kurbel.machine:Cylinder"), unless="cylinders"), "The keys of the only cylinder"),
         "cylinders": Key(
             Listing(Record("kurbel.machine:Cylinder")),
@@ -207,20 +238,32 @@ class Machine:
                 raise RuleError(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
         faults = [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
         for key, diagram in (("effort", self.effort), ("load", self.load)):
-            if diagram is not None and (message := diagram.cycle_fault(self.cycle)):
+            if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
                 faults.append(Fault((key, "points"), message))
         if faults:
             raise RuleError(*faults)
 
     def _cycle_faults(self, index: int) -> list[Fault]:
-        """A four-stroke cycle needs four-line cards, a two-stroke one two-line cards."""
+        """A four-stroke cycle needs four-line cards, a two-stroke one two-line cards; some need absolute pressures."""
+        cylinder = self.cylinders[index]
         return [
             Fault(("cylinders", index, *path), message)
-            for number, piston in enumerate(self.cylinders[index].pistons)
-            for path, message in piston.cycle_faults(self.cycle, () if number == 0 else ("tandem", number - 1))
+            for number, piston in enumerate(cylinder.pistons)
+            for path, message in piston.indicator_faults(
+                self.cycle_of(cylinder), self.ambient, () if number == 0 else ("tandem", number - 1)
+            )
         ]
+
+    def cycle_of(self, cylinder: Cylinder) -> str:
+        """Return the working cycle of a cylinder: its own, or that of the machine."""
+        return cylinder.cycle or self.cycle
+
+    @property
+    def _common_cycle(self) -> str:
+        """The longest working cycle, after which everything repeats."""
+        return max((self.cycle, *map(self.cycle_of, self.cylinders)), key=CYCLES.__getitem__)
 
     @property
     def revolutions(self) -> int:
-        """Revolutions of the shaft per working cycle: 1 or 2."""
-        return CYCLES[self.cycle]
+        """Revolutions of the shaft until everything repeats: 1, or 2 where any cylinder works in four strokes."""
+        return CYCLES[self._common_cycle]

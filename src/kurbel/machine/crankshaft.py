@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.errors import Fault, RuleError
 from kurbel.keys import Key, Keys, Physical
 from kurbel.units import show
+
+if TYPE_CHECKING:
+    from kurbel.machine import Machine
 
 
 def _length(text: str, symbol: str, required: bool = True, absent: str = "") -> Key:
@@ -42,7 +46,7 @@ class Crankshaft:
         "b": _length("From the middle of the crank pin to bearing B, beside the flywheel", "b"),
         "web_distance": _length("From the middle of the crank pin to the middle of a web", "e"),
         "web_thickness": _length("Thickness of a web along the shaft", "t"),
-        "web_width": _length("Width of a web across the arm", "w"),
+        "web_width": _length("Width of a web across its arm", "w"),
         "pin_diameter": _length("Diameter of the crank pin", "d_z"),
         "pin_length": _length("Length of the crank pin", "l_z"),
         "journal_diameter": _length("Diameter of the journals", "d_j", False, "journals not examined"),
@@ -52,10 +56,10 @@ class Crankshaft:
             Physical("length"), "Middle of the flywheel from bearing B, positive outward", absent="no flywheel"
         ),
         "allowable_bending": Key(
-            Physical("pressure", above=0), "Allowable stress in bending", "k_b", absent="no safety figures"
+            Physical("stress", above=0), "Allowable stress in bending", "k_b", absent="no safety figures"
         ),
         "allowable_torsion": Key(
-            Physical("pressure", above=0), "Allowable stress in torsion", "k_d", absent="no safety figures"
+            Physical("stress", above=0), "Allowable stress in torsion", "k_d", absent="no safety figures"
         ),
     }
 
@@ -101,10 +105,10 @@ class Crankshaft:
             Fault(
                 (name,),
                 f"{show(value, 'length')} puts the bearing inside the web "
-                f"({show(self.web_distance, 'length')} from the pin); measure to the middle of the bearing",
+                f"({show(self._web_end, 'length')} from the pin); measure to the middle of the bearing",
             )
             for name, value in (("a", self.a), ("b", self.b))
-            if value <= self.web_distance
+            if value <= self._web_end
         ]
         if self.flywheel_position <= -(self.a + self.b):
             faults.append(
@@ -114,4 +118,35 @@ class Crankshaft:
                     f"A is the bearing away from the flywheel, {show(self.a + self.b, 'length')} from B",
                 )
             )
+        elif self.flywheel_position <= self._web_end - self.b < 0:
+            faults.append(
+                Fault(
+                    ("flywheel_position",),
+                    f"{show(self.flywheel_position, 'length')} is not between web and bearing B, which leave "
+                    f"{show(self.b - self._web_end, 'length')}; B is the bearing beside the flywheel",
+                )
+            )
         return faults
+
+    @property
+    def _web_end(self) -> float:
+        """Distance in m of the outer face of a web from the middle of the pin."""
+        return self.web_distance + self.web_thickness / 2
+
+
+def strength_obstacle(machine: Machine) -> str:
+    """Return why the strength of a machine's crankshaft cannot be examined, or an empty text."""
+    if machine.crankshaft is None:
+        return "no 'crankshaft' is given; its strength needs the lengths of the throw: 'crankshaft: {a: …, b: …, …}'"
+    if len(machine.cylinders) != 1:
+        return (
+            f"{len(machine.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
+            if machine.cylinders
+            else "no cylinder loads the crankshaft; 'effort' tells a torque and no force on the pin"
+        )
+    cylinder = machine.cylinders[0]
+    if cylinder.mechanism.quick_return or cylinder.mechanism.radial(CrankAngle.of(0.0)) is None:
+        return f"the force on the crank pin of a {cylinder.mechanism.name} is not known; give a slider-crank"
+    if not any(piston.indicator for piston in cylinder.pistons):
+        return "no pressure loads the crankshaft; give 'bore' and 'indicator'"
+    return ""

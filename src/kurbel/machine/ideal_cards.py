@@ -6,8 +6,9 @@ the stroke volume. Exponents are those of p V^n.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Union
 
 from kurbel.errors import Fault, RuleError
 from kurbel.keys import Key, Keys, Number, Physical
@@ -31,6 +32,27 @@ def _order_fault(key: str, high: float, low_name: str, low: float) -> list[Fault
     if high > low:
         return []
     return [Fault((key,), f"{show(high, 'pressure')} is not above the {low_name} pressure ({show(low, 'pressure')})")]
+
+
+def after_polytrope(pressure: float, volume: float, next_volume: float, exponent: float) -> float:
+    """Return P (V/V′)^n: the pressure after a change of volume along P V^n = const; P absolute, V in any unit.
+
+    >>> after_polytrope(1.0, 8.0, 1.0, 1.0)
+    8.0
+    """
+    return (
+        math.exp(exponent * math.log(volume / next_volume)) * pressure
+        if exponent != 1
+        else pressure * volume / next_volume
+    )
+
+
+def _vacuum_fault(lift: float, **pressures: float | None) -> str:
+    """Return what to say of pressures that are not above the perfect vacuum; lift makes them absolute."""
+    for name, pressure in pressures.items():
+        if pressure is not None and pressure + lift <= 0:
+            return f"{name}: {show(pressure, 'pressure')} is not above the vacuum, as p V^n needs"
+    return ""
 
 
 def _raise(faults: list[Fault]) -> None:
@@ -74,9 +96,9 @@ class Steam:
             )
         _raise(faults)
 
-    def cycle_fault(self, cycle: str) -> str:
-        """Return what does not fit the cycle of the machine, or an empty text."""
-        return _two_stroke_only("steam", cycle)
+    def fault_in(self, cycle: str, lift: float) -> str:
+        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
+        return _two_stroke_only("steam", cycle) or _vacuum_fault(lift, admission=self.admission, exhaust=self.exhaust)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,14 +120,22 @@ class Compressor:
     def __post_init__(self) -> None:
         _raise(_order_fault("delivery", self.delivery, "suction", self.suction))
 
-    def cycle_fault(self, cycle: str) -> str:
-        """Return what does not fit the cycle of the machine, or an empty text."""
-        return _two_stroke_only("compressor", cycle)
+    def fault_in(self, cycle: str, lift: float) -> str:
+        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
+        fault = _two_stroke_only("compressor", cycle) or _vacuum_fault(
+            lift, suction=self.suction, delivery=self.delivery
+        )
+        if fault:
+            return fault
+        top = after_polytrope(self.suction + lift, 1 + self.clearance, self.clearance, self.exponent) - lift
+        if self.delivery < top:
+            return ""
+        return f"delivery: the piston compresses to {show(top, 'pressure')} only; such a compressor delivers nothing"
 
 
 _ENGINE_KEYS: Keys = {
     "intake": _pressure("Pressure in the cylinder when compression begins, and while it fills"),
-    "exhaust": _pressure("Pressure while the burnt gas leaves"),
+    "exhaust": _pressure("Pressure while the burnt gas leaves, in a four-stroke cycle", False, "that of the intake"),
     "compression_ratio": Key(Number(above=1), "Largest over smallest volume; or give `clearance`", "ε"),
     "clearance": Key(
         Number(above=0),
@@ -134,14 +164,27 @@ def _clearance(compression_ratio: float | None, clearance: float | None) -> floa
     return clearance
 
 
+def _peak_fault(peak: float | None, card: Otto | Diesel, lift: float) -> str:
+    """Return what to say of a peak below the end of the compression; lift makes the pressures absolute."""
+    compressed = after_polytrope(card.intake + lift, 1 + card.clearance, card.clearance, card.exponent) - lift
+    # as much as rounding of the clearance may take from a peak that is just that pressure
+    if peak is None or peak >= compressed - 1e-9 * abs(compressed):
+        return ""
+    return f"peak: {show(peak, 'pressure')} is below the end of the compression ({show(compressed, 'pressure')})"
+
+
 @dataclass(frozen=True, eq=False)
 class Otto:
-    """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume. Pressures in Pa."""
+    """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume. Pressures in Pa.
+
+    exhaust: pressure of the exhaust stroke of a four-stroke cycle, None for that of the intake; a two-stroke engine
+    changes its gas at the outer dead centre.
+    """
 
     intake: float
-    exhaust: float
     peak: float
     clearance: float
+    exhaust: float | None = None
     exponent: float = AIR_EXPONENT
     expansion_exponent: float = AIR_EXPONENT
 
@@ -151,8 +194,8 @@ class Otto:
     def from_keys(
         cls,
         intake: float,
-        exhaust: float,
         peak: float,
+        exhaust: float | None = None,
         compression_ratio: float | None = None,
         clearance: float | None = None,
         exponent: float = AIR_EXPONENT,
@@ -160,14 +203,23 @@ class Otto:
     ) -> Otto:
         """Return the card that these keys of a machine file describe; raises RuleError."""
         volume = _clearance(compression_ratio, clearance)
-        return cls(intake, exhaust, peak, volume, exponent, expansion_exponent or exponent)
+        return cls(intake, peak, volume, exhaust, exponent, expansion_exponent or exponent)
 
     def __post_init__(self) -> None:
         _raise(_order_fault("peak", self.peak, "intake", self.intake))
 
-    def cycle_fault(self, cycle: str) -> str:
-        """Return an empty text: the card serves both cycles."""
-        return ""
+    @property
+    def leaving(self) -> float:
+        """Pressure of the exhaust stroke in Pa."""
+        return self.intake if self.exhaust is None else self.exhaust
+
+    def fault_in(self, cycle: str, lift: float) -> str:
+        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
+        return (
+            _no_exhaust_stroke(self.exhaust, cycle)
+            or _vacuum_fault(lift, intake=self.intake, exhaust=self.exhaust)
+            or _peak_fault(self.peak, self, lift)
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,9 +231,9 @@ class Diesel:
     """
 
     intake: float
-    exhaust: float
     cut_off: float
     clearance: float
+    exhaust: float | None = None
     peak: float | None = None
     exponent: float = AIR_EXPONENT
     expansion_exponent: float = AIR_EXPONENT
@@ -196,8 +248,8 @@ class Diesel:
     def from_keys(
         cls,
         intake: float,
-        exhaust: float,
         cut_off: float,
+        exhaust: float | None = None,
         peak: float | None = None,
         compression_ratio: float | None = None,
         clearance: float | None = None,
@@ -206,16 +258,34 @@ class Diesel:
     ) -> Diesel:
         """Return the card that these keys of a machine file describe; raises RuleError."""
         volume = _clearance(compression_ratio, clearance)
-        return cls(intake, exhaust, cut_off, volume, peak, exponent, expansion_exponent or exponent)
+        return cls(intake, cut_off, volume, exhaust, peak, exponent, expansion_exponent or exponent)
 
     def __post_init__(self) -> None:
         if self.peak is not None:
             _raise(_order_fault("peak", self.peak, "intake", self.intake))
 
-    def cycle_fault(self, cycle: str) -> str:
-        """Return an empty text: the card serves both cycles."""
+    @property
+    def leaving(self) -> float:
+        """Pressure of the exhaust stroke in Pa."""
+        return self.intake if self.exhaust is None else self.exhaust
+
+    def fault_in(self, cycle: str, lift: float) -> str:
+        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
+        return (
+            _no_exhaust_stroke(self.exhaust, cycle)
+            or _vacuum_fault(lift, intake=self.intake, exhaust=self.exhaust)
+            or _peak_fault(self.peak, self, lift)
+        )
+
+
+def _no_exhaust_stroke(exhaust: float | None, cycle: str) -> str:
+    if exhaust is None or cycle == "four-stroke":
         return ""
+    return "exhaust: a two-stroke engine has no exhaust stroke; leave it out, or write 'cycle: four-stroke' at the top"
 
 
 def _two_stroke_only(card: str, cycle: str) -> str:
     return "" if cycle == "two-stroke" else f"a {card} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
+
+
+IdealCard = Union[Steam, Compressor, Otto, Diesel]

@@ -7,16 +7,16 @@ from typing import ClassVar, NamedTuple, Protocol
 
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.keys import Choice, Key, Keyed, Keys, Number, OneOf, Physical, Points, Record, UnitName
-from kurbel.units import Factor
+from kurbel.units import Factor, show
 
 Point = tuple[float, float]
 
 
 class Chamber(Protocol):
-    """What stands in one end of a cylinder: a card or a trace."""
+    """What stands in one end of a cylinder: a card, an ideal card or a trace."""
 
-    def cycle_fault(self, cycle: str) -> str:
-        """Return what does not fit the cycle of the machine, or an empty text."""
+    def fault_in(self, cycle: str, lift: float) -> str:
+        """Return what does not fit the cycle of the machine, or pressures that `lift` makes absolute (Pa); or ''."""
         ...
 
 
@@ -76,47 +76,61 @@ class Card:
         faults = [
             Fault((), f"the '{name}' line of the {cycle} card is missing") for name in STROKES[cycle] if not given[name]
         ]
-        lines, notes = [], []
-        for index, name in enumerate(STROKES[cycle]):
-            points = given[name]
-            if points:
-                line, line_notes, line_faults = _line(name, points, unit, index % 2)
-                lines.append(line)
-                notes += line_notes
-                faults += line_faults
+        drawn = [(name, points, index % 2) for index, name in enumerate(STROKES[cycle]) if (points := given[name])]
+        faults += [fault for name, points, _ in drawn for fault in cls.faults_of_key(name, points)]
         if interpolate == "polytropic" and clearance is None:
             faults.append(Fault(("interpolate",), "'polytropic' needs the 'clearance' volume over the stroke volume"))
         if faults:
             raise RuleError(*faults)
-        return cls(tuple(lines), interpolate, clearance, tuple(notes))
+        lines = tuple(_line(name, points, unit, start) for name, points, start in drawn)
+        notes = tuple(
+            f"{name}: a point given twice counts once"
+            for (name, points, _), line in zip(drawn, lines)
+            if len(line.fractions) < len(points)
+        )
+        return cls(lines, interpolate, clearance, notes)
 
-    def cycle_fault(self, cycle: str) -> str:
-        """Return what does not fit the cycle of the machine, or an empty text."""
+    @staticmethod
+    def faults_of_key(name: str, value: object) -> list[Fault]:
+        """Return what is wrong with the line under one key, whatever the others say."""
+        return _line_faults(name, value) if isinstance(value, list) else []
+
+    def fault_in(self, cycle: str, lift: float) -> str:
+        """Return what does not fit the cycle of the machine, or what no polytropic line can be drawn through; or ''."""
         wanted = STROKES[cycle]
-        if len(self.lines) == len(wanted):
-            return ""
-        return f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
+        if len(self.lines) != len(wanted):
+            return f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
+        lowest = min(pressure for line in self.lines for pressure in line.pressures)
+        if self.interpolate == "polytropic" and lowest + lift <= 0:
+            return f"{show(lowest, 'pressure')} is not above the vacuum, as p V^n needs; write 'interpolate: linear'"
+        if lowest + lift < 0:
+            return f"{show(lowest, 'pressure')} is below the vacuum, which is at {show(0.0 - lift, 'pressure')}"
+        return ""
 
 
-def _line(name: str, points: list[Point], unit: Factor, start: int) -> tuple[Line, list[str], list[Fault]]:
-    """Bring one line into process order and check that it runs once through the whole stroke."""
+def _runs_forward(points: list[Point]) -> bool:
+    return points[0][0] <= points[-1][0]
+
+
+def _line(name: str, points: list[Point], unit: Factor, start: int) -> Line:
+    """Return one line in process order, its pressures in Pa."""
     up, down = unit
-    faults = [
+    ordered = points if _runs_forward(points) == (start == 0) else points[::-1]
+    kept = [point for i, point in enumerate(ordered) if i == 0 or point != ordered[i - 1]]
+    return Line(name, tuple(x for x, _ in kept), tuple(p * up / down for _, p in kept), start)
+
+
+def _line_faults(name: str, points: list[Point]) -> list[Fault]:
+    """Return what keeps a line from running once through the whole stroke."""
+    return [
         Fault((name, i), f"{x:g} is no fraction of the stroke; fractions run from 0 to 1")
         for i, (x, _) in enumerate(points)
         if not 0 <= x <= 1
-    ]
-    forward = points[0][0] <= points[-1][0]
-    if not faults:
-        faults = _order_faults(name, points, forward)
-    ordered = points if forward == (start == 0) else points[::-1]
-    kept = [point for i, point in enumerate(ordered) if i == 0 or point != ordered[i - 1]]
-    notes = [f"{name}: a point given twice counts once"] if len(kept) < len(ordered) else []
-    line = Line(name, tuple(x for x, _ in kept), tuple(p * up / down for _, p in kept), start)
-    return line, notes, faults
+    ] or _order_faults(name, points)
 
 
-def _order_faults(name: str, points: list[Point], forward: bool) -> list[Fault]:
+def _order_faults(name: str, points: list[Point]) -> list[Fault]:
+    forward = _runs_forward(points)
     fractions = [x for x, _ in points]
     low, high = (fractions[0], fractions[-1]) if forward else (fractions[-1], fractions[0])
     if (low, high) != (0.0, 1.0):
@@ -124,7 +138,7 @@ def _order_faults(name: str, points: list[Point], forward: bool) -> list[Fault]:
     for i in range(1, len(points)):
         if (fractions[i] < fractions[i - 1]) if forward else (fractions[i] > fractions[i - 1]):
             return [Fault((name, i), f"fraction {fractions[i]:g} after {fractions[i - 1]:g}: the line turns back")]
-        if i >= 2 and fractions[i] == fractions[i - 2] and len(set(points[i - 2 : i + 1])) == 3:
+        if i >= 2 and fractions[i] == fractions[i - 2] and points[i - 2] != points[i - 1] != points[i]:
             return [Fault((name, i), f"three points at fraction {fractions[i]:g}; a jump has two")]
     return []
 

@@ -59,6 +59,29 @@ class ConnectingRod:
         """Whether the rod is described by centre of gravity and moment of inertia."""
         return self.center_of_gravity is not None
 
+    def at_crosshead(self, length: float) -> float:
+        """Mass in kg that goes to and fro: the share, or m (1 − a/L) with the length L of the rod in m."""
+        return (
+            self.mass * self.share
+            if self.center_of_gravity is None
+            else self.mass * (1 - self.center_of_gravity / length)
+        )
+
+    def at_pin(self, length: float) -> float:
+        """Mass m a/L in kg that turns with the crank pin; for an exact rod of length L in m."""
+        assert self.center_of_gravity is not None
+        return self.mass * self.center_of_gravity / length
+
+    def excess_inertia(self, length: float) -> float:
+        """I_r − m a (L − a) in kg m²: what the two masses have too little of; for an exact rod of length L in m.
+
+        >>> round(ConnectingRod(2.0, center_of_gravity=0.1, inertia=0.0242).excess_inertia(0.25) * 23000, 1)
+        -133.4
+        """
+        assert self.center_of_gravity is not None
+        assert self.inertia is not None
+        return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
+
 
 @dataclass(frozen=True, eq=False)
 class Masses:
@@ -91,5 +114,10 @@ class Masses:
 
     @property
     def reciprocating(self) -> float:
-        """m in kg: all parts and the connecting rod's share (R 298)."""
-        return self.parts + (self.connecting_rod.mass * self.connecting_rod.share if self.connecting_rod else 0.0)
+        """m in kg: all parts and the connecting rod's share (R 298); an exact rod needs `at_crosshead`."""
+        assert self.connecting_rod is None or not self.connecting_rod.exact
+        return self.at_crosshead(math.inf)
+
+    def at_crosshead(self, rod_length: float) -> float:
+        """m in kg: all parts and what of a connecting rod of this length in m goes to and fro with them."""
+        return self.parts + (self.connecting_rod.at_crosshead(rod_length) if self.connecting_rod else 0.0)

@@ -53,12 +53,13 @@ class Piston:
         """Effective area at the crank end in m²."""
         return math.pi / 4 * (self.bore - self.crank_end_rod) * (self.bore + self.crank_end_rod)
 
-    def cycle_faults(self, cycle: str, path: Path) -> list[Fault]:
-        """Return what of the indicator does not fit the cycle of the machine."""
+    def indicator_faults(self, cycle: str, ambient: float, path: Path) -> list[Fault]:
+        """Return what of the indicator does not fit the cycle of the machine or the ambient pressure in Pa."""
         if self.indicator is None:
             return []
+        lift = 0.0 if self.indicator.absolute else ambient
         return [
             Fault((*path, "indicator", end), message)
             for end, chamber in (("head_end", self.indicator.head_end), ("crank_end", self.indicator.crank_end))
-            if chamber is not None and (message := chamber.cycle_fault(cycle))
+            if chamber is not None and (message := chamber.fault_in(cycle, lift))
         ]

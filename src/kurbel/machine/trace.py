@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from kurbel.errors import Fault, RuleError
 from kurbel.keys import Choice, Count, FilePath, Key, Keys, Physical, Points, UnitName
-from kurbel.machine.angle_points import Point, angle_faults, beyond_cycle
+from kurbel.machine import CYCLES
 from kurbel.units import Factor
 
+if TYPE_CHECKING:
+    from kurbel.machine.trace_samples import Samples
+
+Point = tuple[float, float]
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
 """Word in the machine file -> what stands between two columns."""
 _DECIMALS = {"point": ".", "comma": ","}
@@ -17,22 +21,17 @@ _DECIMALS = {"point": ".", "comma": ","}
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """A measured trace: either `points` of (degrees, pressure) or the `file` to read them from.
+    """A measured trace over one whole cycle.
 
-    unit: factor pair that turns the pressures into Pa; angle_zero: the angle, as the trace counts, of the firing or
-    inner dead centre, in degrees. Columns count from 1; skip_rows: lines above the first figures. The file is read
-    when the pressures are wanted.
+    samples: angles as the trace counts them and pressures in Pa; angle_zero: the angle, as the trace counts, of the
+    firing or inner dead centre, in degrees. Both ends of a cylinder count from the same dead centre, as one encoder on
+    the shaft does; a mirrored trace follows one stroke later. file: where the samples came from, if not from
+    the machine file.
     """
 
-    unit: Factor
-    points: tuple[Point, ...] = ()
-    file: str | None = None
-    angle_column: int = 1
-    pressure_column: int = 2
-    skip_rows: int = 0
-    delimiter: str = ","
-    decimal: str = "."
+    samples: Samples
     angle_zero: float = 0.0
+    file: str | None = None
 
     KEYS: ClassVar[Keys] = {
         "file": Key(FilePath(), "File with a column of angles in degrees and one of pressures; or give `points`"),
@@ -61,34 +60,62 @@ class Trace:
         decimal: str | None = None,
         **columns: int,
     ) -> Trace:
-        """Return the trace that these keys of a machine file describe; raises RuleError."""
-        if file is None and points is None:
-            raise RuleError(Fault((), "'file' or 'points' is missing; write for instance 'file: indicator.csv'"))
+        """Return the trace that these keys of a machine file describe, its file read; raises RuleError."""
         if file is not None and points is not None:
             raise RuleError(Fault(("points",), "'file' and 'points' say the same thing; leave one of them out"))
         described = [*columns, *(("delimiter",) if delimiter else ()), *(("decimal",) if decimal else ())]
-        if points is not None and described:
+        if file is not None:
+            return cls(_from_file(file, unit, delimiter or "comma", decimal or "point", columns), angle_zero, file)
+        if points is None:
+            raise RuleError(Fault((), "'file' or 'points' is missing; write for instance 'file: indicator.csv'"))
+        if described:
             raise RuleError(
                 *(Fault((key,), f"'{key}' describes a file; leave it out beside 'points'") for key in described)
             )
-        between = DELIMITERS.get(delimiter or "comma", delimiter or "")
-        point = _DECIMALS[decimal or "point"]
-        return cls(unit, tuple(points or ()), file, delimiter=between, decimal=point, angle_zero=angle_zero, **columns)
+        return cls(_from_points(points, unit), angle_zero)
 
-    def __post_init__(self) -> None:
-        faults = angle_faults(list(self.points), ("points",)) if self.points else []
-        if self.angle_column == self.pressure_column:
-            faults.append(Fault(("pressure_column",), f"column {self.pressure_column} is that of the angles"))
-        if self.delimiter == self.decimal:
-            faults.append(
-                Fault(
-                    ("decimal",),
-                    "a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'",
-                )
-            )
-        if faults:
-            raise RuleError(*faults)
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was tidied up in the samples."""
+        return self.samples.notes
 
-    def cycle_fault(self, cycle: str) -> str:
-        """Return what does not fit the cycle of the machine, or an empty text; a file is judged when it is read."""
-        return beyond_cycle(self.points[-1][0], cycle) if self.points else ""
+    def fault_in(self, cycle: str, lift: float) -> str:
+        """Return what does not fit the cycle of the machine, or an empty text."""
+        whole = 360.0 * CYCLES[cycle]
+        if self.samples.period == whole:
+            return ""
+        other = next(name for name in CYCLES if name != cycle)
+        covers = f"the trace covers {self.samples.period:g} deg, a {cycle} cycle has {whole:g} deg"
+        return f"{covers}; write 'cycle: {other}' at the top"
+
+
+def _from_file(file: str, unit: Factor, delimiter: str, decimal: str, columns: dict[str, int]) -> Samples:
+    angle, pressure = columns.get("angle_column", 1), columns.get("pressure_column", 2)
+    between, point = DELIMITERS.get(delimiter, delimiter), _DECIMALS[decimal]
+    faults = _column_faults(angle, pressure, between, point)
+    if faults:
+        raise RuleError(*faults)
+    from kurbel.machine.trace_samples import Columns, read_columns, whole_cycle
+
+    layout = Columns(angle, pressure, columns.get("skip_rows", 0), between, point)
+    angles, values, line = read_columns(file, layout)
+    return whole_cycle(angles, values * unit[0] / unit[1], lambda index: Fault(("file",), line(index)))
+
+
+def _column_faults(angle: int, pressure: int, between: str, point: str) -> list[Fault]:
+    faults = []
+    if angle == pressure:
+        faults.append(Fault(("pressure_column",), f"column {pressure} is that of the angles"))
+    if between == point:
+        message = "a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'"
+        faults.append(Fault(("decimal",), message))
+    return faults
+
+
+def _from_points(points: list[Point], unit: Factor) -> Samples:
+    import numpy as np
+
+    from kurbel.machine.trace_samples import whole_cycle
+
+    angles, values = np.array(points, dtype=float).T
+    return whole_cycle(angles, values * unit[0] / unit[1], lambda index: Fault(("points", index), ""))

@@ -53,7 +53,8 @@ class Mechanism:
     5. `crank_angles_at`: the inverse of `coordinate` on the outstroke or the return stroke;
     6. `landmarks`: crank angles in degrees at which its functions bend sharply; searches and quadratures split there.
 
-    It may offer more: `rod_angle` (a connecting rod with S, N, D), closed extremes, transmission angles, `notes`.
+    What else it has it offers by the methods below that answer None here: a connecting rod, a sliding block, a coupler,
+    closed extremes, transmission angles, `notes`. Nobody asks for its class.
     """
 
     KEYS: ClassVar[Keys]
@@ -61,7 +62,7 @@ class Mechanism:
     slides: ClassVar[bool] = True
     swings: ClassVar[bool] = False
     quick_return: ClassVar[bool] = False
-    """Whether its strokes are named working and return stroke (phi_work, c_work_max …) rather than by dead centres."""
+    """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
     guided: ClassVar[bool] = True
     """Whether the side force N rests on a guide; otherwise it bends the piston rod."""
     crank: float
@@ -117,6 +118,16 @@ class Mechanism:
         return 360.0 - self.phi_work
 
     @property
+    def works_outward(self) -> bool:
+        """Whether the outstroke is the working stroke; otherwise the return stroke is."""
+        return True
+
+    @property
+    def turns(self) -> bool:
+        """Whether the output turns on and on, so that it has no return stroke."""
+        return not self.slides and self.swing is None
+
+    @property
     def time_ratio(self) -> float:
         """Time of the outstroke (working stroke) over that of the return stroke, at uniform rotation."""
         return self.phi_work / self.phi_return
@@ -127,6 +138,60 @@ class Mechanism:
 
     def rod_angle(self, angle: CrankAngle) -> tuple[Any, Any] | None:
         """Return (sin ψ, cos ψ) of the connecting rod, or None where there is none."""
+        return None
+
+    @property
+    def has_rod(self) -> bool:
+        """Whether there is a connecting rod on the crank, with rod force S and side force N."""
+        from kurbel.crank_angle import CrankAngle
+
+        return self.rod_angle(CrankAngle.of(0.0)) is not None
+
+    def radial(self, angle: CrankAngle) -> Any | None:
+        """Return D/P, the radial force at the crank pin (positive toward the shaft) over the force at the output."""
+        return None
+
+    def block_slope(self, angle: CrankAngle) -> Any | None:
+        """Return the speed over ω in m of the block that slides on the crank pin's guide, or None without one."""
+        return None
+
+    def pin_force_factor(self, angle: CrankAngle) -> Any | None:
+        """Return the force of that block on the crank pin over P, or None without one."""
+        return None
+
+    @property
+    def pin_area(self) -> float | None:
+        """Projected area of the crank pin in m², or None where its size is not given."""
+        return None
+
+    @property
+    def pin_pressure_bound(self) -> float | None:
+        """Pressure in Pa up to which the sources let such a crank pin go, or None where they are silent."""
+        return None
+
+    def guide_pair_factor(self, angle: CrankAngle) -> Any | None:
+        """Return the force over P on each of two guides that hold the output against tilting, or None."""
+        return None
+
+    def bending_arm(self, angle: CrankAngle) -> Any | None:
+        """Return the arm in m on which N bends the piston rod, or None where it does not, or is not known."""
+        return None
+
+    def coupler_force_factor(self, angle: CrankAngle) -> Any | None:
+        """Return the force in a coupler over the moment on the swinging member in 1/m, or None without one."""
+        return None
+
+    def coupler_path(self, angle: CrankAngle) -> tuple[Any, Any] | None:
+        """Return the way (along, across) the frame in m of a coupler all of whose points move alike, or None."""
+        return None
+
+    def coupler_acceleration(self, angle: CrankAngle) -> tuple[Any, Any] | None:
+        """Return its acceleration (along, across) the frame over ω² in m, or None."""
+        return None
+
+    @property
+    def coupler_inertia(self) -> float | None:
+        """Size over ω² in kg m of the inertia force of that coupler, or None where its mass is not given."""
         return None
 
     def velocity_extremes(self) -> tuple[Extreme, ...]:
@@ -145,6 +210,11 @@ class Mechanism:
     def transmission(self) -> tuple[Extreme, Extreme] | None:
         """Smallest and largest transmission angle in degrees, or None where the word means nothing."""
         return None
+
+    @property
+    def lacks(self) -> tuple[tuple[str, str], ...]:
+        """What could be said of forces with further keys, and the reason why it is not: (what, why)."""
+        return ()
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -189,6 +189,11 @@ class FourBar(Mechanism):
         """Return the coupler's force over the moment on the rocker, 1/(c sin μ) in 1/m."""
         return 1 / (self.rocker * self.loop.at(angle).sin_transmission)
 
+    @property
+    def lacks(self) -> tuple[tuple[str, str], ...]:
+        """Name the inertia of its links."""
+        return (("inertia of coupler and rocker", "kurbel takes no masses on what only swings"),)
+
     def _half_tangents(self, reach: float) -> tuple[float, float]:
         """Return tan of half the angles at the crank's and the rocker's pivot, crank and coupler in line.
 
@@ -232,10 +237,16 @@ class FourBar(Mechanism):
         return math.radians(self.limits[0])
 
     @property
+    def works_outward(self) -> bool:
+        """Whether θ rises on the slower swing, which is the working one."""
+        inner, outer = self.dead_centres()
+        return outer - inner >= 180.0
+
+    @property
     def phi_work(self) -> float:
         """Crank rotation of the slower swing in degrees."""
         inner, outer = self.dead_centres()
-        return max(outer - inner, 360.0 - (outer - inner))
+        return outer - inner if self.works_outward else 360.0 - (outer - inner)
 
     def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
         """Return the crank angles in degrees where θ − θ_min (n,) in rad is passed, θ rising (outstroke) or falling."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.keys import Keys
+from kurbel.keys import Key, Keys, Physical
 from kurbel.mechanisms import Extreme, Mechanism, check_lengths
+from kurbel.mechanisms.crank_pin import NO_PIN, PIN_KEYS, projected_area
 from kurbel.mechanisms.slider_crank import CRANK_KEYS, one_of
 
 if TYPE_CHECKING:
@@ -17,23 +18,47 @@ if TYPE_CHECKING:
 class ScotchYoke(Mechanism):
     """A crank pin whose block slides in a yoke square to the stroke line.
 
-    crank: R in m. The force on the pin is the force on the piston; there is no rod and no side force of one.
-    Raises RuleError for a crank that is not positive.
+    crank: R in m. The force on the pin is the force on the piston; there is no rod and no side force of one. But the
+    pin stands R sin φ beside the stroke line, and the yoke tilts unless two guides hold it.
+    guide_length: their distance in m along the stroke; pin_diameter, pin_length in m; None where they are not known.
+    Raises RuleError for lengths that are not positive.
     """
 
     crank: float
+    guide_length: float | None = None
+    pin_diameter: float | None = None
+    pin_length: float | None = None
 
     name: ClassVar[str] = "scotch-yoke"
-    KEYS: ClassVar[Keys] = CRANK_KEYS
+    KEYS: ClassVar[Keys] = {
+        **CRANK_KEYS,
+        "guide_length": Key(
+            Physical("length", above=0),
+            "Distance along the stroke of the two guides that keep the yoke from tilting",
+            "l_g",
+            absent="no force on the guides",
+        ),
+        **PIN_KEYS,
+    }
 
     @classmethod
-    def from_keys(cls, crank: float | None = None, stroke: float | None = None) -> ScotchYoke:
+    def from_keys(
+        cls,
+        crank: float | None = None,
+        stroke: float | None = None,
+        guide_length: float | None = None,
+        pin_diameter: float | None = None,
+        pin_length: float | None = None,
+    ) -> ScotchYoke:
         """Return the Scotch yoke that these keys of a machine file describe; raises RuleError."""
         one_of(("crank", crank), ("stroke", stroke), hint="crank: 400 mm")
-        return cls(crank if crank is not None else (stroke or 0.0) / 2)
+        return cls(crank if crank is not None else (stroke or 0.0) / 2, guide_length, pin_diameter, pin_length)
 
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank)
+        if self.guide_length is not None:
+            check_lengths(guide_length=self.guide_length)
+        projected_area(self.pin_diameter, self.pin_length)
 
     @property
     def stroke(self) -> float:
@@ -63,6 +88,30 @@ class ScotchYoke(Mechanism):
     def pin_force_factor(self, angle: CrankAngle) -> Any:
         """Return the force on the crank pin over P: 1, of the shape of the angle."""
         return angle.sin * 0 + 1.0
+
+    def radial(self, angle: CrankAngle) -> Any:
+        """Return D/P = cos φ, R 302 with ψ = 0."""
+        return angle.cos
+
+    def guide_pair_factor(self, angle: CrankAngle) -> Any | None:
+        """Return R sin φ/l_g: the couple of P on piston and pin, over the distance of the guides; None without it."""
+        return None if self.guide_length is None else self.crank / self.guide_length * angle.sin
+
+    @property
+    def pin_area(self) -> float | None:
+        """d_z l_z in m²."""
+        return projected_area(self.pin_diameter, self.pin_length)
+
+    @property
+    def pin_pressure_bound(self) -> float:
+        """200 kgf/cm², to which the pressure on such a pin may go, R p. 617."""
+        return 200 * 98066.5
+
+    @property
+    def lacks(self) -> tuple[tuple[str, str], ...]:
+        """Name the guides and the pin, where their sizes are not given."""
+        guides = () if self.guide_length is not None else (("force on the guides", "no guide_length given"),)
+        return guides if self.pin_area is not None else (*guides, NO_PIN)
 
     def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
         """Return φ = 2 arctan √(x/(2R − x)) in degrees, and 360° less on the return stroke."""

@@ -14,6 +14,7 @@ from kurbel.mechanisms import Extreme, Mechanism, fan
 from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.units import show
 
+_INFINITE = (("infinite", math.inf),)
 CRANK_KEYS: Keys = {
     "crank": Key(Physical("length", above=0), "Crank radius; or give `stroke`", "R"),
     "stroke": Key(Physical("length", above=0), "Stroke; or give `crank`", "s"),
@@ -38,11 +39,11 @@ class SliderCrank(Mechanism):
     KEYS: ClassVar[Keys] = {
         **CRANK_KEYS,
         "rod": Key(
-            Physical("length", above=0, words=(("infinite", math.inf),)),
+            Physical("length", above=0, words=_INFINITE),
             "Length of the connecting rod, or `infinite`; or give `rod_ratio`",
             "L",
         ),
-        "rod_ratio": Key(Number(above=1, words=(("infinite", math.inf),)), "L/R; or give `rod`", "L/R"),
+        "rod_ratio": Key(Number(above=1, words=_INFINITE), "L/R; or give `rod`", "L/R"),
         "offset": Key(
             Physical("length"),
             "Offset of the stroke line from the shaft, positive toward the side of the outstroke",
@@ -118,8 +119,9 @@ class SliderCrank(Mechanism):
         if math.isinf(self.rod):
             return 1.0, 1.0
         beyond, within = self._gaps
-        lam, eps = self.lam, self.offset / self.rod
-        return math.sqrt((1 + lam - eps) * (1 + lam + eps)), math.sqrt(beyond * within)
+        # from the lengths: with a short crank and a large offset L + R − e nearly cancels
+        above, below = (math.fsum((self.rod, self.crank, sign * self.offset)) / self.rod for sign in (1, -1))
+        return math.sqrt(above * below), math.sqrt(beyond * within)
 
     @property
     def stroke(self) -> float:

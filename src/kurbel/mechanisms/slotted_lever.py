@@ -11,6 +11,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.errors import Fault, RuleError
 from kurbel.keys import Key, Keys, Physical
 from kurbel.mechanisms import Extreme, Mechanism, Swing, check_lengths, fan
+from kurbel.mechanisms.crank_pin import NO_PIN, PIN_KEYS, projected_area
 from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
 from kurbel.units import show
 
@@ -32,6 +33,7 @@ class SlottedLever(Mechanism):
     For e > r the lever swings; for e < r it turns fully, which is Whitworth's quick return.
     link: m, `math.inf` for the fork head (x = R_l sin θ); otherwise the connecting link from E to the ram, which runs
     ahead of E. ram_height: h of the ram's line above D, by default half-way between highest and lowest point of E.
+    pin_diameter, pin_length: of the crank pin in m, None where they are not known.
     Raises RuleError for e = r, and for a link that does not reach the ram or gets into line with the lever.
     """
 
@@ -40,6 +42,8 @@ class SlottedLever(Mechanism):
     lever: float
     link: float = math.inf
     ram_height: float | None = None
+    pin_diameter: float | None = None
+    pin_length: float | None = None
 
     name: ClassVar[str] = "slotted-lever"
     swings: ClassVar[bool] = True
@@ -60,10 +64,12 @@ class SlottedLever(Mechanism):
             "h",
             absent="half-way between the highest and the lowest point of the lever's end",
         ),
+        **PIN_KEYS,
     }
 
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
+        projected_area(self.pin_diameter, self.pin_length)
         if self.crank == self.frame:
             same = show(self.crank, "length")
             message = f"{same} is also the crank: the pin would pass through the lever's pivot"
@@ -235,6 +241,22 @@ class SlottedLever(Mechanism):
         lever = self._lever_at(angle)
         return self.lever / max(self.crank, self.frame) * self._ram.lead(lever.sin, lever.cos) / lever.reach
 
+    def radial(self, angle: CrankAngle) -> Any:
+        """Return D/P = −(force on the pin over P) (e sin φ)/ρ: the part of that force toward the shaft."""
+        lever, frame = self._lever_at(angle), self._shares[1]
+        return -self.pin_force_factor(angle) * (frame * angle.sin / lever.reach)
+
+    @property
+    def pin_area(self) -> float | None:
+        """d_z l_z in m²."""
+        return projected_area(self.pin_diameter, self.pin_length)
+
+    @property
+    def lacks(self) -> tuple[tuple[str, str], ...]:
+        """Name the lever, and the pin where its size is not given."""
+        lever = ("inertia of the lever", "kurbel takes masses on the ram only")
+        return (lever,) if self.pin_area is not None else (lever, NO_PIN)
+
     def block_slope(self, angle: CrankAngle) -> Any:
         """Return dρ/dφ = −r e sin φ/ρ in m: times ω, the speed at which the block slides along the lever."""
         _, frame, _ = self._shares
@@ -281,7 +303,7 @@ class SlottedLever(Mechanism):
     @property
     def notes(self) -> tuple[str, ...]:
         """Say that the lever turns fully, where it does."""
-        whitworth = "the frame is shorter than the crank: the lever turns fully (Whitworth quick return)"
+        whitworth = "The frame is shorter than the crank: the lever turns fully (Whitworth quick return)."
         return (whitworth,) if self.rotates else ()
 
 

@@ -66,6 +66,11 @@ class YokeFrame(SliderCrank):
         return None if self.gland is None else self.gland + self.coordinate(angle)
 
     @property
+    def lacks(self) -> tuple[tuple[str, str], ...]:
+        """Name the bending of the piston rod, where its arm is not known."""
+        return () if self.gland is not None else (("bending of the piston rod", "no gland given"),)
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """Say where N goes."""
-        return ("there is no crosshead guide: the side force N bends the piston rod (R p. 616)",)
+        return ("There is no crosshead guide: the side force N bends the piston rod (R p. 616).",)

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.errors import UsageError
-from kurbel.machine import Cylinder, Machine
-from kurbel.solver.friction import ring_force
-from kurbel.solver.gas import PistonGas
-from kurbel.solver.grid import ascending
+from kurbel.machine import CYCLES, Cylinder, Machine
+from kurbel.mechanisms import fan
+from kurbel.solver.grid import cycle_breaks
 from kurbel.solver.jet import jet_angle
 from kurbel.solver.state import GRAVITY, State
+
+if TYPE_CHECKING:
+    from kurbel.machine.resistance import RamForce
+    from kurbel.solver.gas import PistonGas
+    from kurbel.solver.rod import ExactRod
 
 Array = NDArray[np.float64]
 
@@ -23,7 +28,7 @@ Array = NDArray[np.float64]
 class Drive:
     """A cylinder of a machine: masses, weights, pressures and friction as the state needs them.
 
-    cycle: degrees of crank angle per working cycle, 360 or 720; omega: rad/s or None.
+    revolutions, cycle: turns and degrees of crank angle per working cycle of this cylinder; omega: rad/s or None.
     """
 
     def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
@@ -31,7 +36,8 @@ class Drive:
         self.cylinder = cylinder
         self.name = cylinder.name
         self.mechanism = cylinder.mechanism
-        self.cycle = 360.0 * machine.revolutions
+        self.revolutions = CYCLES[machine.cycle_of(cylinder)]
+        self.cycle = 360.0 * self.revolutions
 
     @cached_property
     def omega(self) -> float | None:
@@ -42,11 +48,23 @@ class Drive:
     def mass(self) -> float:
         """Reciprocating mass in kg, 0 without masses."""
         masses = self.cylinder.masses
-        if masses and masses.connecting_rod and masses.connecting_rod.exact:
-            raise UsageError(
-                "a connecting rod with 'center_of_gravity' is read and checked, but nothing computes it yet"
-            )
-        return masses.reciprocating if masses else 0.0
+        return masses.at_crosshead(getattr(self.mechanism, "rod", math.inf)) if masses else 0.0
+
+    @cached_property
+    def rod(self) -> ExactRod | None:
+        """The connecting rod, where it is described by centre of gravity and moment of inertia."""
+        masses = self.cylinder.masses
+        if not (masses and masses.connecting_rod and masses.connecting_rod.exact):
+            return None
+        from kurbel.solver.rod import ExactRod
+
+        length = getattr(self.mechanism, "rod", math.inf)
+        return ExactRod(masses.connecting_rod, length, self.mechanism.crank, self.omega, self._incline)
+
+    @property
+    def _incline(self) -> CrankAngle | None:
+        inclination = self.cylinder.inclination
+        return None if inclination is None else CrankAngle.of(inclination)
 
     @property
     def has_inertia(self) -> bool:
@@ -56,9 +74,9 @@ class Drive:
     @cached_property
     def weight(self) -> tuple[float, float] | None:
         """Weight of the reciprocating masses in N along the stroke line and on the guide; None where it is left out."""
-        if self.cylinder.inclination is None or self.cylinder.masses is None:
+        incline = self._incline
+        if incline is None or self.cylinder.masses is None:
             return None
-        incline = CrankAngle.of(self.cylinder.inclination)
         return self.mass * GRAVITY * incline.sin, self.mass * GRAVITY * incline.cos
 
     @property
@@ -69,11 +87,12 @@ class Drive:
     @cached_property
     def gas(self) -> tuple[PistonGas, ...]:
         """Pressures on the pistons that have an indicator."""
-        return tuple(
-            PistonGas(piston, self.mechanism, self.cycle, self.machine.ambient)
-            for piston in self.cylinder.pistons
-            if piston.indicator
-        )
+        indicated = [piston for piston in self.cylinder.pistons if piston.indicator]
+        if not indicated:
+            return ()
+        from kurbel.solver.gas import PistonGas
+
+        return tuple(PistonGas(piston, self.mechanism, self.cycle, self.machine.ambient) for piston in indicated)
 
     @property
     def own_gas(self) -> PistonGas | None:
@@ -82,8 +101,21 @@ class Drive:
 
     @cached_property
     def has_force(self) -> bool:
-        """Whether any force acts along the stroke line."""
-        return bool(self.gas) or self.has_inertia or self.weight is not None
+        """Whether any force acts along the stroke line, or a moment on what swings."""
+        return bool(self.gas) or self.has_inertia or self.weight is not None or self.resistance is not None
+
+    @property
+    def resistance(self) -> RamForce | None:
+        """What the output works against: a force on what slides, a moment on what only swings."""
+        return self.cylinder.ram_force or self.cylinder.moment
+
+    @cached_property
+    def resistance_work(self) -> float | None:
+        """Work in J per cycle that the resistance takes out, negative; None without one."""
+        if self.resistance is None:
+            return None
+        strokes = self.resistance.work if self.mechanism.turns else self.resistance.work + self.resistance.back
+        return -strokes * self.mechanism.stroke * self.revolutions
 
     @cached_property
     def crosshead_friction(self) -> float:
@@ -95,7 +127,11 @@ class Drive:
     def ring_force(self) -> float:
         """Friction force of the piston rings in N; 0 without them."""
         friction = self.cylinder.friction
-        return ring_force(friction.rings, self.cylinder.pistons[0].bore) if friction and friction.rings else 0.0
+        if not (friction and friction.rings):
+            return 0.0
+        from kurbel.solver.friction import ring_force
+
+        return ring_force(friction.rings, self.cylinder.pistons[0].bore)
 
     @property
     def has_friction(self) -> bool:
@@ -112,12 +148,18 @@ class Drive:
 
     def breaks(self) -> Array:
         """Return the crank angles in degrees that cut the cycle into smooth pieces, from 0 to the full cycle."""
-        landmarks = np.array(
-            [*self.mechanism.dead_centres(), *self.mechanism.landmarks(), *np.arange(0.0, 360.0, 45.0)]
-        )
-        turns = [np.mod(landmarks, 360.0) + 360.0 * turn for turn in range(self.machine.revolutions)]
-        angles = np.concatenate([*turns, *(start for gas in self.gas for start in gas.starts), [self.cycle]])
-        # two angles that differ by rounding only would leave a piece without width
-        angles = ascending(angles, apart=1e-10)
-        angles[-1] = self.cycle
-        return angles
+        starts = [start for gas in self.gas for start in gas.starts]
+        return cycle_breaks(self.mechanism, self.cycle, [*starts, *self._near_locking()])
+
+    def _near_locking(self) -> Iterator[Array]:
+        """Yield angles, ever denser, round those at which a driven crosshead comes nearest to locking itself.
+
+        There 1/(cos ψ − f |sin ψ|) of D 3 has a pole beside the real axis, at √(2 left/((tan ψ + f) λ)) from it.
+        """
+        for centre in (90.0, 270.0) if self.crosshead_friction else ():
+            sin_psi, cos_psi = self.mechanism.rod_angle(CrankAngle.of(centre)) or (0.0, 1.0)
+            left = cos_psi - self.crosshead_friction * abs(sin_psi)
+            if left > 0 and sin_psi:
+                bend = (abs(sin_psi) / cos_psi + self.crosshead_friction) * getattr(self.mechanism, "lam", 1.0)
+                near = np.array(fan(centre, math.degrees(math.sqrt(2 * left / bend))))
+                yield from (near + turn for turn in np.arange(0.0, self.cycle, 360.0))

@@ -9,15 +9,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
 from kurbel.mechanisms import Extreme
 from kurbel.solver.drive import Drive
-from kurbel.solver.friction import redtenbacher_loss
-from kurbel.solver.grid import Extremes, Grid, Sampled, distinct_angles, extremes, roots, sign_changes
+from kurbel.solver.grid import Extremes, Grid, Sampled, distinct_angles, extremes, reversals, roots, sign_changes
 from kurbel.solver.motion import Motion
 from kurbel.solver.state import State
 
 Array = NDArray[np.float64]
+
+
+_SEARCHED = ("P", "P_start", "S", "N", "T", "F_pin", "N_pair", "M_bend", "F_coupler")
+"""Quantities of the state whose extremes are searched together."""
 
 
 class CylinderForces:
@@ -38,7 +42,7 @@ class CylinderForces:
         return self.drive.at(np.asarray(degrees, dtype=float))
 
     @cached_property
-    def _grid(self) -> Grid:
+    def grid(self) -> Grid:
         """The cycle in smooth pieces, cut also where the guide force changes sides, if friction makes that a kink."""
         grid = Grid(self.drive.breaks())
         if not self.drive.crosshead_friction:
@@ -51,11 +55,11 @@ class CylinderForces:
 
     @cached_property
     def _samples(self) -> State:
-        return self.drive.jets_at(self._grid.degrees, self._grid.within, self._grid.beyond)
+        return self.drive.jets_at(self.grid.degrees, self.grid.within, self.grid.beyond)
 
     @cached_property
     def _force_extremes(self) -> dict[str, Extremes]:
-        names = [name for name in ("P", "P_start", "S", "N", "T") if getattr(self._samples, name) is not None]
+        names = [name for name in _SEARCHED if getattr(self._samples, name) is not None]
 
         def sampled(state: State) -> dict[str, Sampled]:
             shape = state.phi.shape
@@ -70,10 +74,10 @@ class CylinderForces:
         def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
             return sampled(self.drive.jets_at(degrees, within))
 
-        return extremes(self._grid, sampled(self._samples), evaluate)
+        return extremes(self.grid, sampled(self._samples), evaluate)
 
     def extremes_of(self, column: str) -> Extremes | None:
-        """Return the extremes in N of `P`, `P_start`, `P_inertia`, `S`, `N` or `T`, None where it is left out."""
+        """Return the extremes of `P_inertia` or of one of the searched quantities in SI, None where it is left out."""
         if column == "P_inertia":
             return self._inertia_extremes
         return self._force_extremes.get(column) if self.drive.has_force else None
@@ -89,15 +93,14 @@ class CylinderForces:
 
     @cached_property
     def phi_reversal(self) -> tuple[float, ...] | None:
-        """Druckwechsel: crank angles in degrees at which P changes sign, through zero or by a jump."""
-        if not self.drive.has_force:
+        """Druckwechsel: crank angles in degrees at which P takes the other sign, through zero or by a jump."""
+        force = self._samples.P if self.drive.has_force else None
+        if force is None:
             return None
-        force = self._samples.P
-        values = np.broadcast_to(getattr(force, "value", force), self._grid.degrees.shape)
-        inside = roots(lambda phi, within: _value(self.drive.jets_at(phi, within).P), sign_changes(self._grid, values))
-        before, after = values[:, -1], np.roll(values[:, 0], -1)
-        jumps = self._grid.breaks[1:][before * after < 0]
-        return distinct_angles(np.concatenate((inside, jumps)), self.drive.cycle)
+        values = np.broadcast_to(_value(force), self.grid.degrees.shape)
+        crossings, steps = reversals(self.grid, values)
+        inside = roots(lambda phi, within: _value(self.drive.jets_at(phi, within).P), crossings)
+        return distinct_angles(np.concatenate((inside, steps)), self.drive.cycle)
 
     # work
 
@@ -125,7 +128,7 @@ class CylinderForces:
     def power(self) -> float | None:
         """Indicated power in W; None without a speed or at rest."""
         speed = self.drive.machine.speed
-        return None if self.work is None or not speed else self.work * speed / self.drive.machine.revolutions
+        return None if self.work is None or not speed else self.work * speed / self.drive.revolutions
 
     @cached_property
     def mean_pressure(self) -> float | None:
@@ -134,11 +137,21 @@ class CylinderForces:
         return None if gas is None else gas.work / gas.swept_volume
 
     @cached_property
+    def work_sensitivity(self) -> float | None:
+        """Change of the indicated work of the measured traces if they are put 0.1° later, over that work.
+
+        An indicator's dead centre is seldom known better. None without a trace.
+        """
+        traced = [gas.traced for gas in self.drive.gas if gas.traced]
+        work = math.fsum(work for work, _ in traced)
+        return math.radians(0.1) * math.fsum(by_angle for _, by_angle in traced) / work if work else None
+
+    @cached_property
     def crosshead_work(self) -> float | None:
         """∮ f |N| |dx| in J per cycle."""
         if not self.drive.has_force or not self.drive.crosshead_friction:
             return 0.0 if self._has_crosshead else None
-        return self._grid.integral(self._samples.crosshead_power.value)
+        return self.grid.integral(self._samples.crosshead_power.value)
 
     @property
     def _has_crosshead(self) -> bool:
@@ -151,7 +164,7 @@ class CylinderForces:
         friction = self.drive.cylinder.friction
         if friction is None or friction.rings is None:
             return None
-        return self.drive.ring_force * 2 * self.motion.stroke * self.drive.machine.revolutions
+        return self.drive.ring_force * 2 * self.drive.mechanism.stroke * self.drive.revolutions
 
     @cached_property
     def friction_work(self) -> float | None:
@@ -160,12 +173,39 @@ class CylinderForces:
         return math.fsum(given) if given and self.drive.has_force else None
 
     @cached_property
-    def W(self) -> float | None:
-        """Mean tangential force in N over the cycle: what is left of the indicated work over the way of the pin."""
+    def resistance_work(self) -> float | None:
+        """Work in J per cycle of what the ram, or a swinging output, works against; negative."""
+        return self.drive.resistance_work
+
+    @cached_property
+    def work_left(self) -> float | None:
+        """Work in J per cycle that reaches the shaft: indicated, less friction and what the output works against."""
         if not self.drive.has_force:
             return None
-        way = 2 * math.pi * self.drive.mechanism.crank * self.drive.machine.revolutions
-        return math.fsum((self.work or 0.0, -(self.friction_work or 0.0))) / way
+        return math.fsum((self.work or 0.0, -(self.friction_work or 0.0), self.resistance_work or 0.0))
+
+    @cached_property
+    def pin_pressure(self) -> Extreme | None:
+        """Largest pressure in Pa of the sliding block on the crank pin, over d_z l_z; None without a pin's size."""
+        found, area = self._force_extremes.get("F_pin") if self.drive.has_force else None, self.drive.mechanism.pin_area
+        if found is None or area is None:
+            return None
+        largest = max(found, key=lambda extreme: abs(extreme.value))
+        return Extreme(abs(largest.value) / area, largest.degrees)
+
+    @cached_property
+    def coupler_inertia(self) -> float | None:
+        """Inertia force in N of the coupler, m v²/R, turning with the cranks; None without its mass or a speed."""
+        inertia, omega = self.drive.mechanism.coupler_inertia, self.drive.omega
+        return None if inertia is None or omega is None else inertia * omega**2
+
+    @cached_property
+    def W(self) -> float | None:
+        """Mean tangential force in N over the cycle: what is left of the indicated work over the way of the pin."""
+        if self.work_left is None:
+            return None
+        way = 2 * math.pi * self.drive.mechanism.crank * self.drive.revolutions
+        return self.work_left / way
 
     @cached_property
     def loss_crosshead(self) -> float | None:
@@ -176,9 +216,11 @@ class CylinderForces:
     def loss_crosshead_redtenbacher(self) -> float | None:
         """½ λ f, D 7."""
         lam = getattr(self.drive.mechanism, "lam", None)
-        return (
-            redtenbacher_loss(lam, self.drive.crosshead_friction) if self._has_crosshead and lam is not None else None
-        )
+        if not self._has_crosshead or lam is None:
+            return None
+        from kurbel.solver.friction import redtenbacher_loss
+
+        return redtenbacher_loss(lam, self.drive.crosshead_friction)
 
     @cached_property
     def loss_rings(self) -> float | None:
@@ -187,15 +229,19 @@ class CylinderForces:
 
     @cached_property
     def energy_residual(self) -> float | None:
-        """(∮ T R dφ − indicated work + friction work) over ∮ |T| R dφ: quadrature against closed work."""
-        if not self.drive.has_force:
+        """(∮ T R dφ − indicated work + other work) over ∮ |T| R dφ: a second, finer quadrature against closed work.
+
+        The work of friction is itself a quadrature; on the halved pieces its error would show.
+
+        With a measured trace at equal angles the quadrature follows the straight lines between the samples, the
+        indicated work the trapezoid rule: the residual then shows what the spacing of the samples leaves open.
+        """
+        if self.work_left is None:
             return None
-        torque = _value(self._samples.M)
-        turnover = self._grid.integral(np.abs(torque))
-        if not turnover:
-            return 0.0
-        left = math.fsum((self._grid.integral(torque), -(self.work or 0.0), self.friction_work or 0.0))
-        return left / turnover
+        grid = self.grid.halved()
+        torque = State(self.drive, CrankAngle.of(grid.degrees, grid.beyond), grid.within).M
+        turnover = grid.integral(np.abs(torque))
+        return (grid.integral(torque) - self.work_left) / turnover if turnover else 0.0
 
 
 def _value(quantity: Any) -> Any:

@@ -1,4 +1,4 @@
-"""The 16-point Gauss-Legendre rule."""
+"""The Gauss-Legendre rule of 16 points, and rules for narrow pieces."""
 
 from __future__ import annotations
 
@@ -16,3 +16,6 @@ HALF_RULE = (
 
 NODES = tuple(-node for node, _ in reversed(HALF_RULE)) + tuple(node for node, _ in HALF_RULE)
 WEIGHTS = tuple(weight for _, weight in reversed(HALF_RULE)) + tuple(weight for _, weight in HALF_RULE)
+LOBATTO = (-1.0, -0.4472135954999579, 0.4472135954999579, 1.0), (1 / 6, 5 / 6, 5 / 6, 1 / 6)
+SIMPSON = (-1.0, 0.0, 1.0), (1 / 3, 4 / 3, 1 / 3)
+"""Nodes and weights for narrow pieces, both ends included: exact for polynomials of degree 5 and of degree 3."""

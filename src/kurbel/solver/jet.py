@@ -61,6 +61,11 @@ class Jet:
         quotient = other / self.value
         return Jet(quotient, -quotient * self.slope / self.value)
 
+    def __pow__(self, exponent: Any) -> Jet:
+        """Return the power of a positive jet; exponent: a number or an array of constants."""
+        power = self.value**exponent
+        return Jet(power, exponent * (power / self.value) * self.slope)
+
     def __abs__(self) -> Jet:
         sign = np.where(self.value >= 0, 1.0, -1.0)
         return Jet(self.value * sign, self.slope * sign)
@@ -76,11 +81,21 @@ class Jet:
         root = np.sqrt(self.value)
         return Jet(root, self.slope / (2 * root))
 
+    def bearing(self, cos: Jet) -> Jet:
+        """Return the direction of (cos, self) in degrees, as `arithmetic.bearing`."""
+        turning = (self.slope * cos.value - cos.slope * self.value) / (self.value**2 + cos.value**2)
+        return Jet(np.degrees(np.arctan2(self.value, cos.value)), np.degrees(turning))
+
     @staticmethod
     def where(condition: Any, value: Any, otherwise: Any) -> Jet:
         """Return the jet that is `value` where the condition holds, and `otherwise` elsewhere."""
         first, second = (x if isinstance(x, Jet) else Jet(x, 0.0) for x in (value, otherwise))
         return Jet(np.where(condition, first.value, second.value), np.where(condition, first.slope, second.slope))
+
+
+def once_each(within: Array) -> Array:
+    """Return the angles of pieces (n, 1) that a grid has spread over its nodes, or (n,) angles as they are."""
+    return within[:, :1] if within.ndim == 2 and within.strides[1] == 0 else within
 
 
 def jet_angle(degrees: Array, beyond: Array | float = 0.0) -> CrankAngle:

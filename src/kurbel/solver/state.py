@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
+from kurbel.solver.jet import once_each
+from kurbel.solver.members import Members
 
 if TYPE_CHECKING:
     from kurbel.solver.drive import Drive
@@ -18,7 +20,7 @@ Array = NDArray[np.float64]
 GRAVITY = 9.80665
 
 
-class State:
+class State(Members):
     """A cylinder at crank angles (n,); its attributes are named by the ids of the columns, in SI, each of shape (n,).
 
     angle: the crank angles; with jets for sine and cosine every quantity becomes a jet with its slope by φ.
@@ -30,7 +32,7 @@ class State:
         self.drive = drive
         self.angle = angle
         self.within = angle.degrees if within is None else within
-        self._inside = self if within is None else State(drive, CrankAngle.of(within))
+        self._inside = self if within is None else State(drive, CrankAngle.of(once_each(within)))
 
     @property
     def phi(self) -> Array:
@@ -39,28 +41,33 @@ class State:
 
     @cached_property
     def x(self) -> Any:
-        """Displacement in m."""
-        return self.drive.mechanism.coordinate(self.angle)
+        """Displacement in m; of what only swings, None."""
+        return self.drive.mechanism.coordinate(self.angle) if self.drive.mechanism.slides else None
+
+    @property
+    def way(self) -> Any:
+        """Displacement in m from the inner dead centre, wherever the book counts x from: what the chambers see."""
+        return self.x - self.drive.mechanism.start
 
     @cached_property
     def slope(self) -> Any:
-        """dx/dφ in m per radian."""
+        """dx/dφ in m per radian; of what only swings, dθ/dφ."""
         return self.drive.mechanism.slope(self.angle)
 
     @cached_property
     def curvature(self) -> Any:
-        """d²x/dφ² in m per radian squared."""
+        """d²x/dφ² in m per radian squared; of what only swings, d²θ/dφ²."""
         return self.drive.mechanism.curvature(self.angle)
 
     @cached_property
     def c(self) -> Any:
         """Velocity in m/s."""
-        return None if self.drive.omega is None else self.slope * self.drive.omega
+        return self._at_speed(self.slope, 1) if self.drive.mechanism.slides else None
 
     @cached_property
     def b(self) -> Any:
         """Acceleration in m/s² at uniform rotation."""
-        return None if self.drive.omega is None else self.curvature * self.drive.omega**2
+        return self._at_speed(self.curvature, 2) if self.drive.mechanism.slides else None
 
     @cached_property
     def _rod(self) -> tuple[Any, Any] | None:
@@ -73,26 +80,28 @@ class State:
 
     @cached_property
     def direction(self) -> Array:
-        """+1 on the outstroke, −1 on the return stroke, shape (n,)."""
+        """+1 on the outstroke, −1 on the return stroke, shape (n,); +1 for what turns on and on."""
+        if self.drive.mechanism.turns:
+            return np.ones_like(self.within)
         inner, outer = self.drive.mechanism.dead_centres()
-        return np.where(np.mod(self.within - inner, 360.0) < outer - inner, 1.0, -1.0)
+        return np.where(np.mod(once_each(self.within) - inner, 360.0) < outer - inner, 1.0, -1.0)
 
     @cached_property
     def p_head(self) -> Any:
         """Gauge pressure at the head end of the cylinder's own piston in Pa."""
         gas = self.drive.own_gas
-        return gas.head(self.x, self.within) if gas and gas.head else None
+        return gas.head(self.way, self.angle, self.within) if gas and gas.head else None
 
     @cached_property
     def p_crank(self) -> Any:
         """Gauge pressure at the crank end of the cylinder's own piston in Pa."""
         gas = self.drive.own_gas
-        return gas.crank(self.x, self.within) if gas and gas.crank else None
+        return gas.crank(self.way, self.angle, self.within) if gas and gas.crank else None
 
     @cached_property
     def P_gas(self) -> Any:
         """Force of gas, steam or water on all pistons in N, R 296."""
-        return sum(gas.force(self.x, self.within) for gas in self.drive.gas) if self.drive.gas else None
+        return sum(gas.force(self.way, self.angle, self.within) for gas in self.drive.gas) if self.drive.gas else None
 
     @cached_property
     def P_inertia(self) -> Any:
@@ -106,13 +115,32 @@ class State:
         return np.full_like(self.within, weight[0]) if weight else None
 
     @cached_property
+    def _resistance(self) -> Any:
+        """What the output works against, in N or N m, against the motion."""
+        resistance = self.drive.resistance
+        if resistance is None:
+            return None
+        working = self.direction == (1.0 if self.drive.mechanism.works_outward else -1.0)
+        return -self.direction * np.where(working, resistance.work, resistance.back)
+
+    @property
+    def P_ram(self) -> Any:
+        """Force on the ram against its motion in N."""
+        return self._resistance if self.drive.mechanism.slides else None
+
+    @property
+    def M_out(self) -> Any:
+        """Moment on what swings or turns against its motion in N m."""
+        return None if self.drive.mechanism.slides else self._resistance
+
+    @cached_property
     def P_start(self) -> Any:
         """Piston force without inertia in N: starting and slow running."""
-        return _sum(self.P_gas, self.P_weight)
+        return _sum(_sum(self.P_gas, self.P_weight), self.P_ram)
 
     @cached_property
     def P(self) -> Any:
-        """Force at the crosshead along the stroke line in N: gas, inertia, weight."""
+        """Force at the crosshead along the stroke line in N: gas, inertia, weight, and what the ram works against."""
         return _sum(self.P_inertia, self.P_start)
 
     @cached_property
@@ -122,9 +150,21 @@ class State:
 
     @cached_property
     def guide_sense(self) -> Any:
-        """The force whose sign is that of N: P sin ψ + G cos ψ with the weight G on the guide, in N."""
+        """The force whose sign is that of N: P sin ψ + G cos ψ with the load G on the guide, in N."""
         sin_psi, cos_psi = self._rod if self._rod else (0.0, 1.0)
-        return self._after_rings * sin_psi + cos_psi * self.drive.guide_weight
+        return self._after_rings * sin_psi + cos_psi * self._guide_load
+
+    @cached_property
+    def _guide_load(self) -> Any:
+        """What rests on the guide beside the push of the rod in N: weight less the couple of an exact rod."""
+        return self.drive.guide_weight - self._rod_side if self.drive.rod else self.drive.guide_weight
+
+    @cached_property
+    def _rod_side(self) -> Any:
+        """Side force of the couple of an exact rod in N."""
+        assert self.drive.rod is not None
+        assert self._rod is not None
+        return self.drive.rod.side_force(self._rod, self.angle)
 
     @cached_property
     def N(self) -> Any:
@@ -135,7 +175,7 @@ class State:
         if self.P is None or self._rod is None:
             return None
         if not self.drive.crosshead_friction:
-            return self._after_rings * (self._rod[0] / self._rod[1]) + self.drive.guide_weight
+            return self._after_rings * (self._rod[0] / self._rod[1]) + self._guide_load
         return self.guide_sense / self._below
 
     @cached_property
@@ -157,7 +197,7 @@ class State:
         f = self.drive.crosshead_friction
         return (
             f"{self.drive.name}: the crosshead locks itself near φ = {degrees % 360:.4g}°, where the machine is driven "
-            f"and f tan ψ ≥ 1 (f = {f:g}); a driven machine needs R/L < 1/√(1 + f²) = {1 / np.sqrt(1 + f * f):.6g}"
+            f"and f tan ψ ≥ 1 (f = {f:g}); a driven machine needs (R + |e|)/L < 1/√(1 + f²) = {1 / np.sqrt(1 + f * f):.6g}"
         )
 
     @cached_property
@@ -180,25 +220,50 @@ class State:
 
     @cached_property
     def S(self) -> Any:
-        """Rod force in N, compression positive, R 300."""
-        return None if self.P is None or self._rod is None else self.along_rod / self._rod[1]
+        """Rod force in N, compression positive, R 300; of an exact rod, between the masses at its ends."""
+        if self.P is None or self._rod is None:
+            return None
+        push = self.along_rod / self._rod[1]
+        return push - self._rod_side * self._rod[0] if self.drive.rod else push
 
     @cached_property
     def D(self) -> Any:
         """Radial force at the crank pin in N, positive toward the shaft, R 302."""
-        if self.P is None or self._rod is None:
+        radial = None if self.P is None else self.drive.mechanism.radial(self.angle)
+        if radial is None:
             return None
-        return self.along_rod * (self.angle.cos - self.angle.sin * (self._rod[0] / self._rod[1]))
+        push = self.along_rod * radial
+        if self.drive.rod is None or self._rod is None:
+            return push
+        return push + self.drive.rod.radial(self._rod, self.angle)
+
+    @property
+    def _output(self) -> Any:
+        """What reaches the crank of the force, or of the moment, at the output."""
+        return self.along_rod if self.drive.mechanism.slides else self.M_out
 
     @cached_property
     def T(self) -> Any:
         """Tangential force at the crank pin in N, R 303: T R dφ = P dx."""
-        return None if self.P is None else self.along_rod * (self.slope / self.drive.mechanism.crank)
+        if self._output is None:
+            return None
+        push = self._output * (self.slope / self.drive.mechanism.crank)
+        return push + self._rod_tangential if self.drive.rod else push
 
     @cached_property
     def M(self) -> Any:
         """Torque on the shaft in N m."""
-        return None if self.P is None else self.along_rod * self.slope
+        if self._output is None:
+            return None
+        torque = self._output * self.slope
+        return torque + self._rod_tangential * self.drive.mechanism.crank if self.drive.rod else torque
+
+    @cached_property
+    def _rod_tangential(self) -> Any:
+        """What couple and weight of an exact rod give to T in N."""
+        assert self.drive.rod is not None
+        assert self._rod is not None
+        return self.drive.rod.tangential(self._rod, self.angle)
 
     @cached_property
     def crosshead_power(self) -> Any:

@@ -1,0 +1,39 @@
+"""What the output of a mechanism works against: the ram of a shaper or a press, the rocker of a four-bar."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Key, Keys, Physical
+
+
+@dataclass(frozen=True, eq=False)
+class RamForce:
+    """A force in N on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
+
+    work: float = 0.0
+    back: float = 0.0
+
+    KEYS: ClassVar[Keys] = {
+        "work": Key(Physical("force", least=0), "Force against the motion on the working stroke", "P_a", absent="0"),
+        "return": Key(Physical("force", least=0), "Force against the motion on the return stroke", "P_r", absent="0"),
+    }
+
+    @classmethod
+    def from_keys(cls, work: float | None = None, **others: float) -> RamForce:
+        """Return the resistance that these keys of a machine file describe; raises RuleError where it has none."""
+        if work is None and not others:
+            raise RuleError(Fault((), "give 'work', the force on the working stroke, or 'return', or both"))
+        return cls(work or 0.0, others.get("return", 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Moment(RamForce):
+    """A moment in N m on a member that swings or turns, opposing its motion; what turns has no return stroke."""
+
+    KEYS: ClassVar[Keys] = {
+        "work": Key(Physical("torque", least=0), "Moment against the motion on the working stroke", "M_a", absent="0"),
+        "return": Key(Physical("torque", least=0), "Moment against the motion on the return stroke", "M_r", absent="0"),
+    }

@@ -1,0 +1,233 @@
+"""The samples of a measured trace: read from a file of columns, put to the test, and closed to a whole cycle."""
+
+from __future__ import annotations
+
+import io
+import os
+import warnings
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurbel.errors import Fault, RuleError
+
+Array = NDArray[np.float64]
+PERIODS = (360.0, 720.0)
+LARGEST_FILE = 64 * 2**20
+"""Bytes; a million samples have about 20 million."""
+MOST_SAMPLES = 500_000
+_EVEN = 1e-3  # of a step: what rounded angles may miss
+
+
+class Columns(NamedTuple):
+    """How a file of columns is laid out: columns count from 1, skip_rows are the lines above the first figures."""
+
+    angle: int = 1
+    pressure: int = 2
+    skip_rows: int = 0
+    delimiter: str = ","
+    decimal: str = "."
+
+    @property
+    def between(self) -> str | None:
+        """What splits a line; None for any run of blanks."""
+        return None if self.delimiter == " " else self.delimiter
+
+
+class Samples(NamedTuple):
+    """One cycle of a trace: angles (n,) in degrees, rising over exactly one period, and pressures (n,) in Pa.
+
+    Two samples at one angle are a jump. period: 360 or 720; notes: what was tidied up.
+    """
+
+    angles: Array
+    pressures: Array
+    period: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def even(self) -> bool:
+        """Whether the samples stand at equal angles."""
+        steps = np.diff(self.angles)
+        step = self.period / len(steps)
+        return bool(np.abs(steps - step).max() <= _EVEN * step)
+
+
+def read_columns(file: str, columns: Columns) -> tuple[Array, Array, Callable[[int], str]]:
+    """Return the two columns of a file, and what names the line of a sample; raises RuleError with the line."""
+    text = _text(file)
+    lines = text.replace(columns.decimal, ".") if columns.decimal != "." else text
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # an empty file, of which the message below speaks
+            table = np.loadtxt(
+                io.StringIO(lines),
+                delimiter=columns.between,
+                skiprows=columns.skip_rows,
+                usecols=(columns.angle - 1, columns.pressure - 1),
+                ndmin=2,
+            )
+    except ValueError:
+        raise RuleError(_first_fault(text, columns)) from None
+    if not len(table):
+        raise RuleError(Fault(("file",), f"{os.path.basename(file)} has no figures{_below(columns)}"))
+    return table[:, 0], table[:, 1], lambda index: f"line {_line_numbers(text, columns)[index]}"
+
+
+def _below(columns: Columns) -> str:
+    if columns.skip_rows == 0:
+        return ""
+    return f" below its first {columns.skip_rows} lines" if columns.skip_rows > 1 else " below its first line"
+
+
+def _text(file: str) -> str:
+    try:
+        if os.path.getsize(file) > LARGEST_FILE:
+            raise RuleError(Fault(("file",), f"is larger than {LARGEST_FILE // 2**20} MiB; thin out the samples"))
+        with open(file, "rb") as stream:
+            # headings may be in any encoding, figures are ASCII
+            return stream.read().decode("utf-8-sig", "replace")
+    except OSError as error:
+        raise RuleError(Fault(("file",), f"cannot be read: {error.strerror or error}")) from None
+
+
+def _figures(line: str) -> str:
+    """Return a line without a comment, as numpy.loadtxt sees it."""
+    return line.partition("#")[0].strip()
+
+
+def _line_numbers(text: str, columns: Columns) -> list[int]:
+    lines = text.splitlines()[columns.skip_rows :]
+    return [columns.skip_rows + i for i, line in enumerate(lines, 1) if _figures(line)]
+
+
+def _first_fault(text: str, columns: Columns) -> Fault:
+    """Return the fault of the first line that is no row of figures."""
+    lines = text.splitlines()
+    for number in _line_numbers(text, columns):
+        cells = _figures(lines[number - 1]).split(columns.between)
+        last = max(columns.angle, columns.pressure)
+        if len(cells) < last:
+            return Fault(
+                ("file",),
+                f"line {number} has no column {last}: {_cut(lines[number - 1])}{_hint(lines, number, columns)}",
+            )
+        for column in (columns.angle, columns.pressure):
+            cell = cells[column - 1].strip()
+            if not _is_number(cell.replace(columns.decimal, ".")):
+                return Fault(
+                    ("file",), f"line {number}: '{_cut(cell)}' is no number{_hint(lines, number, columns, cell)}"
+                )
+    return Fault(("file",), "its rows cannot be read as numbers")
+
+
+def _cut(text: str) -> str:
+    clear = "".join(c if c.isprintable() else " " for c in text.strip())
+    return clear if len(clear) <= 40 else clear[:40] + "…"
+
+
+def _hint(lines: list[str], number: int, columns: Columns, cell: str = "") -> str:
+    """Return what to write so that a line could be read."""
+    line = lines[number - 1]
+    if _is_number(cell.replace(",", ".")) and columns.decimal == ".":
+        return "; write 'decimal: comma'"
+    joined = [word for word, sign in (("semicolon", ";"), ("tab", "\t"), ("comma", ",")) if sign in (cell or line)]
+    if any(c.isdigit() for c in line) and (joined or not cell):
+        return f"; write 'delimiter: {joined[0] if joined else 'space'}' if that stands between its columns"
+    return f"; write 'skip_rows: {number}' if it is a heading" if number == columns.skip_rows + 1 else ""
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def whole_cycle(angles: Array, pressures: Array, named: Callable[[int], Fault]) -> Samples:
+    """Return the samples closed to a whole cycle; raises RuleError for what cannot be one.
+
+    angles (n,) in degrees, pressures (n,) in Pa; named: the place of a sample as a fault that lacks a message.
+    """
+    if len(angles) > MOST_SAMPLES:
+        raise RuleError(_say(named(0), f"{len(angles)} samples; more than {MOST_SAMPLES} are not taken, thin them out"))
+    fault = _number_fault(angles, pressures, named) or _order_fault(angles, named)
+    if fault:
+        raise RuleError(fault)
+    angles, pressures, notes = _without_twins(angles, pressures)
+    span = float(angles[-1] - angles[0])
+    period = next((p for p in PERIODS if span <= p * (1 + 1e-9)), 0.0)
+    if not period:
+        raise RuleError(
+            _say(named(len(angles) - 1), f"the samples run over {span:g} deg; cut one cycle of 720 deg out")
+        )
+    return _closed(angles, pressures, period, notes, named)
+
+
+def _say(place: Fault, message: str) -> Fault:
+    return Fault(place.path, f"{place.message}: {message}" if place.message else message)
+
+
+def _number_fault(angles: Array, pressures: Array, named: Callable[[int], Fault]) -> Fault | None:
+    for what, values in (("angle", angles), ("pressure", pressures)):
+        bad = np.flatnonzero(~np.isfinite(values))
+        if len(bad):
+            more = f" ({len(bad)} such samples)" if len(bad) > 1 else ""
+            return _say(named(int(bad[0])), f"the {what} is {values[bad[0]]}, not a number{more}; leave such rows out")
+    return None
+
+
+def _order_fault(angles: Array, named: Callable[[int], Fault]) -> Fault | None:
+    back = np.flatnonzero(np.diff(angles) < 0)
+    if len(back):
+        i = int(back[0]) + 1
+        turned = angles[i - 1] - angles[i] > 180
+        advice = "a cycle ends here; keep one cycle only" if turned else "put the points in order of the angle"
+        return _say(named(i), f"{angles[i]:.10g} deg after {angles[i - 1]:.10g} deg; {advice}")
+    if len(angles) < 2 or angles[0] == angles[-1]:
+        return _say(named(0), "a trace needs samples at two angles or more")
+    thrice = np.flatnonzero(angles[2:] == angles[:-2])
+    if len(thrice):
+        i = int(thrice[0]) + 2
+        return _say(named(i), f"three points at {angles[i]:.10g} deg; a jump has two")
+    return None
+
+
+def _without_twins(angles: Array, pressures: Array) -> tuple[Array, Array, tuple[str, ...]]:
+    twins = (np.diff(angles) == 0) & (np.diff(pressures) == 0)
+    if not twins.any():
+        return angles, pressures, ()
+    kept = np.concatenate(([True], ~twins))
+    return angles[kept], pressures[kept], (f"{int(twins.sum())} samples given twice count once",)
+
+
+def _closed(
+    angles: Array, pressures: Array, period: float, notes: tuple[str, ...], named: Callable[[int], Fault]
+) -> Samples:
+    """Close the cycle with the first sample where only the last one is missing."""
+    steps = np.diff(angles)
+    end = float(angles[0]) + period
+    missing = end - float(angles[-1])
+    if missing > 1.5 * steps.max():
+        message = f"no samples from {angles[-1]:.10g} to {end:.10g} deg; a trace covers a whole cycle of 360 or 720 deg"
+        raise RuleError(_say(named(len(angles) - 1), message))
+    if missing > 1e-9 * period:
+        notes += (f"the closing sample at {end:.10g} deg is missing; that at {angles[0]:.10g} deg closes the cycle",)
+        angles, pressures = np.append(angles, end), np.append(pressures, pressures[0])
+    else:
+        angles = np.append(angles[:-1], end)
+    return Samples(angles, pressures, period, (*notes, *_gap_notes(angles)))
+
+
+def _gap_notes(angles: Array) -> tuple[str, ...]:
+    """Say where samples are missing: steps far wider than the usual one."""
+    steps = np.diff(angles)
+    usual = float(np.sort(steps)[len(steps) // 2])  # numpy.median imports numpy.ma, a fifth of the start-up
+    wide = np.flatnonzero((steps > 20 * usual) & (steps > 2))
+    return tuple(
+        f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; a straight line joins them"
+        for i in wide[:5].tolist()
+    )

@@ -1,0 +1,35 @@
+"""The crank pin of a mechanism whose block slides in a slot: its size, for the pressure between pin and block."""
+
+from __future__ import annotations
+
+from kurbel.errors import Fault, RuleError
+from kurbel.keys import Key, Keys, Physical
+
+PIN_KEYS: Keys = {
+    "pin_diameter": Key(
+        Physical("length", above=0), "Diameter of the crank pin; needs `pin_length`", "d_z", absent="no pin pressure"
+    ),
+    "pin_length": Key(
+        Physical("length", above=0), "Length of the crank pin in its block; needs `pin_diameter`", "l_z", absent="same"
+    ),
+}
+
+
+NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")
+"""What such a mechanism lacks without its pin, and why."""
+
+
+def projected_area(diameter: float | None, length: float | None) -> float | None:
+    """Return d_z l_z in m², or None where the pin is not given.
+
+    Raises RuleError where only one of both is given, or one is not positive and finite.
+    """
+    if diameter is None and length is None:
+        return None
+    if diameter is None or length is None:
+        given, missing = ("pin_length", "pin_diameter") if diameter is None else ("pin_diameter", "pin_length")
+        raise RuleError(Fault((given,), f"'{given}' needs '{missing}' beside it"))
+    for name, value in (("pin_diameter", diameter), ("pin_length", length)):
+        if not 0 < value < float("inf"):
+            raise RuleError(Fault((name,), "must be a positive, finite length"))
+    return diameter * length

@@ -1,0 +1,112 @@
+"""Ideal cards: processes of exact polytropic lines and isobars, drawn from the few numbers of a theoretical cycle.
+
+Every line is closed: pressures at its corners follow from p V^n = const with absolute pressures, and so does its area.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam, after_polytrope
+from kurbel.solver.pressure import Place
+from kurbel.solver.pressure.card import ProcessPressure
+from kurbel.solver.pressure.pieces import Piece, Process, Stroke
+
+
+def ideal_pressure(card: IdealCard, place: Place) -> ProcessPressure:
+    """Return the pressure of an ideal card."""
+    return ProcessPressure(ideal_process(card, place.lift, round(place.cycle / 360)), place)
+
+
+def ideal_process(card: IdealCard, lift: float = 0.0, revolutions: int = 1) -> Process:
+    """Return the process of an ideal card; lift makes its pressures absolute (Pa); revolutions per cycle."""
+    drawing = _Drawing(lift, card.clearance)
+    return Process(_DRAWN[type(card)](drawing, card, revolutions == 2), lift, card.clearance)
+
+
+class _Drawing:
+    """Draws pieces of a card with one clearance; lift makes its pressures absolute."""
+
+    def __init__(self, lift: float, clearance: float) -> None:
+        self.lift = lift
+        self.clearance = clearance
+
+    def polytrope(self, z: float, p: float, next_z: float, exponent: float) -> Piece:
+        """Return p V^n = const from the point (z, p) to the stroke fraction next_z."""
+        absolute = after_polytrope(p + self.lift, z + self.clearance, next_z + self.clearance, exponent)
+        return Piece(z, p, next_z, absolute - self.lift, exponent)
+
+    def fraction_after(self, z: float, p: float, next_p: float, exponent: float) -> float:
+        """Return the stroke fraction at which p V^n = const from (z, p) reaches next_p."""
+        volume = z + self.clearance
+        ratio = (p + self.lift) / (next_p + self.lift)
+        return z + volume * math.expm1(math.log(ratio) / exponent)
+
+    def steam(self, card: Steam, four_stroke: bool) -> tuple[Stroke, ...]:
+        """Admission, expansion, exhaust; exhaust, compression."""
+        expansion = self.polytrope(card.cut_off, card.admission, card.release, card.exponent)
+        compression = self.polytrope(card.compression, card.exhaust, 0.0, card.exponent)
+        return (
+            _wide(
+                _isobar(0.0, card.admission, card.cut_off),
+                expansion,
+                _isobar(card.release, card.exhaust, 1.0),
+            ),
+            _wide(_isobar(1.0, card.exhaust, card.compression), compression),
+        )
+
+    def compressor(self, card: Compressor, four_stroke: bool) -> tuple[Stroke, ...]:
+        """Expansion of the clearance gas, suction; compression, delivery."""
+        fills = self.fraction_after(0.0, card.delivery, card.suction, card.exponent)
+        empties = self.fraction_after(1.0, card.suction, card.delivery, card.exponent)
+        return (
+            _wide(
+                Piece(0.0, card.delivery, fills, card.suction, card.exponent),
+                _isobar(fills, card.suction, 1.0),
+            ),
+            _wide(
+                Piece(1.0, card.suction, empties, card.delivery, card.exponent),
+                _isobar(empties, card.delivery, 0.0),
+            ),
+        )
+
+    def otto(self, card: Otto, four_stroke: bool) -> tuple[Stroke, ...]:
+        """Expansion from the peak; then as every engine."""
+        return self._engine(card, (self.polytrope(0.0, card.peak, 1.0, card.expansion_exponent),), four_stroke)
+
+    def diesel(self, card: Diesel, four_stroke: bool) -> tuple[Stroke, ...]:
+        """Injection at constant pressure, expansion; then as every engine."""
+        burning = self._compression(card).next_p if card.peak is None else card.peak
+        power = (
+            _isobar(0.0, burning, card.cut_off),
+            self.polytrope(card.cut_off, burning, 1.0, card.expansion_exponent),
+        )
+        return self._engine(card, power, four_stroke)
+
+    def _compression(self, card: Otto | Diesel) -> Piece:
+        return self.polytrope(1.0, card.intake, 0.0, card.exponent)
+
+    def _engine(self, card: Otto | Diesel, power: Stroke, four_stroke: bool) -> tuple[Stroke, ...]:
+        compression = (self._compression(card),)
+        if not four_stroke:
+            return power, compression
+        return power, (_isobar(1.0, card.leaving, 0.0),), (_isobar(0.0, card.intake, 1.0),), compression
+
+
+_DRAWN: dict[type, Callable[[_Drawing, Any, bool], tuple[Stroke, ...]]] = {
+    Steam: _Drawing.steam,
+    Compressor: _Drawing.compressor,
+    Otto: _Drawing.otto,
+    Diesel: _Drawing.diesel,
+}
+
+
+def _isobar(z: float, p: float, next_z: float) -> Piece:
+    return Piece(z, p, next_z, p)
+
+
+def _wide(*pieces: Piece) -> Stroke:
+    """Return the pieces that have any width."""
+    return tuple(piece for piece in pieces if piece.next_z != piece.z)

@@ -1,0 +1,76 @@
+"""The exact connecting rod: two masses at its ends and a couple, as the rod swings (formulas.md 3.2, R 298).
+
+A rod of mass m_r, centre of gravity at a from the crosshead pin and moment of inertia I_r about it moves like a mass
+m_r (1 − a/L) at the crosshead pin, a mass m_r a/L at the crank pin, and a couple (I_r − m_r a (L − a)) ψ̈. The first
+mass goes to and fro with the piston. The second pulls at the pin with its centrifugal force and its weight. The couple
+is carried by the guide and the crank pin, two equal forces square to the stroke line.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.machine.masses import ConnectingRod
+from kurbel.solver.state import GRAVITY
+
+RodAngle = tuple[Any, Any]
+
+
+class ExactRod:
+    """A rod of length L in m on a crank of radius R in m, turning at ω (rad/s, None where no speed is given).
+
+    weight: of the mass at the pin in N, toward the shaft along the stroke line, and square to it onto the guide; None
+    where weights are left out.
+    """
+
+    def __init__(
+        self, rod: ConnectingRod, length: float, crank: float, omega: float | None, incline: CrankAngle | None
+    ) -> None:
+        self.length = length
+        self.crank = crank
+        self.omega = omega or 0.0
+        self.pin_mass = rod.at_pin(length)
+        self.excess_inertia = rod.excess_inertia(length)
+        weight = self.pin_mass * GRAVITY
+        self.weight = None if incline is None else (weight * incline.sin, weight * incline.cos)
+
+    @cached_property
+    def pull(self) -> float:
+        """Centrifugal force m R ω² of the mass at the pin in N, away from the shaft."""
+        return self.pin_mass * self.crank * self.omega**2
+
+    def swing_slope(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
+        """Return dψ/dφ = λ cos φ/cos ψ."""
+        return self.crank / self.length * angle.cos / rod_angle[1]
+
+    def couple(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
+        """Return (I_r − m_r a (L − a)) ψ̈ in N m, d²ψ/dφ² = (dψ/dφ)² tan ψ − λ sin φ/cos ψ, at uniform rotation."""
+        sin_psi, cos_psi = rod_angle
+        slope = self.swing_slope(rod_angle, angle)
+        curvature = slope * slope * (sin_psi / cos_psi) - self.crank / self.length * angle.sin / cos_psi
+        return curvature * (self.excess_inertia * self.omega**2)
+
+    def side_force(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
+        """Return the force in N, square to the stroke line, by which the couple relieves the guide."""
+        return self.couple(rod_angle, angle) / (rod_angle[1] * self.length)
+
+    def tangential(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
+        """Return what couple and weight give to T in N."""
+        share = -self.side_force(rod_angle, angle) * angle.cos
+        if self.weight is None:
+            return share
+        return share + (angle.sin * self.weight[0] - angle.cos * self.weight[1])
+
+    def radial(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
+        """Return what couple, centrifugal force and weight give to D in N."""
+        share = self.side_force(rod_angle, angle) * angle.sin - self.pull
+        if self.weight is None:
+            return share
+        return share + (angle.cos * self.weight[0] + angle.sin * self.weight[1])
+
+    def reduced_inertia(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
+        """Return what the rod, but for its mass at the crosshead pin, adds to the shaft's inertia, in kg m²."""
+        slope = self.swing_slope(rod_angle, angle)
+        return slope * slope * self.excess_inertia + self.pin_mass * self.crank**2

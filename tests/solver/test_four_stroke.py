@@ -1,0 +1,138 @@
+"""Cycles of 720°: which line acts when, double-acting and standing, mixed with everything else."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kurbel.errors import RuleError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.friction import Friction
+from kurbel.machine.indicator import Card, Indicator
+from kurbel.machine.masses import Masses
+from kurbel.machine.piston import Piston
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.report.angles import stepped
+from kurbel.report.forces import forces_report
+from kurbel.solver.case import Case
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.state import GRAVITY
+
+BAR = 1e5
+LINES: dict[str, list[tuple[float, float]]] = {
+    "expansion": [(0, 6), (0.04, 24), (0.2, 9), (0.5, 4), (0.88, 2.2), (1, 0.6)],
+    "exhaust": [(1, 0.6), (0.9, 0.1), (0, 0.05)],
+    "intake": [(0, 0.05), (0.05, -0.1), (1, -0.15)],
+    "compression": [(1, -0.15), (0.5, 0.7), (0.2, 2.5), (0, 6)],
+}
+CARD = Card.from_keys((BAR, 1), **LINES)  # type: ignore[arg-type]
+MECHANISM = SliderCrank(0.15, 0.66)
+
+
+def engine(
+    head: Any = CARD, crank: Any = None, mechanism: Any = MECHANISM, rpm: float = 300, **more: Any
+) -> CylinderForces:
+    own = Cylinder(mechanism, pistons=(Piston(0.22, 0.0, 0.06, Indicator(head, crank)),), **more)
+    return CylinderForces(Machine((own,), speed=rpm / 60, cycle="four-stroke"), own)
+
+
+def area(line: str) -> float:
+    """∫ p dz under a line, in Pa, along the stroke fraction as the line runs."""
+    points = LINES[line]
+    return BAR * sum((b[0] - a[0]) * (a[1] + b[1]) / 2 for a, b in pairwise(points))
+
+
+@pytest.mark.parametrize("mechanism", [MECHANISM, SliderCrank(0.15, 0.66, 0.1), SliderCrank(0.15, math.inf)])
+def test_lines_in_the_order_of_the_process(mechanism: SliderCrank) -> None:
+    """Firing dead centre, expansion out, exhaust back, intake out, compression back; offset cranks too."""
+    inner, outer = mechanism.dead_centres()
+    forces = engine(mechanism=mechanism)
+    outs = mechanism.crank_angles_at(np.array([0.2 * mechanism.stroke]), True)[0]
+    back = mechanism.crank_angles_at(np.array([0.2 * mechanism.stroke]), False)[0]
+    at = forces.at([outs, back, outs + 360, back + 360])
+    exhaust = 0.05 + 0.2 / 0.9 * 0.05
+    intake = -0.1 - 0.15 / 0.95 * 0.05
+    assert at.p_head == pytest.approx(np.array([9, exhaust, intake, 2.5]) * BAR, rel=1e-12)
+    corners = forces.at([inner, outer, inner + 360, outer + 360]).p_head
+    assert corners == pytest.approx(np.array([6, 0.6, 0.05, -0.15]) * BAR, rel=1e-9)
+
+
+def test_the_crank_end_fires_one_stroke_later() -> None:
+    forces = engine(None, CARD)
+    at = forces.at([180.0, 360.0, 540.0, 0.0]).p_crank
+    assert at == pytest.approx(np.array([6, 0.6, 0.05, -0.15]) * BAR)
+
+
+def test_work_is_that_of_both_loops() -> None:
+    forces = engine()
+    expected = sum(map(area, LINES)) * math.pi / 4 * 0.22**2 * 0.3
+    assert forces.work == pytest.approx(expected, rel=1e-13)
+    assert forces.power == pytest.approx(expected * 5 / 2, rel=1e-13)
+    assert forces.mean_pressure == pytest.approx(sum(map(area, LINES)), rel=1e-13)
+    assert pytest.approx(expected / (4 * math.pi * 0.15), rel=1e-13) == forces.W
+
+
+@pytest.mark.parametrize(
+    ("crank_end", "more"),
+    [
+        (None, {}),
+        (CARD, {}),
+        (CARD, {"masses": Masses(90.0), "inclination": 90.0}),
+        (CARD, {"masses": Masses(90.0), "inclination": 0.0, "friction": Friction(0.1)}),
+        (None, {"masses": Masses(60.0), "friction": Friction(0.06)}),
+    ],
+    ids=["single", "double", "standing", "lying with friction", "friction"],
+)
+def test_energy_over_the_cycle(crank_end: Any, more: dict[str, Any]) -> None:
+    """The quadrature of T over 720° is the closed work less friction."""
+    forces = engine(CARD, crank_end, **more)
+    assert abs(forces.energy_residual or 0.0) < 1e-14
+    assert forces.grid.breaks[-1] == 720
+    if crank_end:
+        head, crank = forces.drive.gas[0].works
+        assert crank == pytest.approx(head * (0.22**2 - 0.06**2) / 0.22**2, rel=1e-14)
+
+
+def test_a_standing_engine_carries_its_weight() -> None:
+    still, standing = engine(masses=Masses(90.0)), engine(masses=Masses(90.0), inclination=90.0)
+    degrees = np.arange(0.0, 720.0, 15.0)
+    assert pytest.approx(90 * GRAVITY, rel=1e-9) == standing.at(degrees).P - still.at(degrees).P
+    assert pytest.approx(still.W, rel=1e-14) == standing.W
+
+
+def test_extremes_are_those_of_a_fine_search_over_both_turns() -> None:
+    forces = engine(CARD, CARD, masses=Masses(90.0), friction=Friction(0.05))
+    fine = forces.at(np.linspace(0, 720, 144001))
+    for name in ("P", "S", "N", "T"):
+        found, column = forces.extremes_of(name), getattr(fine, name)
+        assert found is not None
+        # the card's corners lie between the angles of the search
+        assert 0 <= found.largest.value - column.max() < 1e-4 * abs(column.max())
+        assert 0 <= column.min() - found.smallest.value < 1e-4 * abs(column.min())
+    signs = np.sign(fine.P)
+    changes = np.flatnonzero(signs[1:] * signs[:-1] < 0)
+    assert len(forces.phi_reversal or ()) == len(changes)
+
+
+def test_columns_repeat_after_720_degrees_and_not_before() -> None:
+    forces = engine()
+    assert forces.at([33.0]).T[0] == forces.at([753.0]).T[0]
+    assert forces.at([33.0]).T[0] != forces.at([393.0]).T[0]
+
+
+def test_the_report_runs_over_the_cycle() -> None:
+    forces = engine()
+    report = forces_report(Case(forces.drive.machine), stepped(10, 720), None, "si")
+    assert report.parts[0].columns[0].values[-1] == 720
+    assert not report.parts[0].warnings
+
+
+@pytest.mark.parametrize("missing", list(LINES))
+def test_a_missing_line_is_named(missing: str) -> None:
+    lines = {name: points for name, points in LINES.items() if name != missing}
+    with pytest.raises(RuleError, match=f"the '{missing}' line of the four-stroke card is missing"):
+        Card.from_keys((BAR, 1), **lines)  # type: ignore[arg-type]

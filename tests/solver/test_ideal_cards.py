@@ -1,0 +1,260 @@
+"""Ideal cards: work against 50 digits and against the closed forms of the textbooks; corners, faults, consistency."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from kurbel.errors import RuleError
+from kurbel.machine import STANDARD_ATMOSPHERE, Cylinder, Machine
+from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam
+from kurbel.machine.indicator import Card, Indicator
+from kurbel.machine.piston import Piston
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.pressure.ideal import ideal_process
+
+mpf = mpmath.mpf
+BAR = 1e5
+
+STEAM = Steam(8 * BAR, 0.2 * BAR, cut_off=0.3, clearance=0.05, release=0.92, compression=0.12, exponent=1.0)
+WET = Steam(8 * BAR, -0.8 * BAR, cut_off=0.2, clearance=0.07, release=0.95, compression=0.2, exponent=1.135)
+COMPRESSOR = Compressor(0.0, 6 * BAR, clearance=0.06, exponent=1.3)
+OTTO = Otto(-0.1 * BAR, 35 * BAR, clearance=1 / 7, exhaust=0.05 * BAR, exponent=1.32, expansion_exponent=1.28)
+DIESEL = Diesel(0.0, cut_off=0.08, clearance=1 / 14, exponent=1.36, expansion_exponent=1.3)
+MIXED = Diesel(0.0, cut_off=0.05, clearance=1 / 14, peak=60 * BAR, exponent=1.36, expansion_exponent=1.3)
+CARDS: list[IdealCard] = [STEAM, WET, COMPRESSOR, OTTO, DIESEL, MIXED]
+
+
+def cylinder(card: Any, cycle: str = "two-stroke", absolute: bool = False, **more: Any) -> CylinderForces:
+    own = Cylinder(
+        SliderCrank(0.1, 0.45), pistons=(Piston(0.16, indicator=Indicator(card, absolute=absolute)),), **more
+    )
+    return CylinderForces(Machine((own,), speed=5.0, cycle=cycle), own)
+
+
+def polytropic_work(p: mpf, volume: mpf, next_volume: mpf, n: mpf) -> mpf:
+    """∫ P dV along P V^n = const."""
+    if n == 1:
+        return p * volume * mpmath.log(next_volume / volume)
+    return p * volume * ((next_volume / volume) ** (1 - n) - 1) / (1 - n)
+
+
+def precise_work(card: IdealCard, lift: float) -> mpf:
+    """∮ P dV over the stroke volume with 50 digits, absolute pressures, written down as the textbooks do."""
+    c, one = mpf(card.clearance), mpf(1)
+    if isinstance(card, Steam):
+        high, low, n = mpf(card.admission) + lift, mpf(card.exhaust) + lift, mpf(card.exponent)
+        cut, release, closing = mpf(card.cut_off), mpf(card.release), mpf(card.compression)
+        gained = high * cut + polytropic_work(high, c + cut, c + release, n) + low * (1 - release)
+        return gained - low * (1 - closing) + polytropic_work(low, c + closing, c, n)
+    if isinstance(card, Compressor):
+        high, low, n = mpf(card.delivery) + lift, mpf(card.suction) + lift, mpf(card.exponent)
+        filled, emptied = c * (high / low) ** (1 / n), (c + 1) * (low / high) ** (1 / n)
+        taken = polytropic_work(high, c, filled, n) + low * (1 + c - filled)
+        return taken + polytropic_work(low, 1 + c, emptied, n) - high * (emptied - c)
+    n, m = mpf(card.exponent), mpf(card.expansion_exponent)
+    intake = mpf(card.intake) + lift
+    compression = polytropic_work(intake, 1 + c, c, n)
+    if isinstance(card, Otto):
+        return polytropic_work(mpf(card.peak) + lift, c, one + c, m) + compression
+    cut = mpf(card.cut_off)
+    burning = intake * ((1 + c) / c) ** n if card.peak is None else mpf(card.peak) + lift
+    return burning * cut + polytropic_work(burning, c + cut, 1 + c, m) + compression
+
+
+@pytest.mark.parametrize("card", CARDS, ids=lambda card: type(card).__name__)
+@pytest.mark.parametrize("lift", [0.0, STANDARD_ATMOSPHERE], ids=["absolute", "gauge"])
+def test_closed_work_against_50_digits(card: IdealCard, lift: float) -> None:
+    if lift == 0:
+        raised = {
+            name: getattr(card, name) + 1.01325e5
+            for name in ("admission", "exhaust", "suction", "delivery", "intake", "peak")
+            if getattr(card, name, None) is not None
+        }
+        card = type(card)(**{**card.__dict__, **raised})
+    with mpmath.workdps(50):
+        expected = precise_work(card, lift)
+        found = ideal_process(card, lift).area
+        assert abs(found / expected - 1) <= 1e-14
+
+
+@pytest.mark.parametrize("exponent", [1 - 1e-12, 1 + 1e-9, 1.0, 1 + 1e-5, 0.9, 1.6])
+def test_work_is_as_exact_beside_the_hyperbola(exponent: float) -> None:
+    card = Steam(8 * BAR, 1 * BAR, cut_off=0.3, clearance=0.05, exponent=exponent)
+    with mpmath.workdps(60):
+        assert abs(ideal_process(card).area / precise_work(card, 0.0) - 1) <= 1e-14
+
+
+def test_mean_pressure_of_the_book_for_steam() -> None:
+    """Without clearance and compression: p_i = p (ε + ε ln 1/ε) − p′, the rule of every old steam book."""
+    high, low, cut = 8 * BAR, 1.2 * BAR, 0.25
+    tiny = Steam(high, low, cut_off=cut, clearance=1e-9)
+    assert ideal_process(tiny).area == pytest.approx(high * cut * (1 + np.log(1 / cut)) - low, rel=1e-8)
+
+
+@pytest.mark.parametrize("ratio", [4.0, 8.0, 12.0])
+def test_efficiency_of_otto(ratio: float) -> None:
+    """η = 1 − ε^(1−κ); the heat is c_v ΔT m = V_c Δp/(κ − 1)."""
+    kappa, intake, c = 1.4, 1 * BAR, 1 / (ratio - 1)
+    compressed = intake * ratio**kappa
+    heat = c * (3 * compressed - compressed) / (kappa - 1)
+    work = ideal_process(Otto(intake, 3 * compressed, clearance=c)).area
+    assert work / heat == pytest.approx(1 - ratio ** (1 - kappa), rel=1e-13)
+
+
+@pytest.mark.parametrize("cut", [1.5, 2.0, 3.0])
+def test_efficiency_of_diesel(cut: float) -> None:
+    """η = 1 − ε^(1−κ) (ρ^κ − 1)/(κ (ρ − 1)) with the cut-off ratio ρ; the heat is κ/(κ − 1) p ΔV."""
+    kappa, ratio, intake = 1.4, 16.0, 1 * BAR
+    c = 1 / (ratio - 1)
+    heat = kappa / (kappa - 1) * intake * ratio**kappa * c * (cut - 1)
+    work = ideal_process(Diesel(intake, cut_off=c * (cut - 1), clearance=c)).area
+    expected = 1 - ratio ** (1 - kappa) * (cut**kappa - 1) / (kappa * (cut - 1))
+    assert work / heat == pytest.approx(expected, rel=1e-13)
+
+
+def test_efficiency_of_the_mixed_cycle() -> None:
+    """Seiliger: η = 1 − ε^(1−κ) (α ρ^κ − 1)/(α − 1 + κ α (ρ − 1)) with the pressure ratio α at constant volume."""
+    kappa, ratio, intake, cut, rise = 1.4, 14.0, 1 * BAR, 1.8, 1.5
+    c, compressed = 1 / (ratio - 1), 1 * BAR * ratio**kappa
+    heat = c * compressed / (kappa - 1) * (rise - 1 + kappa * rise * (cut - 1))
+    work = ideal_process(Diesel(intake, cut_off=c * (cut - 1), clearance=c, peak=rise * compressed)).area
+    below = rise - 1 + kappa * rise * (cut - 1)
+    assert work / heat == pytest.approx(1 - ratio ** (1 - kappa) * (rise * cut**kappa - 1) / below, rel=1e-13)
+
+
+def test_work_of_the_compressor() -> None:
+    """W = n/(n−1) p₁ V₁ [(p₂/p₁)^((n−1)/n) − 1] with the volume V₁ that is drawn in, whatever the clearance."""
+    n, low, high, c = 1.3, 1 * BAR, 7 * BAR, 0.06
+    drawn = 1 + c - c * (high / low) ** (1 / n)
+    expected = n / (n - 1) * low * drawn * ((high / low) ** ((n - 1) / n) - 1)
+    assert -ideal_process(Compressor(low, high, clearance=c, exponent=n)).area == pytest.approx(expected, rel=1e-13)
+
+
+@pytest.mark.parametrize("card", CARDS, ids=lambda card: type(card).__name__)
+def test_the_forces_do_the_work_of_the_card(card: IdealCard) -> None:
+    """∮ T R dφ by quadrature is the closed work, double-acting and with tiny clearance too."""
+    forces = cylinder(card) if not getattr(card, "leaving", None) else cylinder(card, "four-stroke")
+    assert forces.work == pytest.approx(float(sum(forces.drive.gas[0].works)))
+    assert abs(forces.energy_residual or 0.0) < 1e-13
+    assert forces.mean_pressure == pytest.approx(
+        ideal_process(card, STANDARD_ATMOSPHERE, 1).area + _exchange(card), rel=1e-12
+    )
+
+
+def _exchange(card: IdealCard) -> float:
+    """Area of the gas exchange of a four-stroke engine."""
+    exhaust = getattr(card, "exhaust", None)
+    return getattr(card, "intake") - exhaust if isinstance(card, (Otto, Diesel)) and exhaust is not None else 0.0  # noqa: B009
+
+
+@pytest.mark.parametrize("clearance", [1e-4, 1e-3, 0.02, 0.5])
+def test_small_clearances_do_not_spoil_the_quadrature(clearance: float) -> None:
+    card = Steam(8 * BAR, 0.0, cut_off=0.1, clearance=clearance, compression=0.05, exponent=1.2)
+    forces = cylinder(card)
+    assert abs(forces.energy_residual or 0.0) < 1e-12
+
+
+def test_corners_of_the_diesel_card() -> None:
+    """Compression end p ε^n held to the cut-off, then expansion; crank end one stroke later."""
+    card = Diesel(0.0, cut_off=0.1, clearance=0.08, exponent=1.35, expansion_exponent=1.35)
+    own = Cylinder(SliderCrank(0.1, 0.45), pistons=(Piston(0.16, indicator=Indicator(card, card)),))
+    forces = CylinderForces(Machine((own,)), own)
+    end = 101325 * (1.08 / 0.08) ** 1.35 - 101325
+    cut = forces.drive.mechanism.crank_angles_at(np.array([0.1 * 0.2]), True)[0]
+    at = forces.at([0.0, cut, 180.0, 360.0])
+    assert at.p_head[[0, 1, 3]] == pytest.approx([end, end, end], rel=1e-12)
+    assert at.p_crank[2] == pytest.approx(end, rel=1e-12)
+    # just before the outer dead centre: expanded from the cut-off
+    expanded = (end + 101325) * (0.18 / 1.08) ** 1.35 - 101325
+    assert forces.at([180 - 1e-9]).p_head[0] == pytest.approx(expanded, rel=1e-9)
+
+
+def test_slope_of_a_polytropic_line_by_angle() -> None:
+    """dp/dφ of the jets against differences."""
+    forces = cylinder(OTTO, "four-stroke")
+    angles = np.array([20.0, 100.0, 600.0, 700.0])
+    jet = forces.drive.jets_at(angles, angles).p_head
+    step = 1e-4
+    difference = (forces.at(angles + step).p_head - forces.at(angles - step).p_head) / np.radians(2 * step)
+    assert jet.slope == pytest.approx(difference, rel=1e-7)
+
+
+def test_given_points_joined_polytropically() -> None:
+    """Points taken from p V^1.3 = const give its work exactly, as few as they are."""
+    n, c = 1.3, 0.1
+    z = [0.0, 0.2, 0.55, 1.0]
+    high = [(x, 12.0 * (c / (c + x)) ** n) for x in z]
+    low = [(x, 3.0 * (c / (c + x)) ** n) for x in z]
+    card = Card.from_keys(unit=(BAR, 1), expansion=high, compression=low, interpolate="polytropic", clearance=c)
+    forces = cylinder(card, absolute=True)
+    area = 9 * BAR * c * (1 - (c / (1 + c)) ** (n - 1)) / (n - 1)
+    assert forces.mean_pressure == pytest.approx(area, rel=1e-14)
+    assert abs(forces.energy_residual or 0.0) < 1e-14
+    halfway = forces.drive.mechanism.crank_angles_at(np.array([0.4 * 0.2]), True)
+    assert forces.at(halfway).p_head[0] == pytest.approx(12 * BAR * (0.1 / 0.5) ** n - 101325, rel=1e-13)
+
+
+def test_polytropic_points_of_one_pressure_are_an_isobar() -> None:
+    card = Card.from_keys(
+        unit=(BAR, 1), expansion=[(0, 5), (1, 5)], compression=[(1, 2), (0.5, 2), (0, 5)],
+        interpolate="polytropic", clearance=0.1,
+    )  # fmt: skip
+    forces = cylinder(card)
+    assert forces.at([90.0]).p_head[0] == 5 * BAR
+
+
+@pytest.mark.parametrize(
+    ("card", "message"),
+    [
+        (Otto(0.0, 10 * BAR, clearance=0.1), "peak: 10 bar is below the end of the compression"),
+        (Otto(0.0, 40 * BAR, clearance=0.2, exhaust=1.0), "a two-stroke engine has no exhaust stroke"),
+        (Diesel(-2 * BAR, cut_off=0.1, clearance=0.1), "intake: -2 bar is not above the vacuum"),
+        (Compressor(0.0, 90 * BAR, clearance=0.1), "such a compressor delivers nothing"),
+        (
+            Card.from_keys((BAR, 1), [(0, 3), (1, -1.5)], [(1, 0), (0, 3)], interpolate="polytropic", clearance=0.1),
+            "not above the vacuum",
+        ),
+    ],
+)
+def test_cards_that_cannot_be(card: Any, message: str) -> None:
+    with pytest.raises(RuleError, match=message):
+        cylinder(card)
+
+
+def test_steam_card_needs_a_two_stroke_cycle() -> None:
+    with pytest.raises(RuleError, match="a steam card is one of a two-stroke cycle"):
+        cylinder(STEAM, "four-stroke")
+
+
+def test_drawn_cards_and_ideal_cards_agree() -> None:
+    """A constant-pressure compressor drawn with many points comes near the exact one, from outside."""
+    c, n = 0.06, 1.3
+    exact = Compressor(1 * BAR, 7 * BAR, clearance=c, exponent=n)
+    filled, emptied = c * 7 ** (1 / n) - c, (1 + c) * 7 ** (-1 / n) - c
+    fill, empty = np.linspace(0, filled, 400), np.linspace(1, emptied, 400)
+    drawn = Card.from_keys(
+        unit=(BAR, 1),
+        expansion=[*zip(fill.tolist(), (7 * (c / (c + fill)) ** n).tolist()), (1, 1)],
+        compression=[*zip(empty.tolist(), (((1 + c) / (c + empty)) ** n).tolist()), (0, 7)],
+    )
+    assert cylinder(drawn, absolute=True).work == pytest.approx(cylinder(exact, absolute=True).work or 0, rel=1e-5)
+
+
+def test_the_module_of_ideal_cards_is_left_alone_without_them() -> None:
+    import subprocess
+    import sys
+
+    code = (
+        "import sys; from kurbel.machine_file import loads; from kurbel.solver.case import Case;"
+        "m = loads('{stroke: 1 m, rod_ratio: 5, bore: 1 m, indicator: {head_end: {constant: "
+        "{expansion: 1 bar, compression: 0 bar}}}}'); assert Case(m).cylinders[0].work > 0;"
+        "own = ('ideal', 'ideal_cards', 'trace', 'trace_samples', 'solver.rod');"
+        "print(*(n for n in sys.modules if n.endswith(own)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""

@@ -1,0 +1,286 @@
+"""Forces of every mechanism by the law of virtual work, and what each mechanism has of its own."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import RuleError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.friction import Friction, Rings
+from kurbel.machine.indicator import Indicator
+from kurbel.machine.masses import ConnectingRod, Masses
+from kurbel.machine.piston import Piston
+from kurbel.machine.resistance import Moment, RamForce
+from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms.four_bar import FourBar
+from kurbel.mechanisms.parallel_crank import ParallelCrank
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.mechanisms.slotted_lever import SlottedLever
+from kurbel.mechanisms.yoke_frame import YokeFrame
+from kurbel.solver.forces import CylinderForces
+from machines import AT, STEAM_CARD
+
+SLIDING: dict[str, Mechanism] = {
+    "slider-crank": SliderCrank(0.4, 2.0),
+    "infinite rod": SliderCrank(0.4, math.inf),
+    "offset": SliderCrank(0.3, 0.5, 0.1),
+    "scotch yoke": ScotchYoke(0.25, 0.9, 0.05, 0.06),
+    "yoke frame": YokeFrame(0.1, 0.3, gland=0.2),
+    "shaper": SlottedLever(0.3, 0.8, 1.3),
+    "shaper with link": SlottedLever(0.3, 0.8, 1.3, link=0.5),
+    "pin close to the pivot": SlottedLever(0.3, 0.32, 0.7),
+    "Whitworth": SlottedLever(0.15, 0.1, 0.2),
+    "Whitworth with link": SlottedLever(0.15, 0.1, 0.2, link=0.6, ram_height=-0.07),
+}
+TURNING: dict[str, Mechanism] = {
+    "four-bar": FourBar(0.04, 0.15, 0.08, 0.15),
+    "four-bar, slow back": FourBar(0.04, 0.08, 0.15, 0.15),
+    "parallel crank": ParallelCrank(0.3, 2.0, 140.0),
+}
+STEAM = Piston(0.2, 0.0, 0.03, Indicator(STEAM_CARD, STEAM_CARD))
+DENSE = np.arange(0.5, 360.0, 1.0)
+
+
+def solved(mechanism: Mechanism, rpm: float | None = 90, **cylinder: Any) -> CylinderForces:
+    own = Cylinder(mechanism, **cylinder)
+    return CylinderForces(Machine((own,), speed=None if rpm is None else rpm / 60), own)
+
+
+def every(machines: dict[str, Mechanism]) -> Any:
+    return pytest.mark.parametrize("mechanism", machines.values(), ids=machines)
+
+
+@every(SLIDING)
+def test_torque_is_the_force_times_the_way_by_angle(mechanism: Mechanism) -> None:
+    """P dx = M dφ, with dx from differences of x: the torque asks for no derivative of its own here."""
+    forces = solved(mechanism, pistons=(STEAM,), masses=Masses(80), ram_force=RamForce(900, 100))
+    step = 1e-4
+    state = forces.at(DENSE)
+    way = forces.at(DENSE + step).x - forces.at(DENSE - step).x
+    size = abs(state.M).max()
+    assert pytest.approx(state.P * way / math.radians(2 * step), rel=1e-6, abs=1e-7 * size) == state.M
+    assert state.T * mechanism.crank == pytest.approx(state.M, rel=1e-14, abs=1e-14 * size)
+
+
+@every(SLIDING)
+def test_steam_does_the_work_of_its_cards_in_any_mechanism(mechanism: Mechanism) -> None:
+    """∮ M dφ is the area of the cards: the chambers see x from the dead centre, wherever the book counts it from."""
+    forces = solved(mechanism, pistons=(STEAM,), masses=Masses(80))
+    points = STEAM_CARD.lines
+    area = sum(
+        (z1 - z0) * (p0 + p1) / 2
+        for line in points
+        for (z0, p0), (z1, p1) in zip(zip(line.fractions, line.pressures), zip(line.fractions[1:], line.pressures[1:]))
+    )
+    assert forces.work == pytest.approx((STEAM.head_area + STEAM.crank_area) * area * mechanism.stroke, rel=1e-13)
+    assert forces.energy_residual == pytest.approx(0, abs=2e-14)
+    pressures = forces.at(np.array(mechanism.dead_centres()) + 1e-9).p_head
+    assert pressures == pytest.approx([9.5 * AT, 1.2 * AT], rel=1e-6)
+
+
+@every(SLIDING)
+def test_the_ram_takes_its_force_times_its_strokes(mechanism: Mechanism) -> None:
+    forces = solved(mechanism, ram_force=RamForce(5000, 700))
+    assert forces.resistance_work == pytest.approx(-5700 * mechanism.stroke, rel=1e-15)
+    assert forces.energy_residual == pytest.approx(0, abs=2e-14)
+    assert forces.W is not None
+    assert forces.W * mechanism.crank * 2 * math.pi == pytest.approx(-5700 * mechanism.stroke, rel=1e-14)
+    assert forces.work is None
+
+
+@every(SLIDING)
+def test_the_ram_force_opposes_the_motion(mechanism: Mechanism) -> None:
+    state = solved(mechanism, ram_force=RamForce(5000, 700)).at(DENSE)
+    assert (state.M <= 0).all()
+    moving_out = state.c > 0
+    assert set(state.P_ram[moving_out]) == {-5000}
+    assert set(state.P_ram[~moving_out]) == {700}
+
+
+@every(SLIDING)
+def test_inertia_is_mass_times_acceleration_and_does_no_work(mechanism: Mechanism) -> None:
+    forces = solved(mechanism, masses=Masses(30))
+    assert -30 * forces.at(DENSE).b == pytest.approx(forces.at(DENSE).P, rel=1e-15)
+    assert forces.W == 0
+    assert forces.energy_residual == pytest.approx(0, abs=2e-14)
+
+
+@every(SLIDING)
+def test_rings_rub_in_any_mechanism(mechanism: Mechanism) -> None:
+    rings = Friction(rings=Rings(2, 0.01, 3e4, 0.1))
+    forces = solved(mechanism, pistons=(STEAM,), friction=rings)
+    rubbing = 2 * math.pi * 0.2 * 0.01 * 3e4 * 0.1
+    assert forces.friction_work == pytest.approx(rubbing * 2 * mechanism.stroke, rel=1e-14)
+    assert forces.energy_residual == pytest.approx(0, abs=2e-14)
+
+
+@every({name: machine for name, machine in SLIDING.items() if not machine.has_rod})
+def test_the_force_on_the_pin_has_the_parts_t_and_d(mechanism: Mechanism) -> None:
+    state = solved(mechanism, pistons=(STEAM,), ram_force=RamForce(900, 100)).at(DENSE)
+    assert np.hypot(state.T, state.D) == pytest.approx(abs(state.F_pin), rel=1e-13)
+    assert (state.S, state.N, state.psi) == (None, None, None)
+
+
+@every({name: machine for name, machine in SLIDING.items() if machine.has_rod})
+def test_the_force_in_the_rod_has_the_parts_t_and_d(mechanism: Mechanism) -> None:
+    state = solved(mechanism, pistons=(STEAM,)).at(DENSE)
+    assert np.hypot(state.T, state.D) == pytest.approx(abs(state.S), rel=1e-13)
+    assert state.F_pin is None
+
+
+def test_force_on_the_pin_of_a_shaper_by_the_lever_rule() -> None:
+    """At φ = 0 the pin stands e + r from the pivot, at 180° e − r: the ram pulls with P R_l over that."""
+    state = solved(SlottedLever(0.3, 0.8, 1.3), ram_force=RamForce(1100, 500)).at([0.0, 180.0])
+    assert state.F_pin == pytest.approx([-1100 * 1.3 / 1.1, 500 * 1.3 / 0.5], rel=1e-14)
+    assert pytest.approx([-1100 * 1.3 / 1.1, -500 * 1.3 / 0.5], rel=1e-14) == state.T
+    assert pytest.approx([0, 0], abs=1e-12) == state.D
+
+
+def test_guides_and_pin_of_a_scotch_yoke() -> None:
+    """The couple of P on the piston rod and on the pin, R sin φ apart, rests on two guides."""
+    forces = solved(ScotchYoke(0.25, guide_length=0.9, pin_diameter=0.05, pin_length=0.06), pistons=(STEAM,))
+    state = forces.at(DENSE)
+    assert state.N_pair * 0.9 == pytest.approx(state.P * 0.25 * np.sin(np.radians(DENSE)), rel=1e-12, abs=1e-9)
+    assert state.F_pin == pytest.approx(state.P, rel=1e-15)
+    force = (9.5 * STEAM.head_area - 1.2 * STEAM.crank_area) * AT  # the same on the return stroke is less
+    assert forces.pin_pressure is not None
+    assert forces.pin_pressure.value == pytest.approx(force / (0.05 * 0.06), rel=1e-14)
+
+
+def test_pin_pressure_above_that_of_the_book_is_a_warning() -> None:
+    from kurbel.report.forces import forces_report
+    from kurbel.solver.case import Case
+
+    for width, warned in ((0.012, True), (0.5, False)):
+        yoke = ScotchYoke(0.25, pin_diameter=0.05, pin_length=width)
+        machine = Machine((Cylinder(yoke, pistons=(STEAM,)),))
+        (part,) = forces_report(Case(machine), (0.0,), None, "si").parts
+        # R p. 617: up to 200 kgf/cm²
+        assert any("above 196.133 bar" in warning for warning in part.warnings) == warned
+        assert [left.why for left in part.left_out if left.what == "force on the guides"] == ["no guide_length given"]
+
+
+def test_side_force_bends_the_piston_rod_of_a_yoke_frame() -> None:
+    forces = solved(YokeFrame(0.1, 0.3, gland=0.2), pistons=(STEAM,))
+    state = forces.at(DENSE)
+    psi = np.arcsin(np.sin(np.radians(DENSE)) / 3)
+    way = 0.4 - 0.1 * np.cos(np.radians(DENSE)) - 0.3 * np.cos(psi)
+    assert state.M_bend == pytest.approx(state.P * np.tan(psi) * (0.2 + way), rel=1e-11, abs=1e-9)
+    found = forces.extremes_of("M_bend")
+    assert found is not None
+    assert found.largest.value >= state.M_bend.max()
+    assert found.largest.value == pytest.approx(state.M_bend.max(), rel=1e-3)
+    assert solved(YokeFrame(0.1, 0.3), pistons=(STEAM,)).at(DENSE).M_bend is None
+
+
+@every(TURNING)
+def test_a_moment_passes_to_the_crank_as_the_output_turns(mechanism: Mechanism) -> None:
+    """M ω = M₂ θ̇ at every angle, against the motion, and the work of a turn is moment times swing."""
+    resistance = Moment(40) if mechanism.turns else Moment(40, 10)
+    forces = solved(mechanism, moment=resistance)
+    state = forces.at(DENSE)
+    omega = 2 * math.pi * 1.5
+    assert state.M * omega == pytest.approx(state.M_out * state.theta_dot, rel=1e-13)
+    assert (state.M <= 0).all()
+    work = -40 * 2 * math.pi if mechanism.turns else -50 * math.radians(mechanism.swing or 0)
+    assert forces.resistance_work == pytest.approx(work, rel=1e-14)
+    assert forces.energy_residual == pytest.approx(0, abs=2e-14)
+    assert (state.P, state.x, state.c, state.S, state.D) == (None,) * 5
+
+
+@pytest.mark.parametrize("name", ["four-bar", "four-bar, slow back"])
+def test_the_slower_swing_works(name: str) -> None:
+    mechanism = TURNING[name]
+    state = solved(mechanism, moment=Moment(40, 10)).at(DENSE)
+    working = abs(state.M_out) == 40
+    share = working.mean()
+    assert share == pytest.approx(mechanism.phi_work / 360, abs=0.006)
+    assert share > 0.5
+    assert len(set(np.sign(state.theta_dot[working]))) == 1
+
+
+def test_the_force_in_the_coupler_turns_the_rocker() -> None:
+    """Moments about the rocker's pivot: F c sin μ, μ by the cosine law from the diagonal."""
+    mechanism = FourBar(0.04, 0.15, 0.08, 0.15)
+    state = solved(mechanism, moment=Moment(40, 10)).at(DENSE)
+    square = 0.04**2 + 0.15**2 - 2 * 0.04 * 0.15 * np.cos(np.radians(DENSE))
+    cos_mu = (0.15**2 + 0.08**2 - square) / (2 * 0.15 * 0.08)
+    assert state.F_coupler * 0.08 * np.sqrt(1 - cos_mu**2) == pytest.approx(state.M_out, rel=1e-12)
+
+
+def test_inertia_of_a_coupling_rod() -> None:
+    """m v²/R, R ch. 14 A."""
+    forces = solved(ParallelCrank(0.305, 2.1, 145.0), rpm=240, moment=Moment(9000))
+    assert forces.coupler_inertia == pytest.approx(145 * (0.305 * 8 * math.pi) ** 2 / 0.305, rel=1e-14)
+    found = forces.extremes_of("F_coupler")
+    assert found is not None
+    assert found.largest.value == pytest.approx(9000 / 0.305, rel=1e-14)
+    assert solved(ParallelCrank(0.305, 2.1), moment=Moment(9000)).coupler_inertia is None
+
+
+@pytest.mark.parametrize(
+    ("parts", "path"),
+    [
+        ({"pistons": (STEAM,)}, "bore"),
+        ({"masses": Masses(3)}, "masses"),
+        ({"friction": Friction(crosshead=0.1)}, "friction"),
+        ({"inclination": 90.0}, "inclination"),
+        ({"ram_force": RamForce(3)}, "ram_force"),
+    ],
+)
+def test_nothing_hangs_on_what_only_swings(parts: dict[str, Any], path: str) -> None:
+    with pytest.raises(RuleError, match=f"{path}: nothing slides in a four-bar"):
+        Cylinder(TURNING["four-bar"], **parts)
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "parts", "message"),
+    [
+        (ScotchYoke(0.2), {"friction": Friction(crosshead=0.1)}, "friction.crosshead: a scotch-yoke has no connecting"),
+        (
+            YokeFrame(0.1, 0.3),
+            {"friction": Friction(crosshead=0.1)},
+            "friction.crosshead: a yoke-frame has no crosshead",
+        ),
+        (ScotchYoke(0.2), {"masses": Masses(3, ConnectingRod(2))}, "masses.connecting_rod: a scotch-yoke has no"),
+        (ScotchYoke(0.2), {"moment": Moment(3)}, "moment: a scotch-yoke moves its output to and fro"),
+        (ParallelCrank(0.2, 1), {"moment": Moment(3, 1)}, "moment.return: the output of a parallel-crank turns on"),
+    ],
+)
+def test_parts_that_a_mechanism_cannot_have(mechanism: Mechanism, parts: dict[str, Any], message: str) -> None:
+    with pytest.raises(RuleError, match=message):
+        Cylinder(mechanism, **parts)
+
+
+@every({**SLIDING, **TURNING})
+def test_extremes_of_the_motion_are_exact(mechanism: Mechanism) -> None:
+    """Each is a value of the motion at its angle, and no angle of a dense row goes beyond it."""
+    forces = solved(mechanism)
+    row = forces.at(np.arange(0.0, 360.0, 0.05))
+    columns = {"c": ("c_max", "c_min"), "b": ("b_max", "b_min")}
+    columns |= {name: (f"{name}_max", f"{name}_min") for name in ("theta_dot", "theta_ddot")}
+    for column, (largest, smallest) in columns.items():
+        values = getattr(row, column)
+        for name, sign in ((largest, 1.0), (smallest, -1.0)):
+            extreme = getattr(forces.motion, name)
+            if values is None or extreme is None:
+                continue
+            at = getattr(forces.at([extreme.degrees]), column)[0]
+            size = abs(values).max()
+            assert at == pytest.approx(extreme.value, rel=1e-12, abs=1e-13 * size)
+            assert sign * extreme.value >= (sign * values).max() - 1e-13 * size
+            assert sign * extreme.value == pytest.approx((sign * values).max(), abs=1e-4 * size)
+
+
+def test_a_hair_beyond_a_right_angle() -> None:
+    """What is too small to show in the degrees still shows in the cosine, for a number as for an array."""
+    alone, among = CrankAngle.of(90.0, 1e-20), CrankAngle.of(np.array([90.0]), 1e-20)
+    assert alone.cos == pytest.approx(-1e-20 * math.pi / 180, rel=1e-15)
+    assert alone.cos == among.cos[0]
+    assert CrankAngle.of(90.0, np.array([0.0, 1e-20])).cos.tolist() == [0.0, alone.cos]

@@ -1,0 +1,297 @@
+"""`kurbel motion` as a user calls it: every mechanism, every format, and a mechanism from outside."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+
+FOLDER = Path(__file__).parent
+CONFIGS = FOLDER.parent / "configs"
+SLIDER = "crank: 400 mm\nrod: 2000 mm\n"
+MACHINES = {
+    "slider-crank": SLIDER,
+    "infinite rod": "stroke: 800 mm\nrod: infinite\n",
+    "offset": "crank: 30 mm\nrod: 50 mm\noffset: 10 mm\n",
+    "scotch-yoke": "mechanism: scotch-yoke\nstroke: 800 mm\n",
+    "slotted-lever": "mechanism: slotted-lever\ncrank: 300 mm\nframe: 800 mm\nlever: 1300 mm\n",
+    "shaper with link": "mechanism: slotted-lever\ncrank: 300 mm\nframe: 800 mm\nlever: 1300 mm\nlink: 500 mm\n",
+    "Whitworth": "mechanism: slotted-lever\ncrank: 150 mm\nframe: 100 mm\nlever: 200 mm\n",
+    "four-bar": "mechanism: four-bar\ncrank: 40 mm\ncoupler: 150 mm\nrocker: 80 mm\nframe: 150 mm\n",
+    "parallel-crank": "mechanism: parallel-crank\ncrank: 300 mm\nframe: 2 m\n",
+    "yoke-frame": "mechanism: yoke-frame\nstroke: 160 mm\nrod: 320 mm\n",
+}
+SLIDES = {"x", "c", "b"}
+SWINGS = {"theta", "theta_dot", "theta_ddot"}
+STROKES = {"stroke", "phi_idc", "phi_odc", "v", "c_m", "c_max", "b_max", "b_min", "phi_b_zero"}
+UNEQUAL = {"phi_work", "phi_return", "time_ratio"}
+SWING = {"swing", "theta_min", "theta_max"}
+TURNING = {"theta_dot_max", "theta_dot_min", "theta_ddot_max", "theta_ddot_min"}
+FITTING: dict[str, tuple[set[str], set[str]]] = {
+    "slider-crank": ({"psi", *SLIDES}, STROKES),
+    "infinite rod": ({"psi", *SLIDES}, STROKES),
+    "offset": ({"psi", *SLIDES}, {*STROKES, *UNEQUAL, "c_min"}),
+    "scotch-yoke": ({*SLIDES, "c_block"}, STROKES),
+    "slotted-lever": (
+        {*SLIDES, *SWINGS, "c_block"},
+        {*STROKES, *UNEQUAL, *SWING, *TURNING, "c_work_max", "c_return_max"},
+    ),
+    "shaper with link": (
+        {*SLIDES, *SWINGS, "c_block"},
+        {*STROKES, *UNEQUAL, *SWING, *TURNING, "c_work_max", "c_return_max"},
+    ),
+    "Whitworth": ({*SLIDES, *SWINGS, "c_block"}, {*STROKES, *UNEQUAL, *TURNING, "c_work_max", "c_return_max"}),
+    "four-bar": (
+        SWINGS,
+        {*UNEQUAL, *SWING, *TURNING, "phi_idc", "phi_odc", "v", "transmission_min", "transmission_max"},
+    ),
+    "parallel-crank": (
+        {*SWINGS, "x_coupler", "y_coupler", "bx_coupler", "by_coupler"},
+        {"phi_idc", "phi_odc", "v", "b_coupler"},
+    ),
+    "yoke-frame": ({"psi", *SLIDES}, STROKES),
+}
+
+
+def run(*arguments: str, text: str | None = None) -> Result:
+    return CliRunner().invoke(kurbel, list(arguments), input=text)
+
+
+def answer(*arguments: str, text: str | None = None) -> dict[str, Any]:
+    result = run("motion", *arguments, "-f", "json", text=text)
+    assert result.exit_code == 0, result.output
+    parsed: dict[str, Any] = json.loads(result.stdout)
+    return parsed
+
+
+def only_part(parsed: dict[str, Any]) -> tuple[dict[str, list[float]], dict[str, Any]]:
+    (part,) = parsed["cylinders"]
+    return {c["id"]: c["values"] for c in part["columns"]}, {k["id"]: k for k in part["key_values"]}
+
+
+def motion_of(name: str, *arguments: str) -> tuple[dict[str, list[float]], dict[str, Any]]:
+    return only_part(answer("-", *arguments, text=f"speed: 60 rpm\n{MACHINES[name]}"))
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_columns_and_key_values_fit_the_mechanism_and_no_others(name: str) -> None:
+    columns, key_values = motion_of(name)
+    assert set(columns) == {"phi", *FITTING[name][0]}
+    assert set(key_values) == FITTING[name][1]
+    assert columns["phi"] == list(range(0, 361, 10))
+    assert all(math.isfinite(value) for values in columns.values() for value in values)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@pytest.mark.parametrize("format", ["table", "csv", "json", "markdown"])
+@pytest.mark.parametrize("units", ["si", "technical"])
+def test_every_format(name: str, format: str, units: str) -> None:
+    text = f"name: It\nspeed: 60 rpm\n{MACHINES[name]}"
+    result = run("motion", "-", "-f", format, "--units", units, "--step", "30", text=text)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert "nan" not in result.stdout
+    if format in ("table", "markdown"):
+        assert "It. Bewegung des Kurbeltriebes" in result.stdout
+    if format == "csv":
+        rows = list(csv.reader(io.StringIO(result.stdout)))
+        assert len(rows) == 1 + 13
+        assert {len(row) for row in rows} == {1 + len(FITTING[name][0])}
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_without_a_speed_what_can_be_said_is_said(name: str) -> None:
+    parsed = answer("-", text=MACHINES[name])
+    columns, key_values = only_part(parsed)
+    timeless = {"psi", "x", "theta", "x_coupler", "y_coupler"}
+    assert set(columns) == {"phi", *FITTING[name][0] & timeless}
+    moving = {"v", "c_m", "c_max", "c_min", "c_work_max", "c_return_max", "b_max", "b_min", "b_coupler", *TURNING}
+    assert set(key_values) == FITTING[name][1] - moving
+    assert parsed["cylinders"][0]["left_out"] == [{"what": "velocity, acceleration", "why": "no speed given"}]
+
+
+def test_at_rest_nothing_moves() -> None:
+    columns, key_values = only_part(answer("-", text=f"speed: 0 rpm\n{SLIDER}"))
+    assert set(columns["c"]) == set(columns["b"]) == {0}
+    assert key_values["c_max"]["value"] == key_values["v"]["value"] == 0
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_columns_are_the_derivatives_of_one_another(name: str) -> None:
+    """Central differences in time; one turn takes one second."""
+    middle, apart = [23.0, 111.0, 200.0, 301.5], 1e-3
+    angles = ",".join(str(a + d) for a in middle for d in (-apart, 0.0, apart))
+    columns, _ = motion_of(name, f"--angles={angles}")
+    radian = math.pi / 180
+    for place, velocity, acceleration, unit in (("x", "c", "b", 1.0), ("theta", "theta_dot", "theta_ddot", radian)):
+        if place not in columns:
+            continue
+        for row in range(1, 12, 3):
+            for quantity, derived, scale in ((place, velocity, unit), (velocity, acceleration, 1.0)):
+                before, after = columns[quantity][row - 1], columns[quantity][row + 1]
+                difference = (after - before) * scale / (2 * apart / 360)
+                size = max(map(abs, columns[derived]))
+                assert difference == pytest.approx(columns[derived][row], rel=1e-6, abs=1e-6 * size)
+
+
+def test_dead_centres_lie_within_the_turn() -> None:
+    """The ram's inner dead centre at −112.02° is that at 247.98°."""
+    _, key_values = motion_of("slotted-lever")
+    limit = 180 - math.degrees(math.acos(300 / 800))
+    assert key_values["phi_idc"]["value"] == pytest.approx(360 - limit, rel=1e-14)
+    assert key_values["phi_odc"]["value"] == pytest.approx(limit, rel=1e-14)
+    assert key_values["theta_min"]["at_deg"] == key_values["phi_idc"]["value"]
+
+
+def test_time_ratio_of_the_offset_crank() -> None:
+    """GATE 2025, question 60: dead centres at arcsin(10/80) and 180° + arcsin(10/20)."""
+    _, key_values = motion_of("offset")
+    inner, outer = math.degrees(math.asin(10 / 80)), 180 + math.degrees(math.asin(10 / 20))
+    assert key_values["phi_idc"]["value"] == pytest.approx(inner, rel=1e-14)
+    assert key_values["phi_odc"]["value"] == pytest.approx(outer, rel=1e-14)
+    assert key_values["time_ratio"]["value"] == pytest.approx((outer - inner) / (360 - outer + inner), rel=1e-14)
+    assert key_values["stroke"]["value"] == pytest.approx(0.0620520312562, rel=1e-11)
+
+
+def test_quick_return_of_the_book() -> None:
+    """R 304, 305 and the stroke 2 R_l r/e; v = r ω."""
+    _, key_values = motion_of("slotted-lever")
+    v = 2 * math.pi * 0.3
+    assert key_values["c_work_max"]["value"] == pytest.approx(v * 1.3 / 1.1, rel=1e-14)
+    assert key_values["c_return_max"]["value"] == pytest.approx(v * 1.3 / 0.5, rel=1e-14)
+    assert key_values["c_return_max"]["at_deg"] == 180
+    assert key_values["stroke"]["value"] == pytest.approx(0.975, rel=1e-14)
+    assert key_values["phi_b_zero"]["value"] == [0, 180]
+
+
+def test_every_coupler_point_has_the_acceleration_of_a_circle() -> None:
+    columns, key_values = motion_of("parallel-crank")
+    assert key_values["b_coupler"]["value"] == pytest.approx((2 * math.pi) ** 2 * 0.3, rel=1e-14)
+    sizes = [math.hypot(*pair) for pair in zip(columns["bx_coupler"], columns["by_coupler"])]
+    assert sizes == pytest.approx([key_values["b_coupler"]["value"]] * 37, rel=1e-14)
+
+
+def test_what_the_mechanism_says_of_itself_is_a_note() -> None:
+    parsed = answer("-", text=MACHINES["parallel-crank"])
+    (note,) = parsed["notes"]
+    assert "second pair of cranks at 90 deg" in note
+    result = run("motion", "-", text=MACHINES["parallel-crank"])
+    assert note in result.stdout
+    assert note in run("check", "-", text=MACHINES["parallel-crank"]).stdout
+
+
+def test_several_cylinders_each_with_its_own_part() -> None:
+    text = (
+        "speed: 60 rpm\ncylinders:\n"
+        "  - {name: engine, crank: 400 mm, rod_ratio: 5}\n"
+        "  - {name: valve gear, mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm}\n"
+    )
+    parsed = answer("-", text=text)
+    assert [part["name"] for part in parsed["cylinders"]] == ["engine", "valve gear"]
+    ids = [{column["id"] for column in part["columns"]} for part in parsed["cylinders"]]
+    assert ids == [{"phi", "psi", *SLIDES}, {"phi", *SWINGS}]
+    rows = list(csv.DictReader(io.StringIO(run("motion", "-", "-f", "csv", text=text).stdout)))
+    assert [row["cylinder"] for row in rows] == ["engine"] * 37 + ["valve gear"] * 37
+    assert rows[40]["x_m"] == ""
+    assert "Key values: valve gear" in run("motion", "-", text=text).stdout
+
+
+def test_a_four_stroke_engine_moves_alike_in_every_turn() -> None:
+    columns, _ = only_part(answer("-", text=f"cycle: four-stroke\n{SLIDER}"))
+    assert columns["phi"][-1] == 360
+    columns, _ = only_part(answer("-", "--angles", "30,390", text=f"cycle: four-stroke\n{SLIDER}"))
+    assert columns["x"][0] == columns["x"][1]
+
+
+def test_key_values_do_not_depend_on_the_step() -> None:
+    for name in ("offset", "shaper with link", "four-bar"):
+        assert motion_of(name, "--step", "90")[1] == motion_of(name, "--step", "1")[1]
+
+
+def test_forces_print_the_same_key_values_of_motion() -> None:
+    text = f"speed: 60 rpm\n{MACHINES['shaper with link']}ram_force: {{work: 3 kN}}\n"
+    _, key_values = only_part(answer("-", text=text))
+    _, with_forces = only_part(json.loads(run("forces", "-", "-f", "json", text=text).stdout))
+    assert key_values.items() <= with_forces.items()
+
+
+def test_columns_in_the_order_asked_for() -> None:
+    columns, _ = motion_of("slotted-lever", "--columns", "theta,c,x", "--angles", "0,90")
+    assert list(columns) == ["phi", "theta", "c", "x"]
+
+
+@pytest.mark.parametrize(
+    ("column", "message"),
+    [
+        ("P", "'P' is no column of kurbel motion (it has phi, psi, x, c, b, theta"),
+        ("theta", "'theta' is left out for this machine"),
+        ("thetta", "did you mean 'theta'?"),
+    ],
+)
+def test_columns_that_are_not_there(column: str, message: str) -> None:
+    result = run("motion", "-", "--columns", column, text=SLIDER)
+    assert result.exit_code == 2
+    assert message in result.stderr
+
+
+def test_a_machine_without_cylinders_does_not_move() -> None:
+    result = run("motion", "-", text="effort: {unit: N m, points: [[0, 1], [360, 1]]}\n")
+    assert result.exit_code == 2
+    assert "has no cylinder; kurbel motion needs one" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ("{mechanism: slotted-lever, crank: 3 cm, frame: 3 cm, lever: 9 cm}", "pass through the lever's pivot"),
+        ("{mechanism: four-bar, crank: 1 m, coupler: 2 m, rocker: 2 m, frame: 1 m}", "crank"),
+        ("{mechanism: four-bar, crank: 1 m, coupler: 2 m, rocker: 3 m, frame: 2 m}", "change point"),
+        ("{mechanism: four-bar, crank: 2 m, coupler: 3 m, rocker: 3 m, frame: 5 m}", "Grashof"),
+        ("{crank: 1 m, rod: 1 m}", "no longer than the crank"),
+    ],
+)
+def test_degenerate_geometry_is_an_error_of_the_file(keys: str, message: str) -> None:
+    result = run("motion", "-", text=keys)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert result.stderr.startswith("<stdin>:1:") or ":1:" in result.stderr
+
+
+def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) -> None:
+    machine = tmp_path / "cam.yaml"
+    machine.write_text("speed: 60 rpm\nmechanism: harmonic-cam\ncrank: 20 mm\nsecond: 2 mm\nram_force: {work: 1 kN}\n")
+    code = (
+        "from kurbel.keys import Record\nfrom kurbel.mechanisms import MECHANISMS\n"
+        "MECHANISMS['harmonic-cam'] = Record('toy_mechanism:HarmonicCam')\n"
+        "from kurbel.cli import main\nmain()\n"
+    )
+
+    def called(command: str) -> dict[str, Any]:
+        arguments = [sys.executable, "-c", code, command, str(machine), "-f", "json", "--angles", "0,90"]
+        path = os.pathsep.join((str(FOLDER), os.environ.get("PYTHONPATH", "")))
+        environment = os.environ | {"PYTHONPATH": path, "PYTHONIOENCODING": "utf-8"}
+        done = subprocess.run(arguments, capture_output=True, env=environment, check=False, encoding="utf-8")
+        assert done.returncode == 0, done.stderr
+        parsed: dict[str, Any] = json.loads(done.stdout)
+        return parsed
+
+    columns, key_values = only_part(called("motion"))
+    assert columns["x"] == pytest.approx([0, 0.022])
+    assert set(key_values) == STROKES
+    # c = ω sin φ (a + 2k cos φ) is largest where cos φ = (√(a² + 32k²) − a)/(8k)
+    cos = (math.sqrt(20**2 + 32 * 2**2) - 20) / (8 * 2)
+    peak = 2 * math.pi * math.sqrt(1 - cos * cos) * (0.02 + 0.004 * cos)
+    assert key_values["c_max"]["value"] == pytest.approx(peak, rel=1e-14)
+    columns, key_values = only_part(called("forces"))
+    assert columns["M"] == pytest.approx([0, -1000 * 0.02])
+    assert key_values["resistance_work"]["value"] == pytest.approx(-1000 * 0.04)
