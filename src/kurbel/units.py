@@ -79,6 +79,7 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
     "mass": lambda: _MASS,
     "force": lambda: _FORCE,
     "pressure": lambda: {**_PRESSURE, **_product(_FORCE, _AREA, "/")},
+    "stress": lambda: {"N/mm2": (1e6, 1), **_product(_FORCE, _AREA, "/"), **_PRESSURE},
     "time": lambda: _TIME,
     "angle": lambda: {"deg": (1, 1), "°": (1, 1), "rad": (180, math.pi)},
     "speed": lambda: {
@@ -129,6 +130,7 @@ SI = {
     "mass": "kg",
     "force": "N",
     "pressure": "Pa",
+    "stress": "Pa",
     "time": "s",
     "angle": "deg",
     "speed": "1/s",
@@ -151,6 +153,7 @@ TECHNICAL = SI | {
     "area": "cm^2",
     "force": "kgf",
     "pressure": "at",
+    "stress": "kgf/cm^2",
     "speed": "rpm",
     "torque": "kgf m",
     "energy": "kgf m",
@@ -164,6 +167,7 @@ SYSTEMS = {"si": SI, "technical": TECHNICAL}
 _IN_MESSAGES = TECHNICAL | {
     "force": "N",
     "pressure": "bar",
+    "stress": "N/mm2",
     "torque": "N m",
     "energy": "J",
     "power": "W",
@@ -289,6 +293,7 @@ def _unit_example(kind: str) -> str:
     return {
         "length": "mm",
         "pressure": "bar",
+        "stress": "N/mm2",
         "force": "N",
         "speed": "rpm",
         "torque": "N m",
@@ -299,8 +304,8 @@ def _unit_example(kind: str) -> str:
 
 def example(kind: str) -> str:
     """Return a value of this kind as a person would write it, for messages and for the schema."""
-    number = {"length": "450", "pressure": "5.4", "speed": "50", "angle": "90", "mass": "120"}.get(kind, "10")
-    return f"{number} {_unit_example(kind)}"
+    numbers = {"length": "450", "pressure": "5.4", "stress": "60", "speed": "50", "angle": "90", "mass": "120"}
+    return f"{numbers.get(kind, '10')} {_unit_example(kind)}"
 
 
 def unit_names(kind: str) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from kurbel.errors import UsageError
 from kurbel.render import Look, render
-from kurbel.report.tables import Column, Part, Report, choose_columns
+from kurbel.report.tables import Column, Part, Report
 from render.sample_report import HIGH, ONE, PHI, REPORT
 
 VALUES = st.lists(st.none() | st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=6)
@@ -116,20 +116,6 @@ def test_digits_round_scripts_output_only_when_asked_for() -> None:
 def test_json_has_no_decimal_comma() -> None:
     with pytest.raises(UsageError, match="decimal point only"):
         render(ONE, Look("json", comma=True))
-
-
-def test_chosen_columns_keep_the_angle_and_the_order_asked_for() -> None:
-    chosen = choose_columns(REPORT, ("F_friction", "b"))
-    assert [[column.id for column in part.columns] for part in chosen.all_parts] == [
-        ["phi", "b"],
-        ["phi", "F_friction", "b"],
-        ["phi"],
-    ]
-
-
-def test_unknown_column_is_named_with_the_nearest() -> None:
-    with pytest.raises(UsageError, match="no column 'F_fricton' here; did you mean 'F_friction'"):
-        choose_columns(REPORT, ("F_fricton",))
 
 
 @given(st.lists(st.text(st.characters(blacklist_categories=["Cs", "Cc", "Zl", "Zp"])), min_size=2, max_size=2))

@@ -19,7 +19,7 @@ from kurbel.errors import KurbelError, MachineFileError
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-COMMANDS = ("table", "forces", "check", "example", "schema")
+COMMANDS = ("table", "motion", "forces", "flywheel", "stress", "accuracy", "check", "example", "schema")
 """In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""
 
 _INTERRUPTED = 130
@@ -45,7 +45,7 @@ class _Kurbel(click.Group):
         name = args[0]
         if name in COMMANDS or name.startswith("-"):
             return super().resolve_command(ctx, args)
-        from kurbel.report.tables import did_you_mean
+        from kurbel.near_words import did_you_mean
 
         raise click.UsageError(f"no command '{name}'{did_you_mean(name, COMMANDS)}", ctx)
 
@@ -111,6 +111,7 @@ def kurbel() -> None:
       kurbel example                            the machines that come with kurbel
       kurbel example waterworks > engine.yaml   take one as a pattern
       kurbel check engine.yaml                  what will be computed, what is left out
+      kurbel motion engine.yaml                 displacement, velocity, acceleration
       kurbel forces engine.yaml                 forces and key values
 
     Results go to standard output, everything else to standard error. Exit status: 0 done, 1 a limit

@@ -36,7 +36,7 @@ def _names() -> tuple[str, ...]:
 
 def _known(name: str) -> str:
     from kurbel.errors import UsageError
-    from kurbel.report.tables import did_you_mean
+    from kurbel.near_words import did_you_mean
 
     bare, names = name.removesuffix(_SUFFIX), _names()
     if bare not in names:

@@ -67,8 +67,8 @@ class Columns(Words):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
         """Return the ids in the order given."""
+        from kurbel.near_words import did_you_mean
         from kurbel.quantities import COLUMNS
-        from kurbel.report.tables import did_you_mean
 
         ids = super().convert(value, param, ctx)
         for id in ids:
@@ -137,16 +137,16 @@ _look_options = _stacked(
 )
 
 
-def output_options(command: Callable[..., None]) -> Callable[..., None]:
+def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command --layout, --format, --output, --decimal and --digits, which reach it as one `output: Output`."""
 
     @wraps(command)
     def with_output(
         layout: str, format: str, file_name: str | None, decimal: str, digits: int | None, **others: Any
-    ) -> None:
+    ) -> Any:
         if decimal == "comma" and format == "json":
             raise click.UsageError("--decimal comma: JSON has the decimal point only.")
-        command(output=Output(Look(format, layout, decimal == "comma", digits), file_name), **others)
+        return command(output=Output(Look(format, layout, decimal == "comma", digits), file_name), **others)
 
     return _look_options(with_output)
 

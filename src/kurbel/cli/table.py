@@ -6,14 +6,14 @@ import math
 
 import click
 
-from kurbel.cli.output_options import Number, Output, Words, angle_options, crank_angles, output_options
+from kurbel.cli.output_options import Number, Output, Words, angle_options, crank_angles, output_options, units_option
 
 
 @click.command(short_help="Zusammenstellung 112 for any L/R; needs no machine file.")
 @click.option(
     "--ratio",
     "ratios",
-    type=Number(inf=math.inf),
+    type=Number(inf=math.inf, infinite=math.inf),
     multiple=True,
     metavar="L/R",
     help="Rod length over crank radius, such as 5, or inf; may be repeated. 5, 4.5 and 4 if not given.",
@@ -37,6 +37,7 @@ from kurbel.cli.output_options import Number, Output, Words, angle_options, cran
     "--compare", is_flag=True, help="Set the figures that the book prints below the computed ones; mark misprints."
 )
 @angle_options
+@units_option
 @output_options
 def table(
     ratios: tuple[float, ...],
@@ -45,6 +46,7 @@ def table(
     compare: bool,
     step: float,
     angles: tuple[float, ...] | None,
+    units: str,  # factors and degrees are the same in all of them
     output: Output,
 ) -> None:
     """Print Zusammenstellung 112: factors of the straight slider-crank over the crank angle.

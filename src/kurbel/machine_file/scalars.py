@@ -12,8 +12,8 @@ from kurbel.errors import Path, UnitError
 from kurbel.machine_file.events import REFUSED, Plain
 from kurbel.machine_file.reading import Reading
 from kurbel.machine_file.source import shown
-from kurbel.machine_file.suggestions import did_you_mean
 from kurbel.machine_file.words import expected, kind_of, listed
+from kurbel.near_words import did_you_mean
 from kurbel.units import parse_number, parse_quantity, show, unit_factor
 
 _LONGEST = 200  # characters of a value; what is longer is no number, and would flood the message

@@ -57,6 +57,8 @@ def read(path: str | os.PathLike[str]) -> Source:
     if name == "-":
         import sys
 
+        if sys.stdin is None:
+            raise UnreadableFileError("cannot read standard input: it is closed")
         return decode("<stdin>", sys.stdin.buffer.read(SIZE_LIMIT + 1))
     try:
         with open(name, "rb") as file:
@@ -68,7 +70,7 @@ def read(path: str | os.PathLike[str]) -> Source:
 
 def _why_unreadable(name: str, error: OSError | ValueError) -> str:
     if isinstance(error, FileNotFoundError):
-        return f"{name}: there is no such file; 'kurbel example' lists machines to start from"
+        return f"{name or 'the empty name'}: there is no such file; 'kurbel example' lists machines to start from"
     if isinstance(error, IsADirectoryError):
         return f"{name} is a folder; name the machine file in it"
     if isinstance(error, PermissionError):

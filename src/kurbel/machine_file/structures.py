@@ -75,7 +75,7 @@ def _build(reading: Reading, cls: Any, mapping: Tree, path: Path, taken: frozens
             inner = forms.load(form.record)
             if (
                 not (form.unless and form.unless in mapping)
-                and all_names(inner, mapping).keys() - inner_taken & mapping.keys()
+                and (all_names(inner, mapping).keys() - inner_taken) & mapping.keys()
             ):
                 values[name] = _build(reading, inner, mapping, path, inner_taken, {})
         elif isinstance(form, forms.Variant):
@@ -90,8 +90,16 @@ def _build(reading: Reading, cls: Any, mapping: Tree, path: Path, taken: frozens
             where = (*path, beside) if beside else path
             values[name] = reading.fault(where, _missing(name, key, beside), bool(beside))
     if any(value is REFUSED for value in values.values()):
+        _check_alone(reading, cls, values, path)
         return REFUSED
     return _born(reading, cls, values, mapping, path)
+
+
+def _check_alone(reading: Reading, cls: Any, values: Tree, path: Path) -> None:
+    """Note what a record has to say of single keys, though it cannot be made because of others."""
+    for name, value in values.items():
+        for fault in getattr(cls, "faults_of_key", lambda *_: ())(name, value):
+            reading.fault((*path, *fault.path), fault.message)
 
 
 def _missing(name: str, key: forms.Key, beside: str) -> str:

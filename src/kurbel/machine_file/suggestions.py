@@ -7,28 +7,9 @@ from typing import Any
 
 from kurbel import keys as forms
 
-_LONGEST = 40  # characters of a word worth comparing
 _ROOT = forms.Record("kurbel.machine:Machine")
 _INLINE_TOO = (forms.Record("kurbel.machine:Cylinder"), forms.Record("kurbel.machine.piston:Piston"))
 """Records whose keys are named where they stand inline; the lists of them need not be named as well."""
-
-
-def near(word: str, known: tuple[str, ...]) -> str:
-    """Return the known word that is most like this one, or ''."""
-    from difflib import get_close_matches
-
-    if len(word) > _LONGEST:
-        return ""
-    lower = word.lower().replace("-", "_").replace(" ", "_")
-    alike = {name.lower().replace("-", "_"): name for name in known}
-    found = get_close_matches(lower, list(alike), n=1, cutoff=0.7)
-    return alike[found[0]] if found else ""
-
-
-def did_you_mean(word: str, known: tuple[str, ...]) -> str:
-    """Return '; did you mean …?' where a known word is near, or ''."""
-    found = near(word, known)
-    return f"; did you mean '{found}'?" if found else ""
 
 
 def where_it_belongs(key: str) -> str:

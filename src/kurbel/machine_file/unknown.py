@@ -7,8 +7,9 @@ from typing import Any
 from kurbel import keys as forms
 from kurbel.errors import Path
 from kurbel.machine_file.reading import Reading
-from kurbel.machine_file.suggestions import near, where_it_belongs
+from kurbel.machine_file.suggestions import where_it_belongs
 from kurbel.machine_file.words import listed
+from kurbel.near_words import near
 
 
 def unknown_keys(

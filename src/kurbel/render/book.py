@@ -48,9 +48,8 @@ def table(sheet: Sheet, look: Look) -> list[Line]:
 
 def _book_sizes(count: int) -> list[int]:
     """Return nine angles to a block; a single one left over joins the last: 19 = 9 + 10, as in the book."""
-    if count <= _NINE + 1:
-        return [count]
-    return [_NINE, *_book_sizes(count - _NINE)]
+    full = max(0, (count - 2) // _NINE)
+    return [*[_NINE] * full, count - full * _NINE]
 
 
 def _fitting_sizes(count: int, most: int) -> list[int]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 _ASCII = {
+    "σ": "sigma", "τ": "tau", "Σ": "sum ", "₀": "0",
     "φ": "phi", "ψ": "psi", "θ": "theta", "ω": "omega", "δ": "delta", "λ": "lambda", "μ": "mu", "η": "eta", "π": "pi",
     "ρ": "rho", "α": "alpha", "β": "beta", "κ": "kappa", "Δ": "d", "∮": "integral ", "√": "sqrt", "∞": "inf",
     "²": "^2", "³": "^3", "½": "1/2", "¼": "1/4", "⅔": "2/3", "·": "*", "×": "x", "−": "-", "–": "-", "—": "-",

@@ -16,7 +16,7 @@ def csv_text(report: Report, look: Look) -> str:
     """Return the table as CSV with `\\n` line ends; with the decimal comma, `;` separates the columns.
 
     Several cylinders stand under one another, told apart by a first column; a column that one of them has not is
-    empty there.
+    empty there. Tables of places are written where nothing stands over the crank angle, one under another likewise.
     """
     separator = ";" if look.comma else ","
     return "".join(separator.join(_quoted(text, separator) for text in row) + "\n" for row in _rows(report, look))
@@ -24,7 +24,10 @@ def csv_text(report: Report, look: Look) -> str:
 
 def _rows(report: Report, look: Look) -> Iterator[list[str]]:
     parts = [part for part in report.all_parts if part.columns]
-    heads = list(dict.fromkeys(head(column) for part in parts for column in part.columns))
+    if not parts:
+        yield from _place_rows(report, look)
+        return
+    heads = _merged([[head(column) for column in part.columns] for part in parts])
     named = report.group == "ratios" or len(parts) > 1
     first = "rod_ratio" if report.group == "ratios" else "cylinder"
     yield [*([first] if named else []), *heads]
@@ -34,6 +37,37 @@ def _rows(report: Report, look: Look) -> Iterator[list[str]]:
         name = _name(part, look)
         for row in zip(*texts):
             yield [*([name] if named else []), *row]
+
+
+def _merged(orders: list[list[str]]) -> list[str]:
+    """Return all names once, each new one before the known one that follows it in its own list."""
+    merged: list[str] = []
+    for order in orders:
+        place = len(merged)
+        for name in reversed(order):
+            if name in merged:
+                place = merged.index(name)
+            else:
+                merged.insert(place, name)
+    return merged
+
+
+def _place_rows(report: Report, look: Look) -> Iterator[list[str]]:
+    tables = [(part, table) for part in report.all_parts for table in part.place_tables]
+    if not tables:
+        return
+    heads = list(dict.fromkeys(name for _, table in tables for name in table.heads))
+    columns = list(dict.fromkeys(head(column) for _, table in tables for column in table.columns))
+    named = report.group == "scenes"
+    yield [*(["scene"] if named else []), "table", *heads, *columns]
+    for part, table in tables:
+        texts = {head(column): [_number(v, look.digits, look) for v in column.values] for column in table.columns}
+        texts |= {
+            one: [look.charset.text(name) for name in names] for one, names in zip(table.heads, zip(*table.names))
+        }
+        blank = [""] * len(table.names)
+        for row in zip(*(texts.get(name, blank) for name in (*heads, *columns))):
+            yield [*([_name(part, look)] if named else []), table.id, *row]
 
 
 def head(column: Column) -> str:

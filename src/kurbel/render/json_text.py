@@ -29,6 +29,8 @@ def _report(report: Report, digits: int | None) -> dict[str, Any]:
     content: dict[str, Any] = {"kurbel": __version__, "format": FORMAT, "command": report.command}
     if report.machine is not None:
         content["machine"] = report.machine
+    if report.head:
+        content["head"] = list(report.head)
     if report.parts:
         of_part = _ratio if report.group == "ratios" else _cylinder
         content[report.group] = [of_part(part, digits) for part in report.parts]
@@ -52,10 +54,26 @@ def _ratio(part: Part, digits: int | None) -> dict[str, Any]:
 def _results(part: Part, digits: int | None) -> dict[str, Any]:
     return {
         "columns": [_column(column, digits) for column in part.columns],
+        **_place_tables(part, digits),
         "key_values": [_key_value(key_value, digits) for key_value in part.key_values],
         "left_out": [{"what": one.what, "why": one.why} for one in part.left_out],
         "warnings": list(part.warnings),
     }
+
+
+def _place_tables(part: Part, digits: int | None) -> dict[str, Any]:
+    if not part.place_tables:
+        return {}
+    tables = [
+        {
+            "id": table.id,
+            "title": table.title,
+            "rows": [dict(zip(table.heads, names)) for names in table.names],
+            "columns": [_column(column, digits) for column in table.columns],
+        }
+        for table in part.place_tables
+    ]
+    return {"place_tables": tables}
 
 
 def _column(column: Column, digits: int | None) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from kurbel.render.numbers import angle
-from kurbel.render.prose import sentence_text, value_text
+from kurbel.render.prose import list_text, sentence_text, value_text
 from kurbel.render.sheet import MARK, part_name, sheets
 
 if TYPE_CHECKING:
@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
 def markdown(report: Report, look: Look) -> str:
     """Return the report as Markdown, every number as in the printed table."""
-    blocks = [f"## {_escaped(look.charset.text(report.title))}", *_tables(report, look)]
+    blocks = [f"## {_escaped(look.charset.text(report.title))}"]
+    blocks += [_escaped(look.charset.text(sentence)) for sentence in report.head]
+    blocks += [*_tables(report, look), *_place_tables(report, look)]
     notes = [note for note in (report.mirrored, *report.notes) if note]
     blocks += [_escaped(sentence_text(note, look)) for note in notes]
     for part in report.all_parts:
@@ -32,6 +34,17 @@ def _tables(report: Report, look: Look) -> Iterator[str]:
             columns = [*sheet.heads, *band.rows]
             heads = [f"{row.symbol} ({row.unit})" if row.unit else row.symbol for row in columns]
             yield _table(heads, ["--:"] * len(heads), zip(*(row.cells for row in columns)))
+
+
+def _place_tables(report: Report, look: Look) -> Iterator[str]:
+    from kurbel.render.place_table import cells_of
+
+    for table in (table for part in report.all_parts for table in part.place_tables):
+        cells = cells_of(table, look)
+        yield f"### {_escaped(look.charset.text(table.title))}"
+        heads = [*table.heads, *(f"{symbol} ({unit})" if unit else symbol for symbol, unit in cells.heads)]
+        rules = ["---"] * len(table.heads) + ["--:"] * len(cells.heads)
+        yield _table(heads, rules, ((*names, *texts) for names, texts in zip(cells.names, cells.rows)))
 
 
 def _table(heads: list[str], rules: list[str], rows: Iterable[Iterable[str]]) -> str:
@@ -74,7 +87,7 @@ def _cells(one: KeyValue, look: Look) -> Iterator[str]:
     if one.value is None or one.value == ():
         yield charset.no_value
     elif isinstance(one.value, tuple):
-        yield ("; " if look.comma else ", ").join(angle(value, look.comma) for value in one.value)
+        yield list_text(one, look)
     else:
         text, exponent = value_text(one, look)
         yield text + (charset.times_power(exponent) if exponent else "")

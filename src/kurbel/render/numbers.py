@@ -95,6 +95,20 @@ def single(value: float, digits: int = DIGITS, comma: bool = False) -> tuple[str
     return cell(value, scale, comma), scale.exponent
 
 
+def alone(value: float, digits: int | None = None, comma: bool = False) -> tuple[str, int]:
+    """Return a value among others of quite another size, and its power of ten: two digits if no more are asked for.
+
+    >>> alone(0.0417), alone(3.2e-16), alone(1464), alone(0)
+    (('0.042', 0), ('3.2', -16), ('1464', 0), ('0', 0))
+    """
+    if not value or isinstance(value, int):
+        return str(int(value)), 0
+    power = _power(abs(value), digits or 2)
+    if -3 < power < 5:
+        return _decimal(f"{value:.{max(0, (digits or 2) - 1 - power)}f}", comma), 0
+    return _decimal(f"{value / 10.0**power:.{(digits or 2) - 1}f}", comma), power
+
+
 def angle(value: float, comma: bool = False) -> str:
     """Return an angle in degrees with two decimals at most.
 

@@ -108,4 +108,4 @@ def write_file(file_name: str, text: str) -> None:
             file.write(text)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise UsageError(f"cannot write {file_name}: {reason}") from None
+        raise UsageError(f"cannot write {file_name or 'to an empty file name'}: {reason}") from None

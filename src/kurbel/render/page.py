@@ -19,9 +19,14 @@ def page(report: Report, look: Look) -> list[Line]:
         from kurbel.render.rows import table
     else:
         from kurbel.render.book import table
-    lines = [line(look.charset.text(report.title), "title")]
+    lines = [line(look.charset.text(report.title), "title"), *(line(look.charset.text(one)) for one in report.head)]
     for sheet in sheets(report, look):
         lines += [BLANK, *table(sheet, look)]
+    if any(part.place_tables for part in report.all_parts):
+        from kurbel.render.place_table import place_tables
+
+        for place_lines in place_tables(report, look):
+            lines += [BLANK, *place_lines]
     for paragraph in prose(report, look):
         lines += [BLANK, *paragraph]
     return lines

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from kurbel.render import Look
     from kurbel.report.tables import KeyValue, LeftOut, Part, Report
 
+_LONGEST_LIST = 40
 _LEAST_BESIDE = 24  # narrower than this a sentence is folded below its head instead
 
 
@@ -59,7 +60,8 @@ def key_value_lines(key_values: tuple[KeyValue, ...], look: Look) -> Iterator[Li
     shown = [_shown(one, look) for one in key_values]
     symbol, unit, place = (max(width(s[field]) for s in shown) for field in (0, 3, 4))
     whole = max((width(s.whole) for s in shown if s.fraction), default=0)
-    number = max(width(_aligned(s, whole)) for s in shown)
+    # a long list stands out beyond the column of numbers instead of pushing everything aside
+    number = max((w for s in shown if (w := width(_aligned(s, whole))) <= _LONGEST_LIST), default=0)
     for one in shown:
         value = left(_aligned(one, whole), number)
         head = f"  {left(one.symbol, symbol)}  {value}  {left(one.unit, unit)}  "
@@ -84,11 +86,24 @@ def _number(one: KeyValue, look: Look) -> tuple[str, str]:
     if one.value is None or one.value == ():
         return look.charset.no_value, ""
     if isinstance(one.value, tuple):
-        return ("; " if look.comma else ", ").join(angle(value, look.comma) for value in one.value), ""
+        return list_text(one, look), ""
     text, exponent = value_text(one, look)
     whole, point, fraction = text.partition("," if look.comma else ".")
     # a whole number is split too, at its end, so that its units stand under those of the others
     return whole, (point + fraction + (look.charset.times_power(exponent) if exponent else "")) or " "
+
+
+def list_text(one: KeyValue, look: Look) -> str:
+    """Return a list of values in one line, angles with two decimals at most."""
+    assert isinstance(one.value, tuple)
+    return ("; " if look.comma else ", ").join(_in_list(value, one.unit, look) for value in one.value)
+
+
+def _in_list(value: float, unit: str, look: Look) -> str:
+    if unit == "deg":
+        return angle(value, look.comma)
+    text, exponent = single(value, look.digits or DIGITS, look.comma)
+    return text + (look.charset.times_power(exponent) if exponent else "")
 
 
 def value_text(one: KeyValue, look: Look) -> tuple[str, int]:

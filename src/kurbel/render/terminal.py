@@ -32,7 +32,8 @@ def write_lines(lines: Iterable[Line], look: Look) -> bool:
     lines = list(lines)
     if look.width is not None and any(_is_table_line(line) and _width(line) > look.width for line in lines):
         return False
-    console = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
+    # a width, and a height with it, or rich believes a COLUMNS=0 of the environment and prints nothing
+    console = Console(width=look.width, height=25, highlight=False, markup=False, emoji=False, soft_wrap=True)
     for text in coloured(lines):
         console.print(text)
     return True

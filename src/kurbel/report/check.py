@@ -7,11 +7,11 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from kurbel.errors import UsageError
-from kurbel.keys import Key
+from kurbel.keys import Key, Physical
 from kurbel.machine import Cylinder, Machine
 from kurbel.mechanisms import Mechanism
 from kurbel.quantities import KEY_VALUES
-from kurbel.report.left_out import left_out, stages, warnings
+from kurbel.report.left_out import left_out, stages, strength_left_out, warnings
 from kurbel.units import SI, show
 
 
@@ -48,6 +48,7 @@ def checked(machine: Machine, commands: Sequence[str]) -> Checked:
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder) for cylinder in machine.cylinders),
+        Section("Crankshaft", tuple(_crankshaft_entries(machine))),
         Section("Not used yet", tuple(_unused(machine, commands))),
         Section("Limits", limits),
     )
@@ -67,17 +68,43 @@ def _cylinder_section(machine: Machine, cylinder: Cylinder) -> Section:
         *(Entry(f"{piston.name}", f"bore {show(piston.bore, 'length')}") for piston in cylinder.pistons),
         Entry("computed", ", ".join(what for what, why in stages(machine, cylinder).items() if not why)),
         *(Entry("left out", f"{what}: {why}") for what, why in left_out(machine, cylinder)),
-        *(Entry("note", note) for note in warnings(cylinder)),
+        *(Entry("note", note) for note in (*warnings(cylinder), *cylinder.mechanism.notes)),
+        *(Entry("note", note) for note in _of_measurements(machine, cylinder)),
     ]
     return Section(cylinder.name, tuple(entries))
+
+
+def _of_measurements(machine: Machine, cylinder: Cylinder) -> Iterable[str]:
+    """Yield what is implausible in what was measured; nothing is computed for a machine without measurements."""
+    chambers = [end for p in cylinder.pistons if p.indicator for end in (p.indicator.head_end, p.indicator.crank_end)]
+    if machine.brake_power is None and not any(hasattr(chamber, "samples") for chamber in chambers):
+        return
+    from kurbel.report.forces import measured_warnings
+    from kurbel.solver.case import Case
+
+    case = Case(machine)
+    yield from measured_warnings(case, case.cylinders[machine.cylinders.index(cylinder)])
+
+
+def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
+    if machine.crankshaft is None:
+        return
+    from kurbel.machine.crankshaft import strength_obstacle
+
+    if obstacle := strength_obstacle(machine):
+        yield Entry("left out", f"strength: {obstacle}")
+        return
+    yield Entry("computed", "forces on the bearings, stresses in pin and webs")
+    for what, why in strength_left_out(machine):
+        yield Entry("left out", f"{what}: {why}")
 
 
 def _described(mechanism: Mechanism) -> str:
     """Return the kind of a mechanism and its lengths."""
     lengths = [
-        f"{key} {'infinite' if math.isinf(length) else show(length, 'length')}"
-        for key in mechanism.KEYS
-        if isinstance(length := getattr(mechanism, key, None), float) and length
+        f"{name} {'infinite' if math.isinf(size) else show(size, key.form.kind)}"
+        for name, key in mechanism.KEYS.items()
+        if isinstance(key.form, Physical) and isinstance(size := getattr(mechanism, name, None), float) and size
     ]
     return f"{mechanism.name}: {', '.join(lengths)}"
 
@@ -98,32 +125,33 @@ def _pending(key: Key, commands: Sequence[str]) -> bool:
 def _limits(machine: Machine, commands: Sequence[str]) -> Iterable[Entry]:
     if not machine.limits:
         return
-    from kurbel.report.forces import limited_values
+    from kurbel.report.limits import command_of, limited_values
 
-    values = limited_values(machine)
+    values = limited_values(machine, (name for name, _ in machine.limits if command_of(name) in commands))
     for name, bound in machine.limits:
         found = [(where, value) for where, id, value in values if id == name]
-        if not found and name in _LATER and not any(command in commands for command in _LATER[name]):
-            yield Entry(name, f"not checked: kurbel {' and '.join(_LATER[name])} does not exist yet")
+        if command_of(name) not in commands:
+            yield Entry(name, f"not checked: kurbel {command_of(name)} does not exist yet")
         elif not found:
             raise UsageError(f"limits.{name}: this machine has no {name}: {KEY_VALUES[name].text.lower()}")
         for where, value in found:
             yield _compared(name, bound, where, value)
 
 
-_LATER = dict.fromkeys(("M_mean", "dE", "delta", "J", "GD2", "omega_max", "omega_min"), ("flywheel",))
-"""Key values of commands beside `kurbel forces`."""
+_ROUNDING = 1e-9
+"""A bound is no more exact than what is printed of it: a stroke of 110 mm does not break a limit of 110 mm."""
 
 
 def _compared(name: str, bound: float, where: str, value: float) -> Entry:
     """Compare a value with its bound: a `_min` may not fall below it, everything else may not exceed it."""
     kind = KEY_VALUES[name].kind
     lower = name.endswith("_min")
-    broken = value < bound if lower else value > bound
+    excess = bound - value if lower else value - bound
+    broken = excess > _ROUNDING * abs(bound)
     relation = ("<" if broken else "≥") if lower else (">" if broken else "≤")
     text = f"{_shown(value, kind)} {relation} {_shown(bound, kind)}"
     return Entry(name, f"{text}  {'BROKEN' if broken else 'kept'}  ({where})", broken)
 
 
 def _shown(value: float, kind: str) -> str:
-    return f"{value:.6g} {SI[kind]}".rstrip()
+    return f"{value:.9g} {SI[kind]}".rstrip()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -11,25 +10,28 @@ import numpy as np
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import Extreme
-from kurbel.quantities import COLUMNS, KEY_VALUES, Quantity
 from kurbel.report.left_out import left_out, warnings
-from kurbel.report.tables import Column, KeyValue, LeftOut, Part, Report
+from kurbel.report.motion import mechanism_notes, motion_key_values, refuse_absent, shown_columns
+from kurbel.report.shown import shown_key_value
+from kurbel.report.tables import LeftOut, Part, Report
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.units import SYSTEMS, unit_factor
+from kurbel.units import show
 
 FORCE_COLUMNS = (
-    *("phi", "psi", "x", "c", "b", "p_head", "p_crank", "P_gas", "P_inertia", "P_weight"),
-    *("P", "S", "N", "D", "T", "F_friction", "M"),
+    *("phi", "psi", "x", "c", "b", "p_head", "p_crank", "P_gas", "P_inertia", "P_weight", "P_ram"),
+    *("P", "S", "N", "F_pin", "N_pair", "M_bend", "D", "M_out", "F_coupler", "T", "F_friction", "M"),
 )
 """Ids of the columns of `kurbel forces`, in the order in which they are printed."""
+_SWING_COLUMNS = ("theta", "theta_dot", "theta_ddot")
+"""Printed too where nothing slides; elsewhere they belong to `kurbel motion`, and to who asks for them."""
+_ALL_COLUMNS = (*FORCE_COLUMNS[:1], *_SWING_COLUMNS, *FORCE_COLUMNS[1:])
 
-_MOTION = ("stroke", "phi_idc", "phi_odc", "time_ratio", "v", "c_m", "c_max", "c_min", "b_max", "b_min", "phi_b_zero")
-_UNEQUAL_STROKES = ("time_ratio", "c_min")
-"""Key values that say something new only where the two strokes differ."""
-_EXTREMES = ("P", "P_start", "P_inertia", "S", "N", "T")
+_EXTREMES = ("P", "P_start", "P_inertia", "S", "N", "F_pin", "N_pair", "M_bend", "F_coupler", "T")
+_PARTICULAR = ("pin_pressure", "coupler_inertia")
 _WORK = (
-    *("work", "work_driving", "work_driven", "power", "mean_pressure", "W", "friction_work"),
+    *("work", "work_driving", "work_driven", "resistance_work", "power", "mean_pressure", "work_sensitivity"),
+    *("W", "friction_work"),
     *("loss_crosshead", "loss_crosshead_redtenbacher", "loss_rings", "energy_residual"),
 )
 
@@ -44,73 +46,66 @@ def forces_report(case: Case, angles: Sequence[float], columns: Sequence[str] | 
         raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
     with np.errstate(all="ignore"):  # what overflows is refused below, by name
         parts = tuple(_part(case, forces, angles, columns, system) for forces in case.cylinders)
-    _refuse_absent(parts, columns or ())
-    return Report(f"{machine.name}. Kräfte im Kurbeltriebe", "forces", machine.name, "cylinders", parts)
-
-
-def _refuse_absent(parts: Sequence[Part], columns: Sequence[str]) -> None:
-    shown = {column.id for part in parts for column in part.columns}
-    for name in columns:
-        if name not in shown:
-            raise UsageError(f"--columns: '{name}' is left out for this machine; kurbel check says what is, and why")
+    refuse_absent(parts, columns or (), "forces", _ALL_COLUMNS)
+    title = f"{machine.name}. Kräfte im Kurbeltriebe"
+    return Report(title, "forces", machine.name, "cylinders", parts, notes=mechanism_notes(machine))
 
 
 def _part(
     case: Case, forces: CylinderForces, angles: Sequence[float], columns: Sequence[str] | None, system: str
 ) -> Part:
     cylinder = forces.drive.cylinder
+    fitting = FORCE_COLUMNS if cylinder.mechanism.slides else _ALL_COLUMNS
     return Part(
         cylinder.name,
-        tuple(_columns(forces, angles, columns or FORCE_COLUMNS, system)),
-        tuple(_key_value(KEY_VALUES[name], value, system) for name, value in key_values(forces)),
+        tuple(shown_columns(forces, angles, columns or fitting, _ALL_COLUMNS, system)),
+        tuple(shown_key_value(name, value, system) for name, value in key_values(forces)),
         (*left_out(case.machine, cylinder), *_no_loss(forces)),
-        warnings(cylinder),
+        (*warnings(cylinder), *_balance_warnings(forces), *_pin_warnings(forces), *measured_warnings(case, forces)),
     )
 
 
-def _columns(forces: CylinderForces, angles: Sequence[float], columns: Sequence[str], system: str) -> Iterable[Column]:
-    state = forces.at(angles)
-    for name in ("phi", *(name for name in dict.fromkeys(columns) if name != "phi")):
-        values = getattr(state, name) if name in FORCE_COLUMNS else None
-        if values is not None:
-            yield _column(COLUMNS[name], np.asarray(values), system)
+def measured_warnings(case: Case, forces: CylinderForces) -> Iterable[str]:
+    """Yield what is implausible in what was measured: in the traces of a cylinder, and below the brake power."""
+    machine = case.machine
+    traced = any(gas.traced for gas in forces.drive.gas)
+    if not traced and machine.brake_power is None:
+        return
+    from kurbel.report.plausibility import brake_warnings, trace_warnings
+
+    yield from trace_warnings(forces)
+    if forces is case.cylinders[-1]:
+        yield from brake_warnings(machine, case.cylinders)
 
 
-def _column(quantity: Quantity, values: Any, system: str) -> Column:
-    unit = SYSTEMS[system][quantity.kind]
-    shown = _in_unit(values, quantity, system)
-    if not np.isfinite(shown).all():
-        raise _too_large(quantity)
-    return Column(
-        quantity.id, quantity.symbol, quantity.ascii_symbol, unit, tuple((shown + 0.0).tolist()), quantity.text
-    )
+_CLOSED = 1e-9
+"""An energy residual beyond this is no rounding."""
 
 
-def _in_unit(value: Any, quantity: Quantity, system: str) -> Any:
-    unit = SYSTEMS[system][quantity.kind]
-    if not unit or system == "si":
-        return value
-    up, down = unit_factor(unit, quantity.kind)
-    return value / up * down
+def _balance_warnings(forces: CylinderForces) -> Iterable[str]:
+    residual = forces.energy_residual
+    # with a measured trace it shows the spacing of the samples, which has its own key value
+    if residual is not None and abs(residual) > _CLOSED and not any(gas.traced for gas in forces.drive.gas):
+        yield f"the energy balance of the cycle does not close (residual {residual:.1e}); trust no figure beyond that"
 
 
-def _too_large(quantity: Quantity) -> UsageError:
-    return UsageError(f"{quantity.id} is too large to compute with: check the numbers and units of the machine file")
+def _pin_warnings(forces: CylinderForces) -> Iterable[str]:
+    found, bound = forces.pin_pressure, forces.drive.mechanism.pin_pressure_bound
+    if found is not None and bound is not None and found.value > bound:
+        yield f"the pressure on the crank pin, {show(found.value, 'pressure')}, is above {show(bound, 'pressure')}"
 
 
 def key_values(forces: CylinderForces) -> Iterable[tuple[str, Any]]:
     """Yield (id, value in SI) of every key value that this cylinder has; the value may be an Extreme or a tuple."""
-    motion = forces.motion
-    unequal = abs(motion.time_ratio - 1) > 1e-12
-    for name in _MOTION:
-        if unequal or name not in _UNEQUAL_STROKES:
-            yield from _given(name, getattr(motion, name))
+    yield from motion_key_values(forces.motion)
     yield from _areas(forces)
     for column in _EXTREMES:
         found = forces.extremes_of(column)
         if found:
             yield f"{column}_max", found.largest
             yield f"{column}_min", found.smallest
+    for name in _PARTICULAR:
+        yield from _given(name, getattr(forces, name))
     yield from _given("phi_reversal", forces.phi_reversal)
     for name in _WORK:
         if _worth_showing(name, forces):
@@ -134,26 +129,6 @@ def _worth_showing(name: str, forces: CylinderForces) -> bool:
 def _given(name: str, value: Any) -> Iterable[tuple[str, Any]]:
     if value is not None:
         yield name, value
-
-
-def _key_value(quantity: Quantity, value: Any, system: str) -> KeyValue:
-    at = value.degrees if isinstance(value, Extreme) else None
-    raw = value.value if isinstance(value, Extreme) else value
-    listed = isinstance(raw, tuple)
-    each: tuple[float, ...] = raw if isinstance(raw, tuple) else (raw,)
-    shown = [float(_in_unit(one, quantity, system)) + 0.0 for one in each]
-    if not all(math.isfinite(one) for one in shown):
-        raise _too_large(quantity)
-    unit = SYSTEMS[system][quantity.kind]
-    return KeyValue(
-        quantity.id,
-        quantity.symbol,
-        quantity.ascii_symbol,
-        unit,
-        tuple(shown) if listed else shown[0],
-        quantity.text,
-        at,
-    )
 
 
 def _no_loss(forces: CylinderForces) -> tuple[LeftOut, ...]:

@@ -8,28 +8,49 @@ from kurbel.report.tables import LeftOut
 
 def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     """Return all that forces and motion of a cylinder can consist of, with the reason why it is left out, or ""."""
-    no_masses, no_speed = "no masses given", "no speed given"
-    reasons = {
-        "displacement": "",
-        "velocity, acceleration": no_speed if machine.speed is None else "",
+    motion = _motion_stages(machine, cylinder)
+    acting = _sliding_forces(machine, cylinder) if cylinder.mechanism.slides else _moment(cylinder)
+    has_force = not all(why for what, why in acting.items() if what != "friction")
+    if not has_force:
+        idle = {"friction": "no force acts"} if cylinder.friction else {}
+        return {**motion, **acting, "forces in the crank train": "no force acts", **idle}
+    return {**motion, **acting, "forces in the crank train": "", **_of_mechanism(cylinder), **_works(machine, acting)}
+
+
+def _motion_stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
+    position = "displacement" if cylinder.mechanism.slides else "angle of the output"
+    return {position: "", "velocity, acceleration": "no speed given" if machine.speed is None else ""}
+
+
+def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
+    no_masses = "no masses given" if cylinder.masses is None else ""
+    ram = {"ram force": "" if cylinder.ram_force else "no ram_force given"}
+    return {
         "gas force": _no_gas(cylinder),
-        "inertia": no_masses if cylinder.masses is None else no_speed if machine.speed is None else "",
-        "weight": "no inclination given"
-        if cylinder.inclination is None
-        else no_masses
-        if cylinder.masses is None
-        else "",
+        # of an engine nobody expects one
+        **(ram if cylinder.ram_force or cylinder.mechanism.quick_return else {}),
+        "inertia": no_masses or ("no speed given" if machine.speed is None else ""),
+        "weight": "no inclination given" if cylinder.inclination is None else no_masses,
         "friction": "no friction given" if cylinder.friction is None else "",
     }
-    if not _has_force(reasons):
-        return {**reasons, "forces in the crank train": "no force acts", "friction": "no force acts"}
-    power = no_speed if machine.speed is None else "" if machine.speed else "not defined at rest"
-    return {
-        **reasons,
-        "forces in the crank train": "",
-        "work": reasons["gas force"],
-        "power": reasons["gas force"] or power,
-    }
+
+
+def _moment(cylinder: Cylinder) -> dict[str, str]:
+    return {"moment at the output": "" if cylinder.moment else "no moment given"}
+
+
+def _of_mechanism(cylinder: Cylinder) -> dict[str, str]:
+    """Return what a slider-crank has and this mechanism has not, and what the mechanism itself misses."""
+    mechanism = cylinder.mechanism
+    rod = {"S, N": f"a {mechanism.name} has no connecting rod"} if mechanism.slides and not mechanism.has_rod else {}
+    return rod | dict(mechanism.lacks)
+
+
+def _works(machine: Machine, acting: dict[str, str]) -> dict[str, str]:
+    if "gas force" not in acting:
+        return {}
+    power = "no speed given" if machine.speed is None else "" if machine.speed else "not defined at rest"
+    return {"work": acting["gas force"], "power": acting["gas force"] or power}
 
 
 def left_out(machine: Machine, cylinder: Cylinder) -> tuple[LeftOut, ...]:
@@ -37,8 +58,27 @@ def left_out(machine: Machine, cylinder: Cylinder) -> tuple[LeftOut, ...]:
     return tuple(LeftOut(what, why) for what, why in stages(machine, cylinder).items() if why)
 
 
-def _has_force(reasons: dict[str, str]) -> bool:
-    return not all(reasons[what] for what in ("gas force", "inertia", "weight"))
+def motion_left_out(machine: Machine, cylinder: Cylinder) -> tuple[LeftOut, ...]:
+    """Return what of the motion of this cylinder is left out, with the reason."""
+    return tuple(LeftOut(what, why) for what, why in _motion_stages(machine, cylinder).items() if why)
+
+
+def strength_left_out(machine: Machine) -> tuple[LeftOut, ...]:
+    """Return what the strength of a machine's crankshaft leaves out, with the reason."""
+    shaft = machine.crankshaft
+    if shaft is None:
+        return ()
+    upright = "" if all(cylinder.inclination is not None for cylinder in machine.cylinders) else "no inclination given"
+    journals = "" if shaft.journal_diameter else "no journal_diameter given"
+    reasons = {
+        "flywheel weight": upright if shaft.flywheel_mass else "no flywheel_mass given",
+        "journals": journals,
+        "pressure on the journals": journals or ("" if shaft.journal_length else "no journal_length given"),
+        "p_m v": "no speed given" if machine.speed is None else "",
+        "safety": "" if shaft.allowable_bending else "no allowable_bending given",
+        "α₀ of the webs": "" if shaft.allowable_bending and shaft.allowable_torsion else "1 without k_b and k_d",
+    }
+    return tuple(LeftOut(what, why) for what, why in reasons.items() if why)
 
 
 def _no_gas(cylinder: Cylinder) -> str:
@@ -56,3 +96,28 @@ def warnings(cylinder: Cylinder) -> tuple[str, ...]:
         for end, chamber in (("head end", piston.indicator.head_end), ("crank end", piston.indicator.crank_end))
         for note in getattr(chamber, "notes", ())
     )
+
+
+def flywheel_left_out(machine: Machine) -> tuple[LeftOut, ...]:
+    """Return what turning effort, flywheel and speed line of a machine leave out, with the reason."""
+    of_each = [[one for one in left_out(machine, cylinder) if one.what in _IN_EFFORT] for cylinder in machine.cylinders]
+    alike = all(found == of_each[0] for found in of_each)
+    found = [
+        one if alike else LeftOut(f"{one.what} of {cylinder.name}", one.why)
+        for cylinder, ones in list(zip(machine.cylinders, of_each))[: 1 if alike else None]
+        for one in ones
+    ]
+    speed = "no speed given" if machine.speed is None else "" if machine.speed else "not defined at rest"
+    wheel = speed or ("" if machine.flywheel else "no flywheel given")
+    reasons = {
+        "T, W": "" if machine.cylinders else "no crank: the effort is given as a torque",
+        "power": speed,
+        "J": speed if machine.flywheel and machine.flywheel.inertia is None else "",
+        "speed line, δ": wheel,
+        "coupling": wheel if machine.coupling else "",
+    }
+    return (*found, *(LeftOut(what, why) for what, why in reasons.items() if why))
+
+
+_IN_EFFORT = ("gas force", "inertia", "weight", "friction")
+"""Stages of a cylinder that its turning effort is made of."""

@@ -20,7 +20,7 @@ from kurbel.keys import (
     Variant,
     load,
 )
-from kurbel.quantities import COLUMNS, FACTORS, KEY_VALUES, Quantity
+from kurbel.quantities import COLUMNS, FACTORS, KEY_VALUES, STRESSES, Quantity
 from kurbel.units import SI, TECHNICAL, example
 
 _HEAD = """# Symbols, quantities and keys
@@ -35,6 +35,7 @@ def symbols_page() -> str:
         _HEAD,
         _quantities("Columns over the crank angle", COLUMNS),
         _quantities("Key values", KEY_VALUES),
+        _quantities("Stresses at one place of a crankshaft", STRESSES),
         _quantities("Rows of Zusammenstellung 112", FACTORS),
         "## Keys of the machine file\n",
         *_records(),

@@ -1,0 +1,89 @@
+"""Tables whose rows are named places: the names on the left, quantities across."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+from kurbel.render.charset import left, right, width
+from kurbel.render.lines import Line, Piece, line
+from kurbel.render.numbers import DIGITS, alone, angle, cell, scale_of
+
+if TYPE_CHECKING:
+    from kurbel.render import Look
+    from kurbel.report.tables import Column, PlaceTable, Report, Value
+
+_GAP = 2
+
+
+class Cells(NamedTuple):
+    """A table of places as text: for each column its symbol, its unit and its cells."""
+
+    names: tuple[tuple[str, ...], ...]
+    heads: tuple[tuple[str, str], ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+def cells_of(table: PlaceTable, look: Look) -> Cells:
+    """Return the table as text; columns of one unit share their scale, so that they can be compared by eye.
+
+    What stands alone does not: it has its power of ten beside it.
+    """
+    blank = "_" if table.headed else " "
+    names = tuple(tuple(look.charset.text(name.replace("_", blank)) for name in row) for row in table.names)
+    scales = {
+        unit: scale_of((v for c in table.columns if c.unit == unit for v in c.values), look.digits or DIGITS)
+        for unit in {column.unit for column in table.columns if not column.alone}
+    }
+
+    def text(value: Value, column: Column) -> str:
+        if value is None:
+            return look.charset.no_value
+        if column.alone:
+            number, power = alone(value, look.digits, look.comma)
+            return number + (look.charset.times_power(power) if power else "")
+        return angle(value, look.comma) if column.unit == "deg" else cell(value, scales[column.unit], look.comma)
+
+    def unit_of(column: Column) -> str:
+        own = column.alone or column.unit == "deg"
+        return look.charset.unit(column.unit, 0 if own else scales[column.unit].exponent)
+
+    heads = tuple((look.charset.symbol(c.symbol, c.ascii_symbol), unit_of(c)) for c in table.columns)
+    columns = [[text(value, column) for value in column.values] for column in table.columns]
+    return Cells(names, heads, tuple(zip(*columns)))
+
+
+def place_tables(report: Report, look: Look) -> Iterator[list[Line]]:
+    """Yield the lines of every table of places, each with its title."""
+    for part in report.all_parts:
+        for table in part.place_tables:
+            yield [
+                line(look.charset.text(table.title), "name"),
+                *_lines(cells_of(table, look), look, table.heads if table.headed else ()),
+            ]
+
+
+def _lines(cells: Cells, look: Look, name_heads: tuple[str, ...]) -> Iterator[Line]:
+    over = name_heads or ("",) * len(cells.names[0])
+    name_widths = [max(map(width, names)) for names in zip(over, *cells.names)]
+    symbols, units = zip(*cells.heads)
+    widths = [max(map(width, texts)) for texts in zip(symbols, units, *cells.rows)]
+    side = sum(cells_ + _GAP for cells_ in name_widths)
+    ruled = line(look.charset.rule * (side + sum(cells_ + _GAP for cells_ in widths) - _GAP), "rule")
+    yield _line([left(name, wide) for name, wide in zip(over, name_widths)], symbols, widths, "head")
+    if any(units):
+        yield _line([" " * (side - _GAP)], units, widths, "unit")
+    yield ruled
+    before: tuple[str, ...] = ()
+    for names, texts in zip(cells.names, cells.rows):
+        # what repeats the row above stays blank, so that the rows of one part stand together
+        shown = ("" if before[:1] == names[:1] else names[0], *names[1:])
+        yield _line([left(name, wide) for name, wide in zip(shown, name_widths)], texts, widths, "cell")
+        before = names
+    yield ruled
+
+
+def _line(names: list[str], texts: tuple[str, ...], widths: list[int], role: str) -> Line:
+    side = [Piece(name + " " * _GAP, "name") for name in names]
+    gaps = ["", *[" " * _GAP] * (len(widths) - 1)]
+    return (*side, *(Piece(gap + right(text, wide), role) for gap, text, wide in zip(gaps, texts, widths)))

@@ -1,0 +1,31 @@
+"""What limits are compared with: the key values of every command, computed by the commands that are asked for alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+
+from kurbel.machine import Machine
+from kurbel.quantities import OF_COMMAND
+
+
+def command_of(name: str) -> str:
+    """Return the command that answers the key value of this id.
+
+    >>> command_of("sigma_pin_max"), command_of("c_max")
+    ('stress', 'forces')
+    """
+    return next((command for command, names in OF_COMMAND.items() if name in names), "forces")
+
+
+def limited_values(machine: Machine, names: Iterable[str]) -> list[tuple[str, str, float]]:
+    """Return (what it belongs to, id, value in SI) of the key values with these ids.
+
+    Every report of a command has a function `limited_values` of its own. Raises UsageError where the machine has not
+    what a command needs.
+    """
+    wanted = set(names)
+    found: list[tuple[str, str, float]] = []
+    for command in sorted({command_of(name) for name in wanted}):
+        found += import_module(f"kurbel.report.{command}").limited_values(machine)
+    return [value for value in found if value[1] in wanted]
