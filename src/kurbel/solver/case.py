@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from kurbel.machine import Machine
 from kurbel.solver.forces import CylinderForces
+
+if TYPE_CHECKING:
+    from kurbel.solver.flywheel import MachineSpeed
+    from kurbel.solver.strength.crankshaft import CrankshaftStrength
 
 
 class Case:
@@ -25,3 +30,17 @@ class Case:
     def cylinders(self) -> tuple[CylinderForces, ...]:
         """Motion, forces and key values of every cylinder, in the order of the machine file."""
         return tuple(CylinderForces(self.machine, cylinder) for cylinder in self.machine.cylinders)
+
+    @cached_property
+    def strength(self) -> CrankshaftStrength:
+        """Strength of the crankshaft. Raises UsageError where the machine has none that can be examined."""
+        from kurbel.solver.strength.crankshaft import CrankshaftStrength
+
+        return CrankshaftStrength(self.machine, self.cylinders)
+
+    @cached_property
+    def flywheel(self) -> MachineSpeed:
+        """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
+        from kurbel.solver.flywheel import MachineSpeed
+
+        return MachineSpeed(self.machine, self.cylinders)

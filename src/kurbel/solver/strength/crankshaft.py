@@ -1,0 +1,297 @@
+"""The strength of one crankshaft over the whole cycle, and where each of its parts is strained most (G)."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import UsageError
+from kurbel.machine import Machine
+from kurbel.machine.crankshaft import Crankshaft, strength_obstacle
+from kurbel.mechanisms import Extreme
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.grid import Brackets, Grid, Sampled, ascending, extremes, roots, sign_changes
+from kurbel.solver.state import GRAVITY, State
+from kurbel.solver.strength.places import PARTS, Place, Stresses, places
+from kurbel.solver.strength.sections import norm
+from kurbel.solver.strength.statics import FreeBody, Vector, equilibrium_residual, weight_in_throw
+
+Array = NDArray[np.float64]
+
+
+class Strained(NamedTuple):
+    """One place under the forces at one crank angle in degrees: its stresses, and both combinations, in Pa."""
+
+    place: Place
+    degrees: float
+    stresses: Stresses
+    combined: float
+    von_mises: float
+
+
+class StrengthColumns:
+    """Everything that is told over the crank angle; attributes by the ids of the columns, in SI, each (n,).
+
+    D, T: force on the pin; A_D, A_T, B_D, B_T: forces on the bearings in the frame of the throw; sigma_ and mises_ with
+    the name of a part: its largest combined stress. A part that is not examined is None.
+    """
+
+    def __init__(self, state: State, body: FreeBody, looked_at: tuple[Place, ...]) -> None:
+        self.phi = state.phi
+        self.D, self.T = body.pin
+        (self.A_D, self.A_T), (self.B_D, self.B_T) = body.A, body.B
+        for part in PARTS:
+            own = [place for place in looked_at if place.part == part]
+            setattr(self, f"sigma_{part}", _largest([place.combined(body) for place in own]))
+            setattr(self, f"mises_{part}", _largest([place.von_mises(body) for place in own]))
+
+
+def _largest(values: list[Any]) -> Any:
+    return np.max(values, axis=0) if values else None
+
+
+class CrankshaftStrength:
+    """What `kurbel stress` answers: statics and stresses of the only crank throw of a machine.
+
+    Raises UsageError where the machine has no crankshaft, more than one cylinder, or no pressure that loads it.
+    """
+
+    def __init__(self, machine: Machine, cylinders: tuple[CylinderForces, ...]) -> None:
+        obstacle = strength_obstacle(machine)
+        if obstacle or machine.crankshaft is None:
+            raise UsageError(f"{machine.name}: {obstacle}")
+        self.machine = machine
+        self.shaft: Crankshaft = machine.crankshaft
+        self.forces = cylinders[0]
+        self.places = places(self.shaft)
+
+    # loads
+
+    @property
+    def weight(self) -> float | None:
+        """Weight of the flywheel in N that counts; None where there is none, or its direction is not known."""
+        if self.forces.drive.cylinder.inclination is None or not self.shaft.flywheel_mass:
+            return None
+        return self.shaft.flywheel_mass * GRAVITY
+
+    def _body(self, pin: Vector, angle: CrankAngle) -> FreeBody:
+        inclination = self.forces.drive.cylinder.inclination
+        turned = Vector(0.0, 0.0)
+        if self.weight is not None and inclination is not None:
+            turned = weight_in_throw(self.weight, angle, inclination)
+        return FreeBody(self.shaft, self.forces.drive.mechanism.crank, pin, turned)
+
+    def _running(self, state: State) -> FreeBody:
+        return self._body(Vector(state.D, state.T), state.angle)
+
+    def at(self, degrees: Any) -> StrengthColumns:
+        """Return forces on the bearings and stresses at crank angles (n,) in degrees, just after a jump."""
+        state = self.forces.at(degrees)
+        return StrengthColumns(state, self._running(state), self.places)
+
+    # the cycle
+
+    @cached_property
+    def _grid(self) -> Grid:
+        """The cycle in smooth pieces, cut also where a stress changes its sign: its magnitude has a kink there."""
+        grid = self.forces.grid
+        drive = self.forces.drive
+
+        def signed(degrees: Array, within: Array, beyond: Array | float = 0.0) -> Array:
+            # plain values: the slopes of jets are not needed to find a zero
+            state = State(drive, CrankAngle.of(degrees, beyond), within)
+            return np.stack(np.broadcast_arrays(*_with_kinks(self._running(state))))
+
+        brackets = [sign_changes(grid, values) for values in signed(grid.degrees, grid.within, grid.beyond)]
+        owner = np.repeat(np.arange(len(brackets)), [len(bracket.low) for bracket in brackets])
+        stacked = Brackets(*(np.concatenate(parts) for parts in zip(*brackets)))
+        turns = roots(lambda phi, within: signed(phi, within)[owner, np.arange(len(owner))], stacked)
+        # two that differ by rounding only would leave a piece without width
+        breaks = ascending(np.concatenate((grid.breaks, turns)), apart=1e-10)
+        breaks[-1] = drive.cycle
+        return Grid(breaks)
+
+    def _quantities(self, state: State) -> dict[str, Sampled]:
+        body = self._running(state)
+        found = {f"combined {i}": place.combined(body) for i, place in enumerate(self.places)}
+        found |= {f"von Mises {i}": place.von_mises(body) for i, place in enumerate(self.places)}
+        found |= {"pin": norm(*body.pin), "A": norm(*body.A), "B": norm(*body.B)}
+        shape = state.phi.shape
+        return {
+            name: Sampled(
+                np.broadcast_to(getattr(j, "value", j), shape), np.broadcast_to(getattr(j, "slope", 0.0), shape)
+            )
+            for name, j in found.items()
+        }
+
+    @cached_property
+    def _samples(self) -> dict[str, Sampled]:
+        grid = self._grid
+        samples = self._quantities(self.forces.drive.jets_at(grid.degrees, grid.within, grid.beyond))
+        if not all(np.isfinite(sampled.value).all() for sampled in samples.values()):
+            raise UsageError(
+                f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
+                "check the numbers and units of the machine file"
+            )
+        return samples
+
+    @cached_property
+    def _extremes(self) -> dict[str, Extreme]:
+        """The largest of every quantity over the cycle: exact roots of the slopes that the jets carry."""
+        found = extremes(
+            self._grid, self._samples, lambda phi, within: self._quantities(self.forces.drive.jets_at(phi, within))
+        )
+        return {name: both.largest for name, both in found.items()}
+
+    def _body_beside(self, degrees: float, quantity: Any, value: float) -> FreeBody:
+        """Return the body at an angle, on that side of a jump on which quantity(body) is nearest to the value."""
+        middles = (self._grid.breaks[:-1] + self._grid.breaks[1:]) / 2
+        reach = np.diff(self._grid.breaks) / 2 + 1e-9
+        sides = middles[np.abs(middles - degrees) <= reach]
+        angle = CrankAngle.of(np.full(len(sides), degrees))
+        found = np.asarray(quantity(self._running(State(self.forces.drive, angle, sides))))
+        chosen = sides[[int(np.abs(found - value).argmin())]]
+        return self._running(State(self.forces.drive, CrankAngle.of(np.array([degrees])), chosen))
+
+    # the two positions of the book, and the worst of the cycle
+
+    @cached_property
+    def full_force(self) -> Extreme:
+        """The largest piston force without inertia in N, and the dead centre in degrees in which the throw takes it.
+
+        Starting and slow running (R p. 608): the inner dead centre, or the outer one where pulling is stronger.
+        """
+        found = self.forces.extremes_of("P_start")
+        assert found is not None
+        if found.largest.value >= -found.smallest.value:
+            return Extreme(found.largest.value, self.forces.motion.phi_idc)
+        return Extreme(found.smallest.value, self.forces.motion.phi_odc)
+
+    @cached_property
+    def largest_torque(self) -> Extreme:
+        """The largest T in N, or the smallest where the machine is driven harder than it drives, and its angle."""
+        found = self.forces.extremes_of("T")
+        assert found is not None
+        return max(found.largest, found.smallest, key=lambda extreme: abs(extreme.value))
+
+    @cached_property
+    def at_dead_centre(self) -> tuple[Strained, ...]:
+        """Every place in the firing dead centre under the full force of the pressure: T = 0, D = P cos(φ+ψ)/cos ψ."""
+        force, degrees = self.full_force.value, self.full_force.degrees
+        angle = CrankAngle.of(np.array([degrees]))
+        pin = Vector(force * np.asarray(self.forces.drive.mechanism.radial(angle)), np.zeros(1))
+        body = self._body(pin, angle)
+        return tuple(_strained(place, degrees, body) for place in self.places)
+
+    @cached_property
+    def at_largest_torque(self) -> tuple[Strained, ...]:
+        """Every place in the position of the largest torque."""
+        torque, degrees = self.largest_torque.value, self.largest_torque.degrees
+        body = self._body_beside(degrees, lambda body: body.pin.T, torque)
+        return tuple(_strained(place, degrees, body) for place in self.places)
+
+    @cached_property
+    def at_worst(self) -> tuple[Strained, ...]:
+        """Every place at the crank angle of the running machine at which its own combined stress is largest."""
+        worst = []
+        for index, place in enumerate(self.places):
+            largest = self._extremes[f"combined {index}"]
+            body = self._body_beside(largest.degrees, place.combined, largest.value)
+            worst.append(_strained(place, largest.degrees, body))
+        return tuple(worst)
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The parts that are examined."""
+        return tuple(dict.fromkeys(place.part for place in self.places))
+
+    def sigma_dc(self, part: str) -> Extreme:
+        """Return the largest combined stress of a part in Pa in the dead centre under the full force."""
+        return _worst(part, self.at_dead_centre)
+
+    def sigma_max(self, part: str) -> Extreme:
+        """Return the largest combined stress of a part in Pa over the cycle, and its crank angle."""
+        return _worst(part, self.at_worst)
+
+    def mises_max(self, part: str) -> Extreme:
+        """Return the largest stress of a part after von Mises in Pa over the cycle, and its crank angle."""
+        indices = [index for index, place in enumerate(self.places) if place.part == part]
+        return max((self._extremes[f"von Mises {index}"] for index in indices), key=lambda extreme: extreme.value)
+
+    def safety(self, part: str) -> Extreme | None:
+        """Return k_b over the largest combined stress of a part, dead centre and cycle; None without k_b or stress."""
+        allowable = self.shaft.allowable_bending
+        worst = max(self.sigma_dc(part), self.sigma_max(part), key=lambda extreme: extreme.value)
+        return Extreme(allowable / worst.value, worst.degrees) if allowable and worst.value else None
+
+    # bearings
+
+    def load_max(self, bearing: str) -> Extreme:
+        """Return the largest force in N on `pin`, `A` or `B` over the cycle."""
+        return self._extremes[bearing]
+
+    def pressure_max(self, bearing: str) -> Extreme | None:
+        """Return the largest force over the projected area d l in Pa; None where diameter or length is not given."""
+        size, load = self._size(bearing), self.load_max(bearing)
+        return Extreme(load.value / size[0] / size[1], load.degrees) if size else None
+
+    def pressure_mean(self, bearing: str) -> float | None:
+        """Return p_m in Pa: the mean over time, at uniform rotation, of the force over the projected area (G)."""
+        size = self._size(bearing)
+        if size is None:
+            return None
+        turn = math.radians(self.forces.drive.cycle)
+        return self._grid.integral(self._samples[bearing].value) / turn / size[0] / size[1]
+
+    def pressure_velocity(self, bearing: str) -> float | None:
+        """Return k = p_m v in W/m² with the surface speed v = π d n (G); None without a speed of rotation."""
+        pressure, speed, size = self.pressure_mean(bearing), self.machine.speed, self._size(bearing)
+        if pressure is None or speed is None or size is None:
+            return None
+        return pressure * math.pi * size[0] * speed
+
+    def _size(self, bearing: str) -> tuple[float, float] | None:
+        shaft = self.shaft
+        if bearing == "pin":
+            return shaft.pin_diameter, shaft.pin_length
+        given = shaft.journal_diameter, shaft.journal_length
+        return None if given[0] is None or given[1] is None else (given[0], given[1])
+
+    @cached_property
+    def pin_pressure_dc(self) -> float:
+        """Full force over the projected area of the pin in Pa (G: P_max/(d_z l_z))."""
+        return abs(self.full_force.value) / self.shaft.pin_diameter / self.shaft.pin_length
+
+    @cached_property
+    def equilibrium_residual(self) -> float:
+        """What is left of the sums of forces and moments on the shaft, over the sizes of their terms, at its worst."""
+        degrees = self._grid.degrees.ravel()
+        state = State(self.forces.drive, CrankAngle.of(degrees), self._grid.within.ravel())
+        return equilibrium_residual(self._running(state), np.asarray(state.M))
+
+
+def _with_kinks(body: FreeBody) -> tuple[Any, ...]:
+    """Return the forces and moments whose magnitudes make stresses: where one passes zero, its magnitude has a kink."""
+    in_plane, twist = body.moments_beyond_pin(body.shaft.web_distance)
+    # web B is bent out of plane as much at the pin as at the shaft
+    ends = (body.A.T - body.pin.T, body.A.T + body.pin.T)
+    return (*body.pin, *body.A, body.force_in_web_B, in_plane, twist, *ends)
+
+
+def _strained(place: Place, degrees: float, body: FreeBody) -> Strained:
+    stresses = Stresses(*(None if value is None else _number(value) for value in place.stresses(body)))
+    return Strained(place, degrees, stresses, _number(place.combined(body)), _number(place.von_mises(body)))
+
+
+def _number(value: Any) -> float:
+    return float(np.asarray(value).ravel()[0])
+
+
+def _worst(part: str, strained: tuple[Strained, ...]) -> Extreme:
+    worst = max((one for one in strained if one.place.part == part), key=lambda one: one.combined)
+    return Extreme(worst.combined, worst.degrees)

@@ -1,0 +1,168 @@
+"""The places of a crankshaft at which stresses are looked at, part by part.
+
+    pin        middle          bent by A on the lever a, twisted by A_T r
+    web        wide face       compressed and bent in the plane of the throw, twisted: decisive for the shape (G)
+               narrow face     compressed and bent out of that plane, twisted less
+               corner          compressed and bent both ways, not twisted
+    journal A  at web          bent by A on the lever up to web A
+    journal B  at web          bent by A and the pin, twisted by T r; the shaft as far as B counts as journal
+               at flywheel     the same, where the flywheel stands before B
+               in bearing      bent by the flywheel overhung beyond B, twisted by T r
+
+A web is bent out of the plane of the throw most at one end of its arm, at the axis of the pin or at that of the shaft.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from kurbel.arithmetic import where
+from kurbel.machine.crankshaft import Crankshaft
+from kurbel.solver.strength.sections import (
+    bach,
+    bach_factor,
+    direct_stress,
+    narrow_face_torsion,
+    norm,
+    rectangle_bending,
+    round_bending,
+    round_torsion,
+    von_mises,
+    wide_face_torsion,
+)
+from kurbel.solver.strength.statics import FreeBody, Vector
+
+PARTS = ("pin", "web_A", "web_B", "journal_A", "journal_B")
+
+
+class Stresses(NamedTuple):
+    """The stresses at one place in Pa, each (n,) or a jet; None for what there cannot be at this place.
+
+    compression is positive, and negative where the web is pulled; bendings and torsion are magnitudes. normal: all
+    normal stress together, a magnitude.
+    """
+
+    compression: Any
+    bending_in_plane: Any
+    bending_out_of_plane: Any
+    torsion: Any
+    normal: Any
+
+
+class Place(NamedTuple):
+    """One place of a part: its stresses under the forces on the free body, and α₀ of Bach's combination."""
+
+    part: str
+    name: str
+    alpha: float
+    stresses: Callable[[FreeBody], Stresses]
+
+    def combined(self, body: FreeBody) -> Any:
+        """Return the stress in Pa combined after Bach."""
+        stresses = self.stresses(body)
+        return bach(stresses.normal, _or_zero(stresses.torsion), self.alpha)
+
+    def von_mises(self, body: FreeBody) -> Any:
+        """Return the equivalent stress in Pa after von Mises."""
+        stresses = self.stresses(body)
+        return von_mises(stresses.normal, _or_zero(stresses.torsion))
+
+
+def places(shaft: Crankshaft) -> tuple[Place, ...]:
+    """Return the places of a crankshaft; the journals only where their diameter is given.
+
+    α₀ is 1 for what is round (G, for the pin), and that of the allowable stresses for the webs.
+    """
+    alpha = bach_factor(shaft.allowable_bending, shaft.allowable_torsion)
+    return (
+        Place("pin", "middle", 1.0, _pin),
+        *_web_places("web_A", alpha, _loads_of_web_A),
+        *_web_places("web_B", alpha, _loads_of_web_B),
+        *(_journal_places(shaft) if shaft.journal_diameter else ()),
+    )
+
+
+def _pin(body: FreeBody) -> Stresses:
+    """Stresses in the middle of the pin: M_b = a √(A_T² + A_D²), M_d = A_T r (G)."""
+    return _round(body.moments_before_pin(body.shaft.a), body.A.T * body.crank, body.shaft.pin_diameter)
+
+
+def _round(moments: Vector, torque: Any, diameter: float) -> Stresses:
+    """Stresses at the surface of a round section, whose bendings add up as vectors."""
+    in_plane, out_of_plane = (round_bending(moment, diameter) for moment in moments)
+    torsion = None if torque is None else abs(round_torsion(torque, diameter))
+    return Stresses(None, abs(in_plane), abs(out_of_plane), torsion, norm(in_plane, out_of_plane))
+
+
+class _WebLoads(NamedTuple):
+    """What a web carries: force along it in N; in-plane bending, out-of-plane bending and twist in N m."""
+
+    force: Any
+    in_plane: Any
+    out_of_plane: Any
+    twist: Any
+
+
+def _loads_of_web_A(body: FreeBody) -> _WebLoads:
+    moments = body.moments_before_pin(body.shaft.a - body.shaft.web_distance)
+    return _WebLoads(body.force_in_web_A, moments.D, abs(body.A.T) * body.crank, moments.T)
+
+
+def _loads_of_web_B(body: FreeBody) -> _WebLoads:
+    moments = body.moments_beyond_pin(body.shaft.web_distance)
+    at_pin, at_shaft = abs(body.A.T) * body.crank, abs(body.torque)
+    return _WebLoads(body.force_in_web_B, moments.D, _larger(at_pin, at_shaft), moments.T)
+
+
+def _web_places(part: str, alpha: float, loads_of: Callable[[FreeBody], _WebLoads]) -> tuple[Place, ...]:
+    def wide(body: FreeBody) -> Stresses:
+        t, w, loads = body.shaft.web_thickness, body.shaft.web_width, loads_of(body)
+        direct = direct_stress(loads.force, t, w)
+        bending = abs(rectangle_bending(loads.in_plane, t, w))
+        return Stresses(direct, bending, None, abs(wide_face_torsion(loads.twist, t, w)), abs(direct) + bending)
+
+    def narrow(body: FreeBody) -> Stresses:
+        t, w, loads = body.shaft.web_thickness, body.shaft.web_width, loads_of(body)
+        direct = direct_stress(loads.force, t, w)
+        bending = rectangle_bending(loads.out_of_plane, w, t)
+        return Stresses(direct, None, bending, abs(narrow_face_torsion(loads.twist, t, w)), abs(direct) + bending)
+
+    def corner(body: FreeBody) -> Stresses:
+        face, side = wide(body), narrow(body)
+        normal = face.normal + side.bending_out_of_plane
+        return Stresses(face.compression, face.bending_in_plane, side.bending_out_of_plane, None, normal)
+
+    named = {"wide face": wide, "narrow face": narrow, "corner": corner}
+    return tuple(Place(part, name, alpha, stresses) for name, stresses in named.items())
+
+
+def _journal_places(shaft: Crankshaft) -> tuple[Place, ...]:
+    diameter = shaft.journal_diameter
+    assert diameter is not None
+    face = shaft.web_distance + shaft.web_thickness / 2  # outer face of a web, from the middle of the pin
+
+    def before(body: FreeBody) -> Stresses:
+        return _round(body.moments_before_pin(shaft.a - face), None, diameter)
+
+    def beyond(place: float) -> Callable[[FreeBody], Stresses]:
+        return lambda body: _round(body.moments_beyond_pin(place), body.torque, diameter)
+
+    def in_bearing(body: FreeBody) -> Stresses:
+        return _round(body.overhung_moments, body.torque, diameter)
+
+    # along the shaft the moments run straight from load to load, so that one of these places is always the worst
+    flywheel = shaft.b + shaft.flywheel_position
+    outer = {"in bearing": in_bearing} if flywheel >= shaft.b else {"at flywheel": beyond(flywheel)}
+    return (
+        Place("journal_A", "at web", 1.0, before),
+        *(Place("journal_B", name, 1.0, stresses) for name, stresses in ({"at web": beyond(face)} | outer).items()),
+    )
+
+
+def _larger(first: Any, second: Any) -> Any:
+    return where(first - second >= 0, first, second)
+
+
+def _or_zero(value: Any) -> Any:
+    return 0.0 if value is None else value

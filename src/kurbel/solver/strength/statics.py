@@ -1,0 +1,164 @@
+"""The crankshaft cut free from its bearings: bearing forces, and the forces and moments in its sections.
+
+                      F = (D, T)
+                          │
+                    ┌─────┴─────┐          r   crank radius
+             web A  │           │  web B   e   from the middle of the pin to the middle of a web
+                    │           │
+    ──A─────────────┘           └─────────────B──────── G    flywheel, f outside of B
+      |←────── a ──────→|←─────── b ─────────→|←── f ──→|
+
+Everything is told in the frame that turns with the throw: D from the pin toward the shaft, T in the sense of rotation,
+z along the shaft from A. Forces on bearings count as loads do: a load D on the pin gives A_D and B_D of its own sign.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.machine.crankshaft import Crankshaft
+
+Array = NDArray[np.float64]
+
+
+class Vector(NamedTuple):
+    """A force in N, or the moments in N m of forces along D and along T; each (n,) or a jet."""
+
+    D: Any
+    T: Any
+
+
+def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Vector:
+    """Return a weight on the shaft in the frame of the throw: D = G sin(φ + i), T = −G cos(φ + i).
+
+    weight: G in N; angle: crank angles φ (n,); inclination: i of the stroke line in degrees, 0 lying, 90 cylinder above
+    the shaft. The shaft turns so that an engine which drives presses the crosshead down: lying, the pin rises on the
+    outstroke, and in the inner dead centre the weight stands square to the throw (G).
+
+    >>> weight_in_throw(100.0, CrankAngle.of(0.0), 0.0)
+    Vector(D=0.0, T=-100.0)
+    >>> weight_in_throw(100.0, CrankAngle.of(0.0), 90.0).D
+    100.0
+    """
+    incline = CrankAngle.of(inclination)
+    return Vector(
+        weight * (angle.sin * incline.cos + angle.cos * incline.sin),
+        weight * (angle.sin * incline.sin - angle.cos * incline.cos),
+    )
+
+
+class FreeBody:
+    """The crankshaft under the force on its pin and the weight of its flywheel.
+
+    shaft: lengths in m; crank: r in m; pin: force on the pin in N; weight: of the flywheel in N, in the same frame.
+    The torque T r leaves the shaft at the flywheel; nothing is taken off at A.
+    """
+
+    def __init__(self, shaft: Crankshaft, crank: float, pin: Vector, weight: Vector) -> None:
+        self.shaft = shaft
+        self.crank = crank
+        self.pin = pin
+        self.weight = weight
+
+    @cached_property
+    def A(self) -> Vector:
+        """Force on bearing A in N: (F b − G f)/(a + b), G: A_p = P b/(a + b)."""
+        shaft = self.shaft
+        span, f = shaft.a + shaft.b, shaft.flywheel_position
+        return Vector(*((F * shaft.b - G * f) / span for F, G in zip(self.pin, self.weight)))
+
+    @cached_property
+    def B(self) -> Vector:
+        """Force on bearing B in N: (F a + G (a + b + f))/(a + b)."""
+        shaft = self.shaft
+        span, f = shaft.a + shaft.b, shaft.flywheel_position
+        return Vector(*((F * shaft.a + G * (span + f)) / span for F, G in zip(self.pin, self.weight)))
+
+    @property
+    def A_D(self) -> Any:
+        """Force on bearing A along D in N."""
+        return self.A.D
+
+    @property
+    def A_T(self) -> Any:
+        """Force on bearing A along T in N."""
+        return self.A.T
+
+    @property
+    def B_D(self) -> Any:
+        """Force on bearing B along D in N."""
+        return self.B.D
+
+    @property
+    def B_T(self) -> Any:
+        """Force on bearing B along T in N."""
+        return self.B.T
+
+    @cached_property
+    def torque(self) -> Any:
+        """Torque T r in N m that web B and the shaft beyond it carry."""
+        return self.pin.T * self.crank
+
+    def moments_before_pin(self, z: float) -> Vector:
+        """Return the moments A z in N m about the section at z from A, 0 ≤ z ≤ a, of what lies before it."""
+        return Vector(self.A.D * z, self.A.T * z)
+
+    def moments_beyond_pin(self, beyond: float) -> Vector:
+        """Return the moments A (a + u) − F u in N m about the section at u = `beyond` the pin, of what lies before it.
+
+        Up to B, or to the flywheel where it stands before B. G: P e − A_p (a + e), with the other sign.
+        """
+        return Vector(*(A * (self.shaft.a + beyond) - F * beyond for A, F in zip(self.A, self.pin)))
+
+    @property
+    def overhung_moments(self) -> Vector:
+        """The moments G f in N m in the middle of bearing B of a flywheel outside of it."""
+        outside = max(self.shaft.flywheel_position, 0.0)
+        return Vector(self.weight.D * outside, self.weight.T * outside)
+
+    @property
+    def force_in_web_A(self) -> Any:
+        """Force along web A in N, compression positive."""
+        return self.A.D
+
+    @property
+    def force_in_web_B(self) -> Any:
+        """Force along web B in N, compression positive: D − A_D, which is B_D less the flywheel beyond the web."""
+        return self.pin.D - self.A.D
+
+
+def equilibrium_residual(body: FreeBody, torque: Array) -> float:
+    """Return what is left of the sums of forces and of moments over the sizes of their terms, the larger of both.
+
+    torque: M on the shaft in N m (n,), found from the work of the piston force and not from T. The sums are taken in
+    space, at the points where the forces stand, about the middle of the pin: nothing of the formulas above is used.
+    """
+    forces, points = _forces_in_space(body, len(torque))
+    moments = np.cross(points, forces)
+    resistance = np.zeros_like(moments[:1])
+    resistance[0, :, 2] = torque  # the shaft turns about −z: from the pin toward T
+    return max(_left_over(forces), _left_over(np.concatenate((moments, resistance))))
+
+
+def _forces_in_space(body: FreeBody, count: int) -> tuple[Array, Array]:
+    """Return the forces (4, n, 3) on the shaft in N, along T, toward the pin and along z, and their points in m."""
+    shaft, r = body.shaft, body.crank
+    pairs = ((body.pin, 1.0), (body.A, -1.0), (body.B, -1.0), (body.weight, 1.0))
+    forces = np.zeros((4, count, 3))
+    for row, (force, sign) in enumerate(pairs):
+        forces[row, :, 0], forces[row, :, 1] = sign * np.asarray(force.T), -sign * np.asarray(force.D)
+    z = (0.0, -shaft.a, shaft.b, shaft.b + shaft.flywheel_position)
+    points = [[0.0, 0.0 if row == 0 else -r, place] for row, place in enumerate(z)]
+    return forces, np.asarray(points)[:, None, :]
+
+
+def _left_over(terms: Array) -> float:
+    """Return the largest |sum| over the sum of the sizes, for terms (m, n, 3); 0 where there are none."""
+    size = np.linalg.norm(terms, axis=2).sum(axis=0)
+    rest = np.linalg.norm(terms.sum(axis=0), axis=1)
+    return float(np.divide(rest, size, out=np.zeros_like(rest), where=size > 0).max())

@@ -1,0 +1,40 @@
+"""Crankshafts that the tests of strength build in a line; lengths in m."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.crankshaft import Crankshaft
+from kurbel.machine.indicator import Indicator
+from kurbel.machine.piston import Piston
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.case import Case
+from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from machines import constant_pressure
+
+SHAFT: dict[str, Any] = {
+    "a": 0.4,
+    "b": 0.42,
+    "web_distance": 0.17,
+    "web_thickness": 0.12,
+    "web_width": 0.22,
+    "pin_diameter": 0.18,
+    "pin_length": 0.2,
+    "journal_diameter": 0.19,
+    "journal_length": 0.3,
+}
+
+
+def shaft(**changed: Any) -> Crankshaft:
+    """The crankshaft above with these lengths instead."""
+    return Crankshaft(**(SHAFT | changed))
+
+
+def strength(
+    crankshaft: Crankshaft, mechanism: Any = None, card: Any = None, rpm: float | None = None, **cylinder: Any
+) -> CrankshaftStrength:
+    """Solve a single-acting machine of 0.4 m bore with this crankshaft; 10 bar all the time without a card."""
+    piston = Piston(0.4, indicator=Indicator(card or constant_pressure(1e6)))
+    own = Cylinder(mechanism or SliderCrank(0.3, 1.5), pistons=(piston,), **cylinder)
+    return Case(Machine((own,), speed=None if rpm is None else rpm / 60, crankshaft=crankshaft)).strength

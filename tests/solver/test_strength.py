@@ -1,0 +1,318 @@
+"""The strength of a crankshaft: by equilibrium, by an independent free body, by limits, and by brute force."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import RuleError, UsageError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.indicator import Card, Indicator
+from kurbel.machine.masses import Masses
+from kurbel.machine.piston import Piston
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.case import Case
+from kurbel.solver.state import GRAVITY
+from kurbel.solver.strength.places import PARTS, places
+from kurbel.solver.strength.statics import FreeBody, Vector, weight_in_throw
+from machines import STEAM_CARD, constant_pressure
+from shafts import shaft, strength
+
+HEAVY = {"flywheel_mass": 5000.0, "flywheel_position": 0.5}
+ENGINE_CARD = Card.from_keys(
+    unit=(1e5, 1),
+    expansion=[(0, 16), (0.03, 25), (0.1, 17.5), (0.2, 11.2), (0.35, 6.9), (0.82, 2.9), (0.92, 0.7), (1, 0.2)],
+    compression=[(1, 0.2), (0.78, 0.3), (0.55, 0.9), (0.35, 2.2), (0.2, 4.5), (0.1, 8), (0.04, 12.6), (0, 16)],
+)
+ENGINES: dict[str, dict[str, Any]] = {
+    "lying": {"crankshaft": shaft(**HEAVY), "card": ENGINE_CARD, "inclination": 0.0, "masses": Masses(400), "rpm": 200},
+    "standing": {"crankshaft": shaft(**HEAVY), "card": ENGINE_CARD, "inclination": 90.0},
+    "inclined": {"crankshaft": shaft(flywheel_mass=3000.0, flywheel_position=-0.1), "inclination": 30.0},
+    "steam": {"crankshaft": shaft(), "card": STEAM_CARD},
+}
+
+
+def body(D: float, T: float, weight: tuple[float, float] = (0.0, 0.0), **changed: Any) -> FreeBody:
+    pin, turned = (Vector(np.array([x]), np.array([y])) for x, y in ((D, T), weight))
+    return FreeBody(shaft(**changed), 0.3, pin, turned)
+
+
+forces = st.floats(-1e6, 1e6)
+
+
+@given(forces, forces, forces, forces, st.floats(-0.15, 2.0))
+def test_against_a_free_body_in_space(D: float, T: float, G_D: float, G_T: float, f: float) -> None:
+    """Reactions from six equations of a rigid body, web B from what hangs on it on the side of the flywheel."""
+    found = body(D, T, (G_D, G_T), flywheel_position=f)
+    a, b, e, r = 0.4, 0.42, 0.17, 0.3
+    # x along T, y toward the pin, z along the shaft; unknown: A and B on the shaft (x, y), the couple about z
+    pin = np.array([T, -D, 0.0]), np.array([0.0, r, a])
+    loads = [pin, (np.array([G_T, -G_D, 0.0]), np.array([0.0, 0.0, a + b + f]))]
+    rows = []
+    for direction in (np.array([1.0, 0, 0]), np.array([0, 1.0, 0])):
+        for z in (0.0, a + b):
+            rows.append([*direction[:2], *np.cross([0.0, 0.0, z], direction)])
+    matrix = np.array([*rows, [0.0, 0.0, 0.0, 0.0, 1.0]]).T
+    load = sum(np.array([*force[:2], *np.cross(point, force)]) for force, point in loads)
+    A_x, B_x, A_y, B_y, couple = np.linalg.solve(matrix, -np.asarray(load))
+    size = 1e-12 * (abs(D) + abs(T) + 3 * abs(G_D) + 3 * abs(G_T) + 1)
+    bearings = [found.A.T[0], found.A.D[0], found.B.T[0], found.B.D[0]]
+    assert bearings == pytest.approx([-A_x, A_y, -B_x, B_y], abs=4 * size)
+    assert found.torque[0] == pytest.approx(couple, abs=size)
+    # what web B carries at its middle, beside the axis of the shaft: all that stands beyond it
+    beyond = [(np.array([B_x, B_y, 0.0]), np.array([0.0, 0.0, a + b])), loads[1]]
+    section = np.array([0.0, 0.0, a + e])
+    moment = sum((np.cross(point - section, force) for force, point in beyond), np.array([0.0, 0.0, couple]))
+    in_plane, twist = found.moments_beyond_pin(e)
+    assert abs(in_plane[0]) == pytest.approx(abs(moment[0]), abs=4 * size)
+    assert abs(twist[0]) == pytest.approx(abs(moment[1]), abs=4 * size)
+    assert abs(found.torque[0]) == pytest.approx(abs(moment[2]), abs=size)
+    along = sum(force[1] for force, _ in beyond)
+    assert found.force_in_web_B[0] == pytest.approx(along, abs=4 * size)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_equilibrium(name: str) -> None:
+    assert strength(**ENGINES[name]).equilibrium_residual <= 1e-14
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_largest_stresses_are_those_of_the_whole_cycle(name: str) -> None:
+    """Brute force over 0.005° never finds more, and comes as near as its step allows beside a bend of the card."""
+    solved = strength(**ENGINES[name])
+    at = solved.at(np.linspace(0, 360, 72001))
+    for part in PARTS:
+        for column, largest in ((f"sigma_{part}", solved.sigma_max(part)), (f"mises_{part}", solved.mises_max(part))):
+            brute = getattr(at, column).max()
+            assert brute <= largest.value * (1 + 1e-13)
+            assert brute == pytest.approx(largest.value, rel=1e-4)
+
+
+def test_a_smooth_largest_stress_is_exact() -> None:
+    """Near the angle found, the stress is a parabola with its top there: no smaller step finds more."""
+    solved = strength(shaft(**HEAVY), inclination=0.0)
+    for part in ("pin", "journal_A"):
+        largest = solved.sigma_max(part)
+        around = largest.degrees + np.array([-1e-3, 0.0, 1e-3])
+        values = getattr(solved.at(around), f"sigma_{part}")
+        assert values[1] == pytest.approx(largest.value, rel=1e-14)
+        assert (values[[0, 2]] < values[1]).all()
+
+
+@pytest.mark.parametrize(
+    ("inclination", "degrees", "D", "T"),
+    [(0, 0, 0, -1), (0, 90, 1, 0), (0, 180, 0, 1), (90, 0, 1, 0), (90, 90, 0, 1), (90, 180, -1, 0), (-90, 0, -1, 0)],
+)
+def test_direction_of_the_weight(inclination: float, degrees: float, D: float, T: float) -> None:
+    """Lying, the pin stands above the shaft at 90° and the weight points from it to the shaft."""
+    assert weight_in_throw(1.0, CrankAngle.of(float(degrees)), float(inclination)) == (D, T)
+
+
+def test_bearings_carry_piston_force_and_flywheel() -> None:
+    """Turned back into the frame of the ground, A + B is the pin force and a weight that always points down."""
+    solved = strength(shaft(**HEAVY), inclination=0.0)
+    phi = np.linspace(0, 360, 25)
+    at = solved.at(phi)
+    sin, cos = np.sin(np.radians(phi)), np.cos(np.radians(phi))
+    D, T = at.A_D + at.B_D - at.D, at.A_T + at.B_T - at.T
+    weight = 5000 * GRAVITY
+    assert D * sin - T * cos == pytest.approx(np.full(25, weight), rel=1e-12)
+    assert D * cos + T * sin == pytest.approx(np.zeros(25), abs=1e-9 * weight)
+
+
+class TestLimits:
+    """What is left when a cause is taken away, in closed form."""
+
+    def stresses(self, found: FreeBody) -> dict[tuple[str, str], Any]:
+        return {(place.part, place.name): place.stresses(found) for place in places(found.shaft)}
+
+    def test_no_flywheel_and_equal_arms(self) -> None:
+        found = body(D=3e5, T=1e5, b=0.4)
+        assert (found.A.D[0], found.A.T[0]) == (1.5e5, 0.5e5)
+        assert (found.B.D[0], found.B.T[0]) == (1.5e5, 0.5e5)
+        at = self.stresses(found)
+        assert at["web_A", "wide face"].compression[0] == at["web_B", "wide face"].compression[0]
+        in_plane = [at[web, "wide face"].bending_in_plane[0] for web in ("web_A", "web_B")]
+        assert in_plane == pytest.approx([6 * 1.5e5 * (0.4 - 0.17) / (0.12**2 * 0.22)] * 2, rel=1e-13)
+
+    def test_radial_force_alone_twists_nothing(self) -> None:
+        for (part, _), at in self.stresses(body(D=3e5, T=0.0)).items():
+            assert at.torsion is None or at.torsion[0] == 0
+            assert at.bending_out_of_plane is None or at.bending_out_of_plane[0] == 0, part
+
+    def test_tangential_force_alone_compresses_nothing(self) -> None:
+        at = self.stresses(body(D=0.0, T=1e5, b=0.4))
+        for place in at.values():
+            assert place.compression is None or place.compression[0] == 0
+            assert place.bending_in_plane is None or place.bending_in_plane[0] == 0
+        # web A is bent by ½ T r at the pin, web B by T r at the shaft; both are twisted by ½ T (a − e)
+        assert at["web_A", "narrow face"].bending_out_of_plane[0] == pytest.approx(6 * 0.5e5 * 0.3 / (0.12 * 0.22**2))
+        assert at["web_B", "narrow face"].bending_out_of_plane[0] == pytest.approx(6 * 1e5 * 0.3 / (0.12 * 0.22**2))
+        twist = 0.5e5 * (0.4 - 0.17)
+        for web in ("web_A", "web_B"):
+            assert at[web, "wide face"].torsion[0] == pytest.approx(4.5 * twist / (0.12**2 * 0.22))
+            assert at[web, "narrow face"].torsion[0] == pytest.approx(4.5 * twist / (0.12 * 0.22**2))
+        assert at["journal_B", "in bearing"].torsion[0] == pytest.approx(16 * 1e5 * 0.3 / (math.pi * 0.19**3))
+        assert at["journal_B", "in bearing"].normal == 0
+
+    def test_flywheel_alone(self) -> None:
+        """Overhung by f beyond B it lifts A by G f/(a + b) and bends the journal in B by G f."""
+        found = body(D=0.0, T=0.0, weight=(0.0, 5e4), flywheel_position=0.5)
+        assert found.A.T[0] == pytest.approx(-5e4 * 0.5 / 0.82, rel=1e-14)
+        assert found.B.T[0] == pytest.approx(5e4 * (0.82 + 0.5) / 0.82, rel=1e-14)
+        at = self.stresses(found)["journal_B", "in bearing"]
+        assert at.normal[0] == pytest.approx(32 * 5e4 * 0.5 / (math.pi * 0.19**3), rel=1e-13)
+
+    def test_flywheel_between_the_bearings(self) -> None:
+        """Without a pin force, a beam on two supports: G times both distances over the span, under the flywheel."""
+        found = body(D=0.0, T=0.0, weight=(5e4, 0.0), flywheel_position=-0.1)
+        at = self.stresses(found)["journal_B", "at flywheel"]
+        assert at.normal[0] == pytest.approx(32 * (5e4 * 0.72 * 0.1 / 0.82) / (math.pi * 0.19**3), rel=1e-13)
+
+
+def test_largest_torque_at_a_jump_is_taken_before_it() -> None:
+    """Release at 40 % of the stroke, before T has its natural top: the pin is strained by the pressure before it."""
+    card = Card.from_keys(unit=(1e5, 1), expansion=[(0, 10), (0.4, 10), (0.4, 0), (1, 0)], compression=[(1, 0), (0, 0)])
+    mechanism = SliderCrank(0.3, 1.5)
+    solved = strength(shaft(), mechanism, card)
+    degrees = solved.largest_torque.degrees
+    assert degrees == pytest.approx(float(mechanism.crank_angles_at(np.array([0.24]), True)[0]), abs=1e-9)
+    pin = solved.at_largest_torque[0].stresses
+    force = 1e6 * math.pi / 4 * 0.4**2
+    T = force * mechanism.slope(CrankAngle.of(degrees)) / 0.3
+    assert pin.torsion == pytest.approx(16 * T * 0.42 / 0.82 * 0.3 / (math.pi * 0.18**3), rel=1e-9)
+
+
+class TestDeadCentre:
+    def test_inertia_gives_no_relief(self) -> None:
+        """Starting and slow running (R p. 608): the same stresses at any speed, though the running machine has less."""
+        at_rest, running = (
+            strength(shaft(), mechanism=SliderCrank(0.3, 1.5), rpm=rpm, masses=Masses(500.0)) for rpm in (0, 300)
+        )
+        assert [one.combined for one in running.at_dead_centre] == [one.combined for one in at_rest.at_dead_centre]
+        assert running.at([0]).sigma_pin[0] < at_rest.at([0]).sigma_pin[0]
+
+    def test_is_the_running_machine_where_nothing_relieves(self) -> None:
+        solved = strength(shaft(**HEAVY), inclination=0.0)
+        for part in PARTS:
+            assert solved.sigma_dc(part).value == pytest.approx(getattr(solved.at([0]), f"sigma_{part}")[0], rel=1e-13)
+
+    def test_offset_crank(self) -> None:
+        """In the dead centre crank and rod are in one line: the pin carries P/cos ψ, all of it radial."""
+        mechanism = SliderCrank(0.3, 1.5, offset=0.1)
+        solved = strength(shaft(), mechanism)
+        _, cos_psi = mechanism.rod_angle(CrankAngle.of(mechanism.dead_centres()[0]))
+        A_D = 1e6 * math.pi / 4 * 0.4**2 / cos_psi * 0.42 / 0.82
+        pin = solved.at_dead_centre[0].stresses
+        assert pin.bending_in_plane == pytest.approx(32 * A_D * 0.4 / (math.pi * 0.18**3), rel=1e-12)
+        assert (pin.bending_out_of_plane, pin.torsion) == (0, 0)
+
+    def test_pulling_engine_stands_in_the_outer_one(self) -> None:
+        assert strength(shaft(), card=constant_pressure(-5e4)).full_force == (-5e4 * math.pi / 4 * 0.4**2, 180)
+
+
+class TestBearings:
+    def test_infinite_rod_under_constant_pressure(self) -> None:
+        """|S| = P all the time: p_m = P/(d l), and k = p_m π d n."""
+        solved = strength(shaft(), ScotchYoke(0.3), rpm=200)
+        pressure = 1e6 * math.pi / 4 * 0.4**2 / (0.18 * 0.2)
+        largest = solved.pressure_max("pin")
+        assert largest is not None
+        assert largest.value == pytest.approx(pressure, rel=1e-14)
+        assert solved.pressure_mean("pin") == pytest.approx(pressure, rel=1e-14)
+        assert solved.pressure_velocity("pin") == pytest.approx(pressure * math.pi * 0.18 * 200 / 60, rel=1e-14)
+        mean_A = solved.pressure_mean("A")
+        assert mean_A == pytest.approx(pressure * 0.18 * 0.2 * 0.42 / 0.82 / (0.19 * 0.3), rel=1e-14)
+
+    def test_mean_over_time_by_another_quadrature(self) -> None:
+        solved = strength(**ENGINES["lying"])
+        phi = (np.arange(360_000) + 0.5) / 1000
+        at = solved.at(phi)
+        assert solved.pressure_mean("pin") == pytest.approx(np.hypot(at.D, at.T).mean() / (0.18 * 0.2), rel=1e-7)
+        assert solved.pressure_mean("B") == pytest.approx(np.hypot(at.B_D, at.B_T).mean() / (0.19 * 0.3), rel=1e-7)
+
+    def test_what_is_not_given_is_not_told(self) -> None:
+        solved = strength(shaft(journal_diameter=None))
+        assert solved.parts == ("pin", "web_A", "web_B")
+        assert solved.pressure_max("A") is None
+        assert solved.pressure_velocity("pin") is None
+        assert solved.safety("pin") is None
+        assert solved.at([0.0]).sigma_journal_A is None
+
+
+def test_safety_counts_dead_centre_and_cycle() -> None:
+    solved = strength(**ENGINES["lying"] | {"crankshaft": shaft(**HEAVY, allowable_bending=60e6)})
+    for part in PARTS:
+        worst = max(solved.sigma_dc(part).value, solved.sigma_max(part).value)
+        safety = solved.safety(part)
+        assert safety is not None
+        assert safety.value == pytest.approx(60e6 / worst, rel=1e-15)
+
+
+def test_allowable_ratio_weighs_torsion_of_the_webs() -> None:
+    """α₀ = 90/(1.3 · 30) > 1 lets torsion count for more in the webs, and nowhere else."""
+    given = {"allowable_bending": 90e6, "allowable_torsion": 30e6}
+    plain, weighed = (strength(shaft(**allowed)).at_largest_torque for allowed in ({}, given))
+    for one, other in zip(plain, weighed, strict=True):
+        assert (one.place.part, one.stresses) == (other.place.part, other.stresses)
+        twisted_web = one.place.part.startswith("web") and one.stresses.torsion is not None
+        assert (other.combined > one.combined) if twisted_web else (other.combined == one.combined)
+
+
+def test_four_stroke_cycle_is_scanned_whole() -> None:
+    lines = {"expansion": [(0, 25), (1, 2)], "exhaust": [(1, 0.1), (0, 0.1)], "intake": [(0, -0.1), (1, -0.1)]}
+    card = Card.from_keys(unit=(1e5, 1), compression=[(1, 0), (0, 8)], **lines)
+    cylinder = Cylinder(SliderCrank(0.3, 1.5), pistons=(Piston(0.4, indicator=Indicator(card)),))
+    solved = Case(Machine((cylinder,), cycle="four-stroke", crankshaft=shaft())).strength
+    at = solved.at(np.linspace(0, 720, 7201))
+    assert at.sigma_pin.max() == pytest.approx(solved.sigma_max("pin").value, rel=1e-5)
+    assert solved.at_dead_centre[0].degrees == 0
+    assert solved.equilibrium_residual <= 1e-14
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"crankshaft": None}, "no 'crankshaft' is given"),
+        ({"cylinders": 2}, "2 cylinders; the crankshaft that is examined has one throw"),
+        ({"pistons": ()}, "no pressure loads the crankshaft; give 'bore' and 'indicator'"),
+    ],
+)
+def test_refused(changed: dict[str, Any], message: str) -> None:
+    own = strength(shaft()).forces.drive.cylinder
+    cylinder = Cylinder(own.mechanism, pistons=changed.get("pistons", own.pistons))
+    both = tuple(Cylinder(own.mechanism, f"cylinder {i}", own.pistons) for i in range(changed.get("cylinders", 0)))
+    machine = Machine(both or (cylinder,), crankshaft=changed.get("crankshaft", shaft()))
+    with pytest.raises(UsageError, match=message):
+        _ = Case(machine).strength
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"a": 0.2}, "200 mm puts the bearing inside the web .230 mm from the pin."),
+        ({"flywheel_position": -0.3, "flywheel_mass": 1.0}, "-300 mm is not between web and bearing B"),
+        ({"flywheel_position": -1.0, "flywheel_mass": 1.0}, "-1000 mm lies beyond bearing A"),
+    ],
+)
+def test_lengths_that_contradict(changed: dict[str, Any], message: str) -> None:
+    with pytest.raises(RuleError, match=message):
+        shaft(**changed)
+
+
+def test_forces_import_no_strength() -> None:
+    code = (
+        "import sys\nfrom kurbel.solver.case import Case\nimport kurbel.report.forces\n"
+        "assert not [name for name in sys.modules if 'strength' in name]"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, encoding="utf-8")
+    assert result.returncode == 0, result.stderr
