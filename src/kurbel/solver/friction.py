@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.machine.friction import Rings
 from kurbel.solver.gauss import HALF_RULE
+
+if TYPE_CHECKING:
+    from kurbel.machine.friction import Rings
 
 
 def ring_force(rings: Rings, bore: float) -> float:

@@ -1,0 +1,164 @@
+"""The report of `kurbel flywheel`: turning effort, excess work, flywheel and speed line of the whole machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from kurbel.machine import Machine
+from kurbel.mechanisms import Extreme
+from kurbel.report.left_out import flywheel_left_out, warnings
+from kurbel.report.motion import refuse_absent
+from kurbel.report.shown import shown_column, shown_key_value
+from kurbel.report.tables import Column, Part, Report
+from kurbel.solver.case import Case
+from kurbel.solver.flywheel import MachineSpeed
+from kurbel.units import convert, show
+
+FLYWHEEL_COLUMNS = ("phi", "T", "T_inertia", "M", "E", "omega", "M_coupling")
+"""Ids of the columns of `kurbel flywheel`, in the order in which they are printed."""
+
+_KEY_VALUES = (
+    *("W", "M_mean", "work_shaft", "power_shaft", "T_max", "T_min", "M_max", "M_min"),
+    *("phi_crossing", "lobes", "E_max", "E_min", "dE", "energy_fluctuation"),
+    *(
+        "J",
+        "GD2",
+        "J_needed",
+        "GD2_needed",
+        "delta",
+        "delta_book",
+        "omega_max",
+        "omega_min",
+        "omega_mean",
+        "multiplier",
+    ),
+)
+_OF_COUPLING = ("M_coupling_max", "M_coupling_min", "amplification")
+_LINEAR = 0.1
+"""δ up to which a harmonic balance about the mean speed may be trusted."""
+
+
+def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] | None, system: str) -> Report:
+    """Return the turning effort of the machine at the crank angles (n,) of crank 1 in degrees, with its key values.
+
+    columns: ids to show besides φ, None for all that the machine has; system: `si` or `technical`.
+    Raises UsageError where nothing turns the shaft, NoSolutionError where the machine stalls.
+    """
+    machine = case.machine
+    with np.errstate(all="ignore"):  # what overflows is refused, by name
+        turning = case.flywheel
+        whole = Part(
+            "whole machine",
+            tuple(_columns(turning, angles, columns or FLYWHEEL_COLUMNS, system)),
+            tuple(shown_key_value(name, value, system) for name, value in key_values(turning)),
+            flywheel_left_out(machine),
+            tuple(_warnings(machine, turning)),
+        )
+        parts = tuple(_cylinder_parts(case, system))
+    refuse_absent((whole,), columns or (), "flywheel", FLYWHEEL_COLUMNS)
+    title = f"{machine.name}. Drehkraftlinie und Schwungrad"
+    return Report(title, "flywheel", machine.name, "cylinders", parts, whole, notes=tuple(_notes(machine, turning)))
+
+
+def _columns(turning: MachineSpeed, angles: Sequence[float], columns: Sequence[str], system: str) -> Iterable[Column]:
+    degrees = np.asarray(angles, dtype=float)
+    lines = {"omega": turning.omega_line}
+    yield shown_column("phi", degrees, system)
+    for name in dict.fromkeys(columns):
+        line = lines.get(name) or (getattr(turning, name) if name in FLYWHEEL_COLUMNS and name != "phi" else None)
+        values = line(degrees) if line else None
+        if values is not None:
+            yield shown_column(name, values, system)
+
+
+def key_values(turning: MachineSpeed) -> Iterable[tuple[str, Any]]:
+    """Yield (id, value in SI) of every key value that the machine has; the value may be an Extreme or a tuple."""
+    for name in _KEY_VALUES:
+        repeated = name.endswith("_needed") and turning.J_needed == turning.J
+        if not repeated:
+            yield from _given(name, getattr(turning, name))
+    yield from _given("natural_order", turning.natural_order)
+    if turning.elastic:
+        for name in _OF_COUPLING:
+            yield from _given(name, getattr(turning.elastic, name))
+
+
+def _given(name: str, value: Any) -> Iterable[tuple[str, Any]]:
+    if value is not None:
+        yield name, value
+
+
+def _cylinder_parts(case: Case, system: str) -> Iterable[Part]:
+    """Yield what is to be said of a cylinder alone: the force that its parts before a pump must stand."""
+    for forces in case.cylinders:
+        found = case.flywheel.dead_centre_force(forces)
+        if found is not None:
+            yield Part(forces.drive.name, (), (shown_key_value("P_dead_centre", found, system),))
+
+
+def _notes(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
+    if turning.crank is not None:
+        eta = f", with the efficiency {machine.efficiency:g}" if machine.efficiency != 1 else ""
+        yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
+    if turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
+        yield "Such a load holds no speed of its own: the mean of ω over time is taken as the nominal speed."
+    if machine.efficiency != 1 and turning.masses and turning.speed is not None:
+        yield "As in the book the efficiency takes its share of all of T; in ω the moving masses count in full."
+    if turning.rigid:
+        yield (
+            f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "
+            "the driven inertia turns with the flywheel."
+        )
+
+
+def _warnings(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
+    for cylinder in machine.cylinders:
+        yield from warnings(cylinder)
+    if turning.deficit is not None:
+        yield (
+            f"mean effort {show(turning.M_mean, 'torque')} and mean resistance "
+            f"{show(turning.M_mean - turning.deficit, 'torque')} differ: the machine does not run steadily like this; "
+            f"E and ω count {show(turning.deficit, 'torque')} more resistance all the time"
+        )
+    if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
+        yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
+    if machine.efficiency != 1 and turning.M_mean < 0:
+        yield "the machine absorbs work: it needs more than its turning effort to be driven, 'efficiency' makes it less"
+    if turning.multiplier is not None and turning.multiplier > 1:
+        yield f"unstable: a disturbance of the speed grows {turning.multiplier:.4g} times in every cycle"
+    if turning.load_ignored:
+        yield "the mean torque is zero, so that a load in proportion to it does not hold the speed; it is left out"
+    yield from _coupling_warnings(turning)
+
+
+def _coupling_warnings(turning: MachineSpeed) -> Iterable[str]:
+    if not turning.elastic:
+        return
+    for near in turning.elastic.resonances:
+        yield (
+            f"resonance: harmonic {near.order:g} of the torque ({convert(near.amplitude, 'torque'):.4g} N m) lies "
+            f"{100 * abs(near.distance):.2g} % from the natural order {turning.elastic.natural_order:.4g} and is "
+            f"amplified {near.amplification:.3g} times"
+        )
+    if turning.elastic.delta > _LINEAR:
+        yield "the speed varies so much that the harmonic balance of the coupling is only a rough guide"
+
+
+def limited_values(machine: Machine) -> list[tuple[str, str, float]]:
+    """Return (what it belongs to, id, value in SI) of all key values that a limit can be put on."""
+    with np.errstate(all="ignore"):
+        case = Case(machine)
+        found = [("whole machine", name, value) for name, value in key_values(case.flywheel)]
+        for forces in case.cylinders:
+            found += [
+                (forces.drive.name, *given)
+                for given in _given("P_dead_centre", case.flywheel.dead_centre_force(forces))
+            ]
+    return [
+        (where, name, value.value if isinstance(value, Extreme) else value)
+        for where, name, value in found
+        if isinstance(value, (Extreme, float))
+    ]

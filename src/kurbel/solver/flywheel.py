@@ -1,0 +1,235 @@
+"""Flywheel, coupling and speed line of the whole machine."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurbel.errors import NoSolutionError, UsageError
+from kurbel.mechanisms import Extreme
+from kurbel.solver.coupling import RIGID_ABOVE, ElasticCoupling, Shaft, natural_frequency
+from kurbel.solver.effort_machine import MachineTurning
+from kurbel.solver.excess import Excess
+from kurbel.solver.grid import Grid
+from kurbel.solver.radau import Standstill, Unsettled
+from kurbel.solver.speed import ConstantLoad, Inertia, PowerLaw, SlipLaw, SpeedDependentLoad, SpeedLaw, SpeedLine
+from kurbel.solver.torques import Sum
+from kurbel.units import show
+
+Array = NDArray[np.float64]
+
+
+class MachineSpeed(MachineTurning):
+    """What `kurbel flywheel` answers for the whole machine: its turning effort, flywheel, coupling and speed line.
+
+    Attributes are named by the ids of the key values, in SI; one that the machine does not have is None.
+    """
+
+    @property
+    def J_needed(self) -> float | None:
+        """Flywheel in kg m² for the wanted δ, J = ΔE/(δ ω²); what a rigid coupling adds comes off."""
+        wanted = self.machine.flywheel.fluctuation if self.machine.flywheel else None
+        if wanted is None or not self.omega:
+            return None
+        return max(self.dE / (wanted * self.omega**2) - self._driven_rigidly, 0.0)
+
+    @property
+    def GD2_needed(self) -> float | None:
+        """GD² = 4 J for the wanted δ, in kg m²."""
+        return None if self.J_needed is None else 4 * self.J_needed
+
+    @property
+    def J(self) -> float | None:
+        """Flywheel in kg m²: the given one, or else the one for the wanted δ."""
+        given = self.machine.flywheel.inertia if self.machine.flywheel else None
+        return self.J_needed if given is None else given
+
+    @property
+    def GD2(self) -> float | None:
+        """GD² = 4 J in kg m²."""
+        return None if self.J is None else 4 * self.J
+
+    @property
+    def delta_book(self) -> float | None:
+        """δ ≈ ΔE/(J ω²) of the books: constant J, and a load that does not mind the speed."""
+        inertia = (self.J or 0.0) + self._driven_rigidly
+        return None if not self.omega or not inertia else self.dE / (inertia * self.omega**2)
+
+    # coupling
+
+    @cached_property
+    def elastic(self) -> ElasticCoupling | None:
+        """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with."""
+        coupling = self.machine.coupling
+        if coupling is None or self.J is None or not self.omega or self.rigid:
+            return None
+        shaft = Shaft(self._own_inertia, self.omega, self._load_slope)
+        return ElasticCoupling(coupling, shaft, self._true_excess.effort, self.load)
+
+    @cached_property
+    def natural_order(self) -> float | None:
+        """Natural frequency of cranks and driven inertia on the coupling, over ω; None where not defined."""
+        if self.machine.coupling is None or not self.omega or self.machine.flywheel is None:
+            return None
+        given = self.machine.flywheel.inertia
+        inertia = self._mean_of_masses + (given if given is not None else self._needed_in_all)
+        return natural_frequency(self.machine.coupling, inertia) / self.omega if inertia else None
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the coupling is so stiff that it counts as rigid."""
+        return self.natural_order is not None and self.natural_order > RIGID_ABOVE
+
+    @property
+    def _needed_in_all(self) -> float:
+        assert self.omega
+        assert self.machine.flywheel
+        assert self.machine.flywheel.fluctuation
+        return self.dE / (self.machine.flywheel.fluctuation * self.omega**2)
+
+    @property
+    def _driven_rigidly(self) -> float:
+        return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
+
+    @property
+    def _own_inertia(self) -> float:
+        return (self.J or 0.0) + self._mean_of_masses
+
+    @cached_property
+    def _mean_of_masses(self) -> float:
+        """Mean of Σ m x′² over the turn in kg m²."""
+        if not self.masses:
+            return 0.0
+        grid = Grid(Sum([(1.0, mass) for mass in self.masses]).breaks)
+        inertia = Inertia(0.0, self.masses, 1.0).at(grid.degrees, grid.within)
+        return grid.integral(inertia.value) / math.radians(self.cycle)
+
+    @property
+    def _load_slope(self) -> float:
+        """Slope of the load torque over the angular velocity at the nominal speed, in N m s."""
+        law = self._law
+        return 0.0 if law is None or not self.omega else 2 * float(law(np.zeros(1))[1][0]) / self.omega
+
+    # speed line
+
+    @cached_property
+    def _law(self) -> SpeedLaw | None:
+        """How the load depends on the speed; None where it does not, or is nothing on the mean."""
+        load = self.machine.load
+        largest = max(abs(self.M_max.value), abs(self.M_min.value))
+        if load is None or abs(self.M_mean) <= 1e-12 * largest:
+            return None
+        if load.slip is not None:
+            return SlipLaw(self.M_mean, load.slip)
+        return PowerLaw(self.M_mean, load.power) if load.power else None
+
+    @property
+    def load_ignored(self) -> bool:
+        """Whether the load depends on the speed, but stands in proportion to a mean torque of zero."""
+        load = self.machine.load
+        return load is not None and bool(load.slip or load.power) and self._law is None
+
+    @cached_property
+    def _true_excess(self) -> Excess:
+        """The excess that changes the kinetic energy: efficiency takes its share of the effort, but not of inertia."""
+        lost = 1 - self.machine.efficiency
+        if not lost or not self.masses:
+            return self.excess
+        return Excess(Sum((*self.effort.parts, *((lost, mass) for mass in self.masses))), self.load)
+
+    @cached_property
+    def speed(self) -> SpeedLine | ElasticCoupling | None:
+        """The speed of the crank shaft over the turn; None without a flywheel or a speed.
+
+        Raises NoSolutionError where the machine stalls.
+        """
+        if self.J is None or not self.omega:
+            return None
+        if self.elastic:
+            return self.elastic
+        try:
+            return self._speed_with(self.J)
+        except Standstill as stop:
+            raise NoSolutionError(self._stall(stop.degrees)) from None
+        except Unsettled:
+            raise NoSolutionError("the speed line does not settle; give the flywheel more inertia") from None
+
+    def _speed_with(self, flywheel: float) -> SpeedLine:
+        assert self.omega
+        inertia = Inertia(flywheel + self._driven_rigidly, self.masses, self.omega)
+        self._refuse_no_inertia(inertia)
+        if self._law is not None:
+            return SpeedDependentLoad(self._true_excess, self._law, inertia)
+        return ConstantLoad(self._true_excess, inertia)
+
+    def _refuse_no_inertia(self, inertia: Inertia) -> None:
+        grid = self._true_excess.grid
+        values = inertia.at(grid.degrees, grid.within).value
+        if values.min() <= 1e-12 * values.max():
+            angle = float(grid.degrees.ravel()[np.argmin(values)])
+            raise UsageError(f"nothing that turns has any inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
+
+    def _stall(self, degrees: float) -> str:
+        assert self.J is not None
+        enough = self._enough()
+        return (
+            f"the machine stops near φ = {degrees:.4g}°: with J = {show(self.J, 'inertia')} its kinetic energy does "
+            f"not carry it over; it turns with a flywheel from J = {show(enough, 'inertia')} "
+            f"(GD2 = {show(4 * enough, 'gd2')}) on"
+        )
+
+    def _enough(self) -> float:
+        """Return the smallest flywheel in kg m², within a hundredth and rounded up, with which the machine turns."""
+        assert self.J is not None
+        assert self.omega
+        enough = max(self.J, self.dE / self.omega**2)
+        while not self._turns(enough):
+            enough *= 2
+        least = max(self.J, enough / 1000)
+        while enough > 1.01 * least:
+            middle = math.sqrt(least * enough)
+            least, enough = (least, middle) if self._turns(middle) else (middle, enough)
+        digit = 10.0 ** (math.floor(math.log10(enough)) - 2)
+        return math.ceil(enough / digit) * digit
+
+    def _turns(self, flywheel: float) -> bool:
+        try:
+            return self._speed_with(flywheel).omega_mean > 0
+        except (Standstill, Unsettled):
+            return False
+
+    @property
+    def delta(self) -> float | None:
+        """δ = (ω_max − ω_min)/ω_mean of the speed line."""
+        return None if self.speed is None else self.speed.delta
+
+    @property
+    def omega_max(self) -> Extreme | None:
+        """Largest angular velocity in rad/s."""
+        return None if self.speed is None else self.speed.omega_max
+
+    @property
+    def omega_min(self) -> Extreme | None:
+        """Smallest angular velocity in rad/s."""
+        return None if self.speed is None else self.speed.omega_min
+
+    @property
+    def omega_mean(self) -> float | None:
+        """Mean angular velocity over time in rad/s."""
+        return None if self.speed is None else self.speed.omega_mean
+
+    @property
+    def multiplier(self) -> float | None:
+        """Floquet multiplier per cycle; None where the load does not depend on the speed."""
+        return self.speed.multiplier if isinstance(self.speed, SpeedDependentLoad) else None
+
+    def omega_line(self, degrees: Array) -> Array | None:
+        """Return the angular velocity in rad/s at crank angles (n,) in degrees."""
+        return None if self.speed is None else self.speed.omega(degrees)
+
+    def M_coupling(self, degrees: Array) -> Array | None:
+        """Return the torque in the elastic coupling in N m."""
+        return None if self.elastic is None else self.elastic.torque(degrees)

@@ -1,0 +1,254 @@
+"""The speed of the shaft over the turn: z, the kinetic energy beyond that of uniform rotation, decides it.
+
+With the reduced inertia J(φ) = J + Σ m x′² the kinetic energy is ½ J(φ) ω_n² + z, hence ω = ω_n √(1 + z/(½ J(φ) ω_n²)).
+z changes by the excess of the turning effort at uniform rotation, inertia forces included, over the load at the true
+speed. Nothing cancels, whether the flywheel is heavy or the load stiff.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurbel.mechanisms import Extreme
+from kurbel.solver.effort import InertiaEffort
+from kurbel.solver.excess import Excess
+from kurbel.solver.grid import Extremes, Grid, Sampled, extremes
+from kurbel.solver.jet import Jet
+from kurbel.solver.radau import Periodic, Standstill, periodic
+from kurbel.solver.torques import Torque
+
+Array = NDArray[np.float64]
+
+
+class Inertia:
+    """The reduced moment of inertia J(φ) = J + Σ m x′² in kg m², at a nominal angular velocity ω_n in rad/s."""
+
+    def __init__(self, flywheel: float, masses: Sequence[InertiaEffort], omega: float) -> None:
+        self.flywheel = flywheel
+        self.masses = tuple(masses)
+        self.omega = omega
+
+    def at(self, degrees: Array, within: Array) -> Jet:
+        """Return J(φ) with its slope at crank angles (n,)."""
+        total = Jet(np.full_like(degrees, self.flywheel), np.zeros_like(degrees))
+        for mass in self.masses:
+            total = total + mass.reduced_inertia(degrees, within)
+        return total
+
+    def energy(self, degrees: Array, within: Array) -> Jet:
+        """Return ½ J(φ) ω_n² in J."""
+        return self.at(degrees, within) * (self.omega**2 / 2)
+
+
+class SpeedLaw(Protocol):
+    """How a load rises with the speed: its torque less that at the nominal speed, over r = (ω/ω_n)² − 1."""
+
+    def __call__(self, ratio: Array) -> tuple[Array, Array]:
+        """Return the rise in N m and its derivative by r, (…,)."""
+        ...
+
+
+class PowerLaw:
+    """M_m ((ω/ω_n)^k − 1)."""
+
+    def __init__(self, mean: float, exponent: float) -> None:
+        self.mean, self.exponent = mean, exponent
+
+    def __call__(self, ratio: Array) -> tuple[Array, Array]:
+        """See `SpeedLaw`."""
+        half = self.exponent / 2
+        logarithm = np.log1p(ratio)
+        return self.mean * np.expm1(half * logarithm), self.mean * half * np.exp((half - 1) * logarithm)
+
+
+class SlipLaw:
+    """|M_m| (ω/ω_n − 1)/s: an induction machine on the grid, generator or motor."""
+
+    def __init__(self, mean: float, slip: float) -> None:
+        self.steepness = abs(mean) / slip
+
+    def __call__(self, ratio: Array) -> tuple[Array, Array]:
+        """See `SpeedLaw`."""
+        root = np.sqrt(1 + ratio)
+        return self.steepness * ratio / (1 + root), self.steepness / (2 * root)
+
+
+class SpeedLine:
+    """ω over the turn. `z(degrees, within)` is the kinetic energy beyond that of uniform rotation, in J."""
+
+    def __init__(self, excess: Torque, inertia: Inertia, grid: Grid) -> None:
+        self.excess = excess
+        self.inertia = inertia
+        self.grid = grid
+        self.cycle = float(grid.breaks[-1])
+
+    def z(self, degrees: Array, within: Array) -> Array:
+        """Return z in J at crank angles (n,) within the cycle."""
+        raise AssertionError
+
+    def _rise(self, ratio: Array) -> Array:
+        """Return what the load takes beyond its torque at the nominal speed, in N m; ratio: (ω/ω_n)² − 1."""
+        return np.zeros_like(ratio)
+
+    def _ratio(self, degrees: Array, within: Array) -> Sampled:
+        """Return (ω/ω_n)² − 1 with its slope by φ."""
+        z, energy = self.z(degrees, within), self.inertia.energy(degrees, within)
+        ratio = z / energy.value
+        slope = self.excess.torque(degrees, within).value - self._rise(ratio)
+        return Sampled(ratio, (slope - ratio * energy.slope) / energy.value)
+
+    @cached_property
+    def _samples(self) -> Sampled:
+        return self._ratio(self.grid.degrees, self.grid.within)
+
+    @cached_property
+    def _extremes(self) -> Extremes:
+        def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
+            return {"ratio": self._ratio(degrees, within)}
+
+        return extremes(self.grid, {"ratio": self._samples}, evaluate)["ratio"]
+
+    def omega(self, degrees: Array) -> Array:
+        """Return the angular velocity in rad/s at crank angles (n,) in degrees."""
+        angles = np.mod(degrees, self.cycle)
+        ratio = self.z(angles, angles) / self.inertia.energy(angles, angles).value
+        return np.asarray(self.inertia.omega * np.sqrt(1 + ratio))
+
+    @cached_property
+    def omega_max(self) -> Extreme:
+        """Largest angular velocity in rad/s."""
+        return self._omega_at(self._extremes.largest)
+
+    @cached_property
+    def omega_min(self) -> Extreme:
+        """Smallest angular velocity in rad/s."""
+        return self._omega_at(self._extremes.smallest)
+
+    def _omega_at(self, ratio: Extreme) -> Extreme:
+        return Extreme(self.inertia.omega * math.sqrt(1 + ratio.value), ratio.degrees)
+
+    @cached_property
+    def omega_mean(self) -> float:
+        """Mean angular velocity over time in rad/s: 2π by the time of a turn."""
+        slowness = -self._samples.value / (np.sqrt(1 + self._samples.value) * (1 + np.sqrt(1 + self._samples.value)))
+        return self.inertia.omega / (1 + self.grid.integral(slowness) / math.radians(self.cycle))
+
+    @cached_property
+    def delta(self) -> float:
+        """δ = (ω_max − ω_min)/ω_mean, as the difference of the squares over the sum, which loses nothing."""
+        squares = self._extremes.largest.value - self._extremes.smallest.value
+        return self.inertia.omega**2 * squares / ((self.omega_max.value + self.omega_min.value) * self.omega_mean)
+
+
+class ConstantLoad(SpeedLine):
+    """ω under a load that does not depend on speed: z = E + C, closed.
+
+    Such a load lets the machine run at any speed; C is chosen so that the mean speed over time is the nominal one.
+    Raises Standstill where that takes a smallest speed below a hundredth of it.
+    """
+
+    SLOWEST = 0.01
+
+    def __init__(self, excess: Excess, inertia: Inertia) -> None:
+        super().__init__(excess.torque, inertia, _split_at_dips(excess))
+        self._closed = excess
+        self.constant = self._constant()
+
+    def z(self, degrees: Array, within: Array) -> Array:
+        """Return E + C in J; see `SpeedLine`."""
+        if degrees is self.grid.degrees:
+            return self._on_grid + self.constant
+        return self._closed.at(degrees.ravel()).reshape(degrees.shape) + self.constant
+
+    @cached_property
+    def _on_grid(self) -> Array:
+        return self._closed.at(self.grid.degrees.ravel()).reshape(self.grid.degrees.shape)
+
+    def _constant(self) -> float:
+        """C in J, from ∫ dφ/ω = 2π/ω_n: the mean of 1/√(1 + r) is 1. That falls and is convex: Newton from below."""
+        energy = self.inertia.energy(self.grid.degrees, self.grid.within).value
+        excess = self._on_grid
+        least = -excess + (self.SLOWEST**2 - 1) * energy
+        constant = float(least.max())
+        whole = math.radians(self.cycle)
+        for _ in range(100):
+            ratio = (excess + constant) / energy
+            root = np.sqrt(1 + ratio)
+            lag = self.grid.integral(-ratio / (root * (1 + root))) / whole
+            slope = self.grid.integral(-0.5 / ((1 + ratio) * root * energy)) / whole
+            step = -lag / slope
+            if step < 0 and constant == float(least.max()):
+                raise Standstill(float(self.grid.degrees.ravel()[np.argmax(least)]))
+            constant += step
+            if abs(step) <= 1e-15 * np.ptp(excess):
+                break
+        return constant
+
+
+def _split_at_dips(excess: Excess) -> Grid:
+    """Cut the grid ever finer on both sides of the crossings, where a slow machine lingers."""
+    if not excess.crossings:
+        return excess.grid
+    steps = np.array([0.0, *(sign * 10.0 / 3.0**k for k in range(4) for sign in (1, -1))])
+    angles = (np.array(excess.crossings)[:, None] + steps).ravel()
+    return excess.grid.split_at(np.mod(angles, excess.cycle))
+
+
+class _Prepared(NamedTuple):
+    """What the equation of speed needs at its nodes: excess at the nominal speed in N m and ½ J(φ) ω_n² in J."""
+
+    excess: Array
+    energy: Array
+
+
+class SpeedEquation:
+    """z′ = M − M_load(ω), ω from z; see `radau.Equation`."""
+
+    def __init__(self, excess: Torque, law: SpeedLaw, inertia: Inertia, noise: float) -> None:
+        self.excess, self.law, self.inertia, self.noise = excess, law, inertia, noise
+
+    def prepared(self, degrees: Array, within: Array) -> Array:
+        """See `radau.Equation`."""
+        return np.stack((self.excess.torque(degrees, within).value, self.inertia.energy(degrees, within).value))
+
+    def rate(self, prepared: Array, z: Array) -> tuple[Array, Array]:
+        """See `radau.Equation`."""
+        excess, energy = prepared
+        rise, slope = self.law(z / energy)
+        return excess - rise, -slope / energy
+
+    def floor(self, prepared: Array) -> Array:
+        """See `radau.Equation`."""
+        return np.asarray(-prepared[1])
+
+
+class SpeedDependentLoad(SpeedLine):
+    """ω under a load that depends on speed: the periodic state, found by collocation over the whole cycle."""
+
+    def __init__(self, excess: Excess, law: SpeedLaw, inertia: Inertia) -> None:
+        # a torque known to one unit in the last place moves z by this in a turn; the energy is not known better either
+        torque = max(abs(extreme.value) for extreme in excess.effort_extremes)
+        energy = inertia.energy(excess.grid.degrees, excess.grid.within).value.min()
+        noise = 1e-16 * min(torque, float(energy))
+        self._law = law
+        self.solution: Periodic = periodic(SpeedEquation(excess.torque, law, inertia, noise), excess.grid.breaks)
+        low = self.solution.elements.low
+        super().__init__(excess.torque, inertia, Grid(np.append(low, excess.cycle)))
+
+    def z(self, degrees: Array, within: Array) -> Array:
+        """Return z in J; see `SpeedLine`."""
+        return self.solution.at(degrees, within)
+
+    def _rise(self, ratio: Array) -> Array:
+        return self._law(ratio)[0]
+
+    @property
+    def multiplier(self) -> float:
+        """Floquet multiplier: what is left of a small disturbance of the energy after one cycle; stable below 1."""
+        return self.solution.multiplier

@@ -1,0 +1,343 @@
+"""Turning effort and excess work: laws, sums over cylinders, and ΔE against independent high precision."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from kurbel.errors import UsageError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.friction import Friction, Rings
+from kurbel.machine.indicator import Card, Indicator
+from kurbel.machine.masses import ConnectingRod, Masses
+from kurbel.machine.piston import Piston
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.case import Case
+from kurbel.solver.flywheel import MachineSpeed
+from kurbel.solver.grid import Grid
+from machines import STEAM_CARD, constant_pressure
+from turning_machines import of_points
+
+STEAM = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
+PUMP = Piston(0.285, 0.0, 0.075, Indicator(constant_pressure(4e5), constant_pressure(4e5)), "pump")
+ENGINE = Cylinder(SliderCrank(0.4, 2.0), pistons=(STEAM,), masses=Masses(826.0))
+ANGLES = np.array([0.0, 17.3, 90.0, 123.4, 180.0, 271.0, 359.0])
+
+
+def turning(*cylinders: Cylinder, rpm: float | None = 50, **machine: Any) -> MachineSpeed:
+    named = tuple(replace(c, name=f"cylinder {i}") for i, c in enumerate(cylinders, 1))
+    return Case(Machine(named, speed=None if rpm is None else rpm / 60, **machine)).flywheel
+
+
+def test_a_crank_that_leads_by_90_degrees_is_ahead_by_90_degrees() -> None:
+    """R p. 612: the torques are added, each shifted by its crank."""
+    alone = turning(ENGINE)
+    both = turning(ENGINE, replace(ENGINE, crank_position=-90.0))
+    assert both.M(ANGLES) == pytest.approx(alone.M(ANGLES) + alone.M(ANGLES + 90), rel=1e-12, abs=1e-9)
+
+
+def test_the_efficiency_scales_the_turning_effort_only() -> None:
+    """R p. 611."""
+    whole, less = turning(ENGINE), turning(ENGINE, efficiency=0.9)
+    assert less.M(ANGLES) == pytest.approx(0.9 * whole.M(ANGLES), rel=1e-14)
+    assert less.dE == pytest.approx(0.9 * whole.dE, rel=1e-14)
+    assert pytest.approx(0.9 * Case(less.machine).cylinders[0].W, rel=1e-14) == less.W
+
+
+def test_forces_are_referred_to_crank_1() -> None:
+    small = replace(ENGINE, mechanism=SliderCrank(0.2, 1.5))
+    both = turning(ENGINE, small)
+    assert both.T(ANGLES) * 0.4 == pytest.approx(both.M(ANGLES), rel=1e-14)
+    assert pytest.approx(both.M_mean, rel=1e-14) == both.W * 0.4
+
+
+def test_inertia_line_of_tolle() -> None:
+    """For a fixed λ the inertia T-line is one curve times G v²/(gR), and its mean is zero."""
+    slow, fast = turning(ENGINE), turning(ENGINE, rpm=150)
+    assert fast.T_inertia(ANGLES) == pytest.approx(9 * slow.T_inertia(ANGLES), rel=1e-12, abs=1e-9)
+    assert fast.M_mean == pytest.approx(slow.M_mean, rel=1e-12)
+    without = turning(replace(ENGINE, masses=None))
+    assert slow.T(ANGLES) - slow.T_inertia(ANGLES) == pytest.approx(without.T(ANGLES), rel=1e-12, abs=1e-8)
+
+
+LYING = Friction(crosshead=0.1, rings=Rings(3, 0.02, 3e4, 0.08))
+ROD = ConnectingRod(220.0, center_of_gravity=1.3, inertia=90.0)
+
+
+@pytest.mark.parametrize(
+    "cylinder",
+    [
+        ENGINE,
+        replace(ENGINE, friction=LYING),
+        replace(ENGINE, inclination=60.0, friction=LYING),
+        replace(ENGINE, masses=Masses(500.0, ROD), inclination=90.0),
+        replace(ENGINE, mechanism=SliderCrank(0.4, 2.0, 0.15), pistons=(STEAM, PUMP)),
+        replace(ENGINE, mechanism=SliderCrank(0.4, 0.41)),
+        Cylinder(ScotchYoke(0.4), pistons=(STEAM,), masses=Masses(300.0)),
+    ],
+    ids=["steam", "friction", "standing", "exact rod", "offset, pump", "short rod", "yoke"],
+)
+def test_closed_work_is_the_integral_of_the_torque(cylinder: Cylinder) -> None:
+    machine = turning(cylinder, replace(cylinder, crank_position=77.0))
+    excess = machine.excess
+    turnover = excess.grid.integral(np.abs(excess.torque.torque(excess.grid.degrees, excess.grid.within).value))
+    for angle in (13.0, 100.0, 181.5, 300.0, 360.0):
+        part = Grid(np.append(excess.grid.breaks[excess.grid.breaks < angle], angle))
+        quadrature = part.integral(excess.torque.torque(part.degrees, part.within).value)
+        assert excess.at(np.array([angle]))[0] == pytest.approx(quadrature, abs=2e-14 * turnover)
+
+
+def test_lobes_add_up_to_nothing_and_span_the_swing() -> None:
+    machine = turning(ENGINE, replace(ENGINE, crank_position=-90.0))
+    heights = np.cumsum(machine.lobes)
+    assert heights[-1] == pytest.approx(0, abs=1e-12 * machine.dE)
+    assert np.ptp(heights) == pytest.approx(machine.dE, rel=1e-13)
+    assert machine.dE > max(machine.lobes)  # the largest lobe alone is not the swing
+    assert machine.E_max.value - machine.E_min.value == pytest.approx(machine.dE, rel=1e-13)
+
+
+def test_jumps_are_crossings_and_have_both_their_values() -> None:
+    machine = of_points([(0, 300), (90, 300), (90, -100), (360, -100)])
+    assert machine.M_mean == pytest.approx(0, abs=1e-12)
+    assert machine.phi_crossing == (0.0, 90.0)
+    assert (machine.M_max.value, machine.M_min.value) == (300, -100)
+    assert machine.dE == pytest.approx(300 * math.pi / 2, rel=1e-15)
+
+
+def test_an_effort_that_equals_the_resistance_has_no_lobes() -> None:
+    machine = of_points([(0, 0.1), (123, 0.1), (360, 0.1)], 50, inertia=1.0)
+    assert machine.phi_crossing == machine.lobes == ()
+    assert machine.dE == 0
+    assert machine.delta == pytest.approx(0, abs=1e-16)
+
+
+def test_touching_is_not_crossing() -> None:
+    """A diagram whose peak reaches just over, or not quite to, the mean between two corners."""
+    load = of_points([(0, 10), (100, -5), (140, 2.0), (180, -5), (360, 4)])
+    assert len(load.phi_crossing) == 4 if load.M_mean < 2.0 else 2
+
+
+# cycles that differ
+
+FOUR_LINES = Card.from_keys(
+    unit=(1e5, 1),
+    expansion=[(0, 25), (0.1, 18), (0.4, 6), (1, 2)],
+    exhaust=[(1, 0.4), (0, 0.1)],
+    intake=[(0, -0.1), (1, -0.1)],
+    compression=[(1, -0.1), (0.5, 0.9), (0.2, 3.5), (0, 10)],
+)
+GAS = Cylinder(SliderCrank(0.1, 0.45), pistons=(Piston(0.18, indicator=Indicator(FOUR_LINES)),), masses=Masses(20.0))
+PUMP_BESIDE = Cylinder(SliderCrank(0.05, 0.3), pistons=(replace(PUMP, bore=0.1),), crank_position=30.0)
+
+
+def test_a_pump_of_one_turn_beside_an_engine_of_two() -> None:
+    machine = turning(GAS, replace(PUMP_BESIDE, cycle="two-stroke"), rpm=300, cycle="four-stroke")
+    engine, pump = Case(machine.machine).cylinders
+    assert machine.cycle == 720
+    assert (engine.drive.cycle, pump.drive.cycle) == (720, 360)
+    assert machine.work_shaft == pytest.approx(engine.work + 2 * pump.work, rel=1e-13)
+    at = machine.M(ANGLES + 360) - machine.M(ANGLES)
+    alone = turning(GAS, rpm=300, cycle="four-stroke")
+    assert at == pytest.approx(alone.M(ANGLES + 360) - alone.M(ANGLES), abs=1e-9)
+
+
+def test_four_cylinders_that_fire_in_turn() -> None:
+    positions = (0.0, 540.0, 180.0, 360.0)
+    machine = turning(*(replace(GAS, crank_position=p) for p in positions), rpm=300, cycle="four-stroke")
+    assert machine.M(ANGLES + 180) == pytest.approx(machine.M(ANGLES), abs=1e-8)
+    assert machine.M_mean == pytest.approx(4 * turning(GAS, rpm=300, cycle="four-stroke").M_mean, rel=1e-13)
+
+
+def test_a_diagram_of_one_turn_repeats_in_a_cycle_of_two() -> None:
+    machine = of_points([(0, 5), (180, 20), (360, 5)])
+    twice = replace(machine.machine, cycle="four-stroke")
+    again = Case(twice).flywheel
+    assert again.M(ANGLES + 360) == pytest.approx(again.M(ANGLES), rel=1e-13)
+    assert again.work_shaft == pytest.approx(2 * machine.work_shaft, rel=1e-14)
+
+
+def test_no_force_turns_nothing() -> None:
+    with pytest.raises(UsageError, match="no force acts"):
+        turning(Cylinder(SliderCrank(0.4, 2.0)))
+
+
+def test_parts_before_a_pump_stand_steam_and_pump_together() -> None:
+    """R p. 613, Abb. 1065: at the end of the stroke compression and pump add up, P_v + P_p."""
+    at = 98066.5
+    pump = Piston(
+        0.285,
+        0,
+        0.075,
+        Indicator(constant_pressure_pair(-0.45 * at, 5.4 * at), constant_pressure_pair(-0.45 * at, 5.4 * at)),
+    )
+    machine = turning(replace(ENGINE, pistons=(STEAM, pump)))
+    force = machine.dead_centre_force(Case(machine.machine).cylinders[0])
+    head, crank = STEAM.head_area, STEAM.crank_area
+    steam = 9.5 * at * head - 2.2 * at * crank
+    assert force.value == pytest.approx(steam + 3710 * at / 1e4, rel=1e-3)  # the book rounds the pump's 3710 kgf
+    assert force.degrees == 0
+
+
+def constant_pressure_pair(suction: float, delivery: float) -> Card:
+    from kurbel.machine.indicator import Constant
+
+    return Constant.from_keys(suction, delivery)
+
+
+# ΔE against mpmath
+
+
+def precise_swing(cylinders: list[Cylinder], rpm: float) -> mpmath.mpf:
+    """ΔE of straight slider-cranks with linear two-stroke cards, from the drawn card and plain formulas."""
+    mp = mpmath.mp
+    omega = 2 * mp.pi * mp.mpf(rpm / 60)
+
+    def motion(c: Cylinder, phi: Any) -> tuple[Any, Any]:
+        crank, rod = mp.mpf(c.mechanism.crank), mp.mpf(c.mechanism.rod)
+        reach = mp.sqrt(rod**2 - (crank * mp.sin(phi)) ** 2)
+        x = crank + rod - crank * mp.cos(phi) - reach
+        return x, crank * mp.sin(phi) + crank**2 * mp.sin(phi) * mp.cos(phi) / reach
+
+    def area(points: list[tuple[Any, Any]], z: Any, forward: bool) -> Any:
+        """∫ p dz along a line from its start to the fraction z."""
+        total = mp.mpf(0)
+        for (z0, p0), (z1, p1) in pairwise(points):
+            if z1 == z0:
+                continue
+            done = (z >= z1) if forward else (z <= z1)
+            end = z1 if done else z
+            p_end = p0 + (p1 - p0) * (end - z0) / (z1 - z0)
+            total += (end - z0) * (p0 + p_end) / 2
+            if not done:
+                break
+        return total
+
+    def work(c: Cylinder, phi: Any) -> Any:
+        turns, rest = mp.floor(phi / (2 * mp.pi)), phi - 2 * mp.pi * mp.floor(phi / (2 * mp.pi))
+        x, slope = motion(c, rest)
+        total = -mp.mpf(c.masses.parts) / 2 * slope**2 * omega**2
+        for piston in c.pistons:
+            for card, bore, rod, head in (
+                (piston.indicator.head_end, piston.bore, piston.head_end_rod, True),
+                (piston.indicator.crank_end, piston.bore, piston.crank_end_rod, False),
+            ):
+                surface = mp.pi / 4 * (mp.mpf(bore) ** 2 - mp.mpf(rod) ** 2)
+                lines = [
+                    [(mp.mpf(z), mp.mpf(p)) for z, p in zip(line.fractions, line.pressures)] for line in card.lines
+                ]
+                stroke = 2 * mp.mpf(c.mechanism.crank)
+                z = x / stroke if head else 1 - x / stroke
+                out, back = area(lines[0], mp.mpf(1), True), area(lines[1], mp.mpf(0), False)
+                if head:
+                    part = area(lines[0], z, True) if rest < mp.pi else out + area(lines[1], z, False)
+                else:
+                    part = area(lines[1], z, False) if rest < mp.pi else back + area(lines[0], z, True)
+                total += surface * stroke * (part + turns * (out + back))
+        return total
+
+    def energy(phi: Any) -> Any:
+        each = (work(c, phi - mp.radians(mp.mpf(c.crank_position))) for c in cylinders)
+        return sum(each) - mean * phi
+
+    mean = mp.mpf(0)
+    mean = (energy(2 * mp.pi) - energy(mp.mpf(0))) / (2 * mp.pi)
+    samples = [energy(mp.radians(mp.mpf(i))) for i in range(360)]
+    found = []
+    for sign in (1, -1):
+        best = max(range(360), key=lambda i: sign * samples[i])
+        low, high = mp.radians(mp.mpf(best - 1)), mp.radians(mp.mpf(best + 1))
+        golden = (mp.sqrt(5) - 1) / 2
+        for _ in range(110):  # E is flat at its summit: half the digits of the angle are enough
+            a, b = high - golden * (high - low), low + golden * (high - low)
+            if sign * energy(a) > sign * energy(b):
+                high = b
+            else:
+                low = a
+        found.append(energy((low + high) / 2))
+    return found[0] - found[1]
+
+
+CASES = {
+    "one": ([ENGINE], 50.0),
+    "fast": ([ENGINE], 200.0),
+    "leading": ([ENGINE, replace(ENGINE, crank_position=-90.0)], 50.0),
+    "pumps": (
+        [
+            replace(ENGINE, pistons=(STEAM, PUMP)),
+            replace(ENGINE, mechanism=SliderCrank(0.3, 0.9), crank_position=120.0),
+        ],
+        90.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_swing_agrees_with_forty_digits(name: str) -> None:
+    """Half a unit in the last place of the displacements moves the swing of balanced cranks by some 8e-16."""
+    cylinders, rpm = CASES[name]
+    with mpmath.workdps(40):
+        truth = precise_swing(cylinders, rpm)
+        error = abs((mpmath.mpf(turning(*cylinders, rpm=rpm).dE) - truth) / truth)
+    assert error < (5e-16 if len(cylinders) == 1 else 1e-15)
+
+
+def test_no_crossing_is_missed_in_random_machines() -> None:
+    """The full run over 2,000 machines is benchmarks/random_machines.py."""
+    random = np.random.default_rng(7)
+    for _ in range(25):
+        machine = random_machine(random)
+        assert missed(machine) == 0
+
+
+def random_machine(random: np.random.Generator) -> MachineSpeed:
+    count = int(random.integers(1, 4))
+    cylinders = []
+    for _ in range(count):
+        z = np.sort(random.uniform(0, 1, 3))
+        levels = random.uniform(-0.5, 10, 8) * 1e5
+        card = Card.from_keys(
+            unit=(1, 1),
+            expansion=[(0, levels[0]), *zip(z, levels[1:4]), (z[1], levels[4]), (1, levels[5])]
+            if False
+            else [(0, levels[0]), (z[0], levels[1]), (z[0], levels[2]), (z[1], levels[3]), (1, levels[4])],
+            compression=[(1, levels[5]), (z[2], levels[6]), (0, levels[7])],
+        )
+        crank = 10 ** random.uniform(-2, 0)
+        lam = random.uniform(0.05, 0.97)
+        mass = random.choice([0, 1]) * 10 ** random.uniform(0, 3)
+        cylinders.append(
+            Cylinder(
+                SliderCrank(crank, crank / lam),
+                pistons=(Piston(crank, indicator=Indicator(card, card)),),
+                masses=Masses(mass),
+                crank_position=random.uniform(-180, 360),
+            )
+        )
+    return turning(*cylinders, rpm=10 ** random.uniform(1, 3))
+
+
+def missed(machine: MachineSpeed, samples: int = 200) -> int:
+    """Count changes of sign of M − M_mean on a fine mesh beside no crossing, and extremes that the mesh beats."""
+    breaks = machine.excess.grid.breaks
+    low, high = breaks[:-1, None], breaks[1:, None]
+    degrees = low + (high - low) * np.linspace(0, 1, samples)
+    within = np.broadcast_to((low + high) / 2, degrees.shape)
+    values = machine.excess.torque.torque(degrees, within).value.ravel()
+    total = machine.effort.torque(degrees, within).value
+    size = np.abs(total).max()
+    changes = np.flatnonzero(values[:-1] * values[1:] < 0)
+    crossings = np.array(machine.phi_crossing)
+    beside = [
+        ((crossings >= degrees.ravel()[i] - 1e-9) & (crossings <= degrees.ravel()[i + 1] + 1e-9)).any()
+        for i in changes
+        if max(abs(values[i]), abs(values[i + 1])) > 1e-13 * size
+    ]
+    beaten = (total.max() > machine.M_max.value + 1e-12 * size) + (total.min() < machine.M_min.value - 1e-12 * size)
+    return len(beside) - int(sum(beside)) + int(beaten)

@@ -1,0 +1,157 @@
+"""`kurbel flywheel` from the file to the output, and the shipped machines."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+from kurbel.machine_file import load, loads
+from kurbel.report.check import checked
+from kurbel.solver.case import Case
+
+CONFIGS = Path(__file__).parents[2] / "src" / "kurbel" / "configs"
+ENGINE = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8")
+PUNCH = (CONFIGS / "punch.yaml").read_text(encoding="utf-8")
+
+
+def run(text: str, *arguments: str) -> Result:
+    return CliRunner().invoke(kurbel, ["flywheel", "-", *arguments], input=text)
+
+
+def results(text: str, *arguments: str) -> dict[str, object]:
+    answer = run(text, "-f", "json", *arguments)
+    assert answer.exit_code == 0, answer.stderr
+    return json.loads(answer.stdout)
+
+
+def values(text: str) -> dict[str, object]:
+    return {one["id"]: one["value"] for one in results(text)["machine_key_values"]}
+
+
+def test_the_whole_machine_stands_under_its_own_keys() -> None:
+    """The contract, 3: machine_columns, machine_key_values."""
+    found = results(ENGINE + "flywheel: {inertia: 50000 kg m2}\n", "--step", "90")
+    columns = {column["id"]: column["values"] for column in found["machine_columns"]}
+    assert list(columns) == ["phi", "T", "T_inertia", "M", "E", "omega"]
+    assert columns["phi"] == [0, 90, 180, 270, 360]
+    assert columns["E"][0] == 0
+    assert columns["E"][-1] == pytest.approx(0, abs=1e-9)
+    assert columns["M"] == pytest.approx([0.4 * force for force in columns["T"]])
+    ids = [one["id"] for one in found["machine_key_values"]]
+    assert {"W", "M_mean", "dE", "delta", "J", "GD2", "omega_max", "omega_min"} <= set(ids)
+    assert found["cylinders"][0]["key_values"][0]["id"] == "P_dead_centre"
+
+
+def test_csv_has_a_row_for_every_angle() -> None:
+    lines = run(ENGINE, "-f", "csv", "--step", "120").stdout.splitlines()
+    assert lines[0] == "phi_deg,T_N,T_inertia_N,M_Nm,E_J"
+    assert [line.partition(",")[0] for line in lines[1:]] == ["0", "120", "240", "360"]
+
+
+def test_gd2_is_four_times_the_inertia() -> None:
+    """GD² = 4gJ as a weight times an area: 4 kgf m² is 1 kg m²."""
+    weight, inertia = (
+        values(ENGINE + "flywheel: {gd2: 200000 kgf m2}\n"),
+        values(ENGINE + "flywheel: {inertia: 50 t m2}\n"),
+    )
+    assert weight == inertia
+    assert inertia["GD2"] == 4 * inertia["J"]
+
+
+def test_the_wanted_fluctuation_gives_the_flywheel() -> None:
+    found = values(ENGINE + "flywheel: {fluctuation: 0.01}\n")
+    assert found["J"] == pytest.approx(found["dE"] / (0.01 * (100 * math.pi / 60) ** 2), rel=1e-13)
+    assert found["delta_book"] == pytest.approx(0.01, rel=1e-13)
+    assert found["delta"] == pytest.approx(0.01, rel=0.01)
+    both = values(ENGINE + "flywheel: {fluctuation: 0.01, inertia: 9000 kg m2}\n")
+    assert (both["J"], both["J_needed"]) == (9000, found["J"])
+
+
+def left_out(text: str) -> dict[str, str]:
+    return {one["what"]: one["why"] for one in results(text)["machine_left_out"]}
+
+
+def test_what_is_left_out_is_said() -> None:
+    assert left_out(ENGINE)["speed line, δ"] == "no flywheel given"
+    assert left_out(ENGINE)["weight"] == "no inclination given"
+    slow = ENGINE.replace("speed: 50 rpm\n", "") + "flywheel: {fluctuation: 0.01}\n"
+    assert left_out(slow)["J"] == left_out(slow)["speed line, δ"] == left_out(slow)["inertia"] == "no speed given"
+    resting = ENGINE.replace("50 rpm", "0 rpm") + "flywheel: {inertia: 1 kg m2}\n"
+    assert left_out(resting)["speed line, δ"] == "not defined at rest"
+    assert left_out(PUNCH)["T, W"] == "no crank: the effort is given as a torque"
+    assert "T" not in [column["id"] for column in results(PUNCH)["machine_columns"]]
+
+
+def test_a_stall_is_exit_3_and_names_angle_and_flywheel() -> None:
+    answer = run(ENGINE + "flywheel: {inertia: 100 kg m2}\nload: {power_law: 2}\n")
+    assert answer.exit_code == 3
+    assert "stops near φ = " in answer.stderr
+    assert "GD2 = " in answer.stderr
+    assert answer.stdout == ""
+
+
+def warnings(text: str) -> str:
+    return " ".join(results(text)["machine_warnings"])
+
+
+def test_means_that_differ_are_told() -> None:
+    uneven = PUNCH.replace("[360, 120]", "[360, 140]")
+    assert "mean effort 130 N m and mean resistance 120 N m differ" in warnings(uneven)
+    assert warnings(PUNCH) == ""
+    assert values(uneven)["dE"] == pytest.approx(values(PUNCH)["dE"], rel=0.1)
+
+
+def test_friction_taken_off_twice_is_told() -> None:
+    assert "friction is taken off twice" in warnings(ENGINE + "efficiency: 0.9\n")
+
+
+def test_a_resonance_is_told() -> None:
+    coupling = "{stiffness: 1e6 N m/rad, inertia: 3000 kg m2, damping: 100 N m s/rad}"
+    text = f"{ENGINE}flywheel: {{inertia: 20 t m2}}\ncoupling: {coupling}\n"
+    assert "harmonic 4 of the torque" in warnings(text)
+    assert {"natural_order", "M_coupling_max", "M_coupling_min", "amplification"} <= values(text).keys()
+    undamped = text.replace(", damping: 100 N m s/rad", "")
+    order = values(undamped)["natural_order"]
+    tuned = undamped.replace("1e6", f"{1e6 * (4 / order) ** 2!r}")
+    assert run(tuned).exit_code == 3
+
+
+def test_limits_reach_the_flywheel() -> None:
+    text = ENGINE + "flywheel: {inertia: 50000 kg m2}\nlimits: {delta: 1/50, dE: 30 kJ}\n"
+    assert not checked(loads(text), ("forces", "flywheel")).broken
+    assert checked(loads(text.replace("1/50", "1/200")), ("forces", "flywheel")).broken
+
+
+@pytest.mark.parametrize("name", ["waterworks-two-cranks", "four-cylinder-generator", "punch"])
+def test_shipped_machines_run(name: str) -> None:
+    turning = Case(load(CONFIGS / f"{name}.yaml")).flywheel
+    assert turning.delta == pytest.approx(turning.delta_book, rel=1)
+    assert sum(turning.lobes) == pytest.approx(0, abs=1e-9 * turning.dE)
+
+
+def test_tafel_i_low_pressure_leads_and_evens_the_effort() -> None:
+    """R p. 612: two cranks at 90° are far smoother than one."""
+    both = Case(load(CONFIGS / "waterworks-two-cranks.yaml"))
+    assert [c.drive.cylinder.crank_position for c in both.cylinders] == [0, -90]
+    each = [c.W * c.drive.mechanism.crank for c in both.cylinders]
+    assert both.flywheel.M_mean == pytest.approx(sum(each), rel=1e-13)
+    assert both.flywheel.dead_centre_force(both.cylinders[0]).degrees == 0
+
+
+def test_four_cylinders_fire_every_180_degrees() -> None:
+    turning = Case(load(CONFIGS / "four-cylinder-generator.yaml")).flywheel
+    assert turning.cycle == 720
+    assert len(turning.phi_crossing) == 16
+    assert turning.multiplier < 1
+
+
+def test_technical_units_and_text() -> None:
+    text = run(ENGINE + "flywheel: {fluctuation: 0.01}\n", "--units", "technical", "--step", "90").stdout
+    assert "Drehkraftlinie und Schwungrad" in text
+    assert "kgf m²" in text
+    assert "T and W are referred to the radius of crank 1, 400 mm" in text

@@ -1,0 +1,228 @@
+"""The speed line: exact solutions over twenty powers of ten of stiffness, scipy as oracle, laws, and what stops."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from kurbel.errors import NoSolutionError, UsageError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.indicator import Indicator
+from kurbel.machine.masses import Masses
+from kurbel.machine.piston import Piston
+from kurbel.machine.turning import Flywheel, Load
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.case import Case
+from kurbel.solver.flywheel import MachineSpeed
+from kurbel.solver.radau import rule
+from kurbel.solver.speed import SpeedDependentLoad
+from machines import STEAM_CARD
+from turning_machines import of_points
+
+POINTS = [(0, 500), (40, 1500), (40, 900), (120, 200), (200, 300), (200, 1300), (290, 100), (360, 250)]
+ANGLES = np.array([0.0, 1e-3, 20.0, 39.999, 40.0, 40.001, 100.0, 180.0, 200.0, 233.3, 300.0, 359.9])
+RPM = 60.0
+OMEGA = 2 * math.pi
+CYLINDER = Cylinder(
+    SliderCrank(0.4, 2.0),
+    pistons=(Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD)),),
+    masses=Masses(826.0),
+)
+
+
+def steam(inertia: float, load: Load | None, *more: Cylinder, rpm: float = 50, **machine: Any) -> MachineSpeed:
+    cylinders = tuple(replace(c, name=f"cylinder {i}") for i, c in enumerate((CYLINDER, *more), 1))
+    return Case(Machine(cylinders, speed=rpm / 60, flywheel=Flywheel(inertia), load=load, **machine)).flywheel
+
+
+# a fan, M_load = M_m (ω/ω_n)², is linear in the energy: E′ = M(φ) − a E with a = M_m/E_n has a closed solution
+
+
+def exact_energy(mean: Any, rate: Any, degrees: float) -> Any:
+    """Kinetic energy in J by 60 digits: the solution of E′ = M − a E with the period of the straight-line diagram M."""
+    mp = mpmath.mp
+    pieces = [
+        (mp.radians(a0), mp.radians(a1), mp.mpf(m0), (mp.mpf(m1) - m0) / mp.radians(a1 - a0))
+        for (a0, m0), (a1, m1) in pairwise(POINTS)
+        if a1 > a0
+    ]
+
+    def after(start: Any, upto: Any) -> Any:
+        energy = start
+        for low, high, torque, rise in pieces:
+            if upto <= low:
+                break
+            way = min(high, upto) - low
+            particular = lambda t, m=torque, r=rise: (m + r * t) / rate - r / rate**2  # noqa: E731
+            energy = (energy - particular(0)) * mp.exp(-rate * way) + particular(way)
+        return energy
+
+    whole = after(mp.mpf(0), 2 * mp.pi)
+    start = whole / (1 - mp.exp(-rate * 2 * mp.pi))
+    return after(start, mp.radians(mp.mpf(degrees)))
+
+
+@pytest.mark.parametrize("relaxation", [1e-11, 1e-9, 1e-7, 1e-5, 1e-3, 1e-1, 1.0, 30.0, 1e3])
+def test_relaxation_from_1e_11_to_1e3_revolutions(relaxation: float) -> None:
+    """2e-14 in the kinetic energy at the angles of the table, against the closed solution."""
+    mean = of_points(POINTS, RPM).M_mean
+    inertia = 2 * relaxation * 2 * math.pi * mean / OMEGA**2
+    machine = of_points(POINTS, RPM, inertia=inertia, load=Load(power=2.0))
+    with mpmath.workdps(60):
+        mp = mpmath.mp
+        exact_mean = sum(
+            (mp.radians(a1) - mp.radians(a0)) * (mp.mpf(m0) + m1) / 2 for (a0, m0), (a1, m1) in pairwise(POINTS)
+        ) / (2 * mp.pi)
+        nominal = mp.mpf(inertia) / 2 * (2 * mp.pi) ** 2
+        for angle, omega in zip(ANGLES, machine.speed.omega(ANGLES)):
+            truth = exact_energy(exact_mean, exact_mean / nominal, float(angle))
+            error = mp.mpf(inertia) / 2 * mp.mpf(float(omega)) ** 2 / truth - 1
+            assert abs(error) < 2e-14
+    assert machine.multiplier == pytest.approx(math.exp(-1 / relaxation), rel=1e-9, abs=1e-60)
+
+
+@pytest.mark.parametrize(("inertia", "slip"), [(300.0, 1.0), (300.0, 0.1), (20000.0, 0.1)])
+def test_scipy_marches_to_the_same_state(slip: float, inertia: float) -> None:
+    """J(φ) varies tenfold with the light flywheel; scipy's LSODA from the periodic state comes back to it."""
+    second = replace(CYLINDER, crank_position=90.0)
+    machine = steam(inertia, Load(slip=slip), second)
+    line = machine.speed
+    omega_n = machine.omega
+
+    def kinetic(degrees: Any) -> Any:
+        angles = np.atleast_1d(np.asarray(degrees, dtype=float))
+        return line.inertia.at(angles, angles).value / 2
+
+    def slope(phi: float, energy: Any) -> Any:
+        angle = np.array([min(max(math.degrees(phi), low), high)])
+        middle = np.array([(low + high) / 2])
+        state = machine.effort.torque(angle, middle).value
+        inertial = sum(mass.torque(angle, middle).value for mass in machine.masses)
+        omega = np.sqrt(energy / kinetic(angle))
+        load = machine.M_mean * (1 + (omega / omega_n - 1) / slip)
+        return state - inertial - load  # the masses are in E already
+
+    energy = kinetic(0.0) * line.omega(np.array([0.0])) ** 2
+    breaks = machine.excess.grid.breaks
+    for low, high in pairwise(breaks):
+        span = (math.radians(low), math.radians(high))
+        energy = solve_ivp(slope, span, energy, method="LSODA", rtol=1e-8, atol=1e-8 * energy[0]).y[:, -1]
+        if low < 180 <= high or high == 360:
+            expected = kinetic(high)[0] * line.omega(np.array([high % 360]))[0] ** 2
+            assert energy[0] == pytest.approx(expected, rel=1e-6)
+
+
+def test_power_and_load_are_in_balance() -> None:
+    """Over a cycle the load takes what the effort gives, whatever the speed does."""
+    machine = steam(2000, Load(slip=0.05))
+    grid = machine.speed.grid
+    omega = machine.speed.omega(grid.degrees[:, 1:-1].ravel()).reshape(len(grid.degrees), -1)
+    load = np.zeros_like(grid.degrees)
+    load[:, 1:-1] = machine.M_mean * (1 + (omega / machine.omega - 1) / 0.05)
+    assert grid.integral(load) / (2 * math.pi) == pytest.approx(machine.M_mean, rel=1e-13)
+
+
+def test_a_stiff_generator_turns_the_torque_into_a_speed() -> None:
+    """For a vanishing slip ω/ω_n − 1 = s (M/M_m − 1), inertia included, to first order in s."""
+    slip = 1e-9
+    machine = steam(50000, Load(slip=slip), replace(CYLINDER, crank_position=90.0))
+    angles = np.array([10.0, 77.0, 150.0, 260.0])
+    expected = slip * (machine.M(angles) / machine.M_mean - 1)
+    assert machine.speed.z(angles, angles) / machine.speed.inertia.energy(angles, angles).value / 2 == pytest.approx(
+        expected, rel=1e-2
+    )
+
+
+def test_a_heavy_flywheel_keeps_the_digits_of_its_fluctuation() -> None:
+    """δ → ΔE/(J ω²) as J grows; at 1e16 kg m² ω_max − ω_min itself has no digit left."""
+    for inertia in (1e10, 1e13, 1e16):
+        fixed, driven = steam(inertia, None), steam(inertia, Load(slip=1.0))
+        assert fixed.delta == pytest.approx(fixed.delta_book, rel=1e-6)
+        assert driven.delta == pytest.approx(fixed.delta_book, rel=1e-3)
+    assert fixed.delta == pytest.approx(fixed.delta_book, rel=1e-12)
+
+
+def test_the_mean_speed_over_time_is_the_nominal_one() -> None:
+    """A load that does not mind the speed: the time of a cycle is 2π/ω_n."""
+    for inertia in (500.0, 3000.0, 1e6):
+        machine = steam(inertia, None)
+        phi = np.linspace(0, 360, 200001)
+        slowness = 1 / machine.speed.omega(phi)
+        mean = np.sum((slowness[1:] + slowness[:-1]) / 2) / 200000
+        assert 1 / mean == pytest.approx(machine.omega, rel=1e-8)
+        assert machine.omega_mean == pytest.approx(machine.omega, rel=1e-12)
+
+
+def test_without_masses_the_kinetic_energy_swings_by_the_excess_work() -> None:
+    machine = of_points(POINTS, RPM, inertia=30.0)
+    swing = 30.0 / 2 * (machine.omega_max.value**2 - machine.omega_min.value**2)
+    assert swing == pytest.approx(machine.dE, rel=1e-13)
+    assert machine.omega_max.degrees == pytest.approx(machine.E_max.degrees, abs=1e-9)
+    expected = 2 * machine.dE / (30.0 * (machine.omega_max.value + machine.omega_min.value) * machine.omega_mean)
+    assert machine.delta == pytest.approx(expected, rel=1e-13)
+
+
+def test_a_falling_load_is_unstable() -> None:
+    assert of_points(POINTS, RPM, inertia=200.0, load=Load(power=-1.0)).multiplier > 1
+    assert of_points(POINTS, RPM, inertia=200.0, load=Load(power=1.0)).multiplier < 1
+
+
+def test_the_larger_the_slip_the_larger_the_fluctuation() -> None:
+    deltas = [steam(5000, Load(slip=s)).delta for s in (1e-9, 1e-6, 1e-3, 1e-2, 1e-1, 1.0)]
+    assert deltas == sorted(deltas)
+
+
+def test_no_flywheel_at_all_where_the_cranks_have_inertia_everywhere() -> None:
+    machine = steam(0.0, Load(slip=0.01), replace(CYLINDER, crank_position=90.0))
+    assert 0 < machine.delta < 0.1
+
+
+def test_no_inertia_in_a_dead_centre_is_refused() -> None:
+    with pytest.raises(UsageError, match="inertia at φ = 0°"):
+        _ = steam(0.0, Load(slip=0.01)).speed
+    with pytest.raises(UsageError, match="give 'flywheel' an inertia"):
+        _ = of_points(POINTS, RPM, inertia=0.0).speed
+
+
+@pytest.mark.parametrize("load", [None, Load(power=2.0)])
+def test_a_machine_that_stalls_says_where_and_what_flywheel_would_do(load: Load | None) -> None:
+    with pytest.raises(NoSolutionError, match=r"stops near φ = [\d.]+°.* from J = ") as caught:
+        _ = steam(60, load).speed
+    enough = float(str(caught.value).partition("from J = ")[2].partition(" kg")[0])
+    assert steam(enough, load).omega_min.value > 0
+    with pytest.raises(NoSolutionError):
+        _ = steam(0.9 * enough, load).speed
+
+
+def test_masses_count_in_full_where_the_efficiency_takes_its_share() -> None:
+    """With J(φ) varying and no gas force to speak of, ½ J(φ) ω² stays what it is, whatever the efficiency."""
+    idle = replace(CYLINDER, pistons=())
+    for eta in (1.0, 0.8):
+        line = Case(Machine((idle,), speed=1.0, flywheel=Flywheel(500.0), efficiency=eta)).flywheel.speed
+        energy = line.inertia.at(ANGLES, ANGLES).value * line.omega(ANGLES) ** 2
+        assert energy == pytest.approx(energy[0], rel=1e-13)
+
+
+def test_a_load_on_a_mean_of_nothing_is_left_out() -> None:
+    machine = Case(
+        Machine((replace(CYLINDER, pistons=()),), speed=1.0, flywheel=Flywheel(500.0), load=Load(slip=0.01))
+    ).flywheel
+    assert machine.load_ignored
+    assert not isinstance(machine.speed, SpeedDependentLoad)
+
+
+def test_radau_rule_integrates_polynomials() -> None:
+    """Row i of the matrix integrates to c_i exactly up to degree s − 1, the last one, the weights, up to 2s − 2."""
+    nodes, matrix, _ = rule()
+    for k in range(len(nodes)):
+        assert matrix @ nodes**k == pytest.approx(nodes ** (k + 1) / (k + 1), abs=2e-15)
+    for k in range(2 * len(nodes) - 1):
+        assert matrix[-1] @ nodes**k == pytest.approx(1 / (k + 1), abs=1e-15)
+    assert nodes[-1] == 1
