@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from kurbel.arithmetic import where
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from kurbel.arrays import Array
 
 _RADIANS_PER_DEGREE = math.pi / 180
 
@@ -26,7 +25,7 @@ class CrankAngle(NamedTuple):
     cos: Any
 
     @classmethod
-    def of(cls, degrees: float | NDArray[np.float64], beyond: float | NDArray[np.float64] = 0.0) -> CrankAngle:
+    def of(cls, degrees: float | Array, beyond: float | Array = 0.0) -> CrankAngle:
         """Return the angle for a number or an array of degrees.
 
         beyond: degrees to be added that are too small to show in `degrees`: 90 and 1e-20 are an angle just beyond 90°.
@@ -63,9 +62,7 @@ def _sin_cos_scalar(degrees: float, beyond: float) -> tuple[float, float]:
     return pair[0] + 0.0, pair[1] + 0.0
 
 
-def _sin_cos_array(
-    degrees: float | NDArray[np.float64], beyond: float | NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _sin_cos_array(degrees: float | Array, beyond: float | Array) -> tuple[Array, Array]:
     import numpy as np
 
     if not np.isfinite(degrees).all():

@@ -6,14 +6,15 @@ import io
 import os
 import warnings
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.errors import Fault, RuleError
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
 PERIODS = (360.0, 720.0)
 LARGEST_FILE = 64 * 2**20
 """Bytes; a million samples have about 20 million."""

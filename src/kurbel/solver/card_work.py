@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.solver.pressure.card import ProcessPressure
 from kurbel.solver.torques import exact_product
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, Indices
 
 
 class CardWork:
@@ -57,7 +57,7 @@ class CardWork:
             )
         )
 
-    def _at(self, angle: CrankAngle) -> tuple[Array, NDArray[np.intp], Array]:
+    def _at(self, angle: CrankAngle) -> tuple[Array, Indices, Array]:
         """Return whole cycles, number of the piece under way, and the area in it so far."""
         degrees, cycle = angle.degrees, self._place.cycle
         turns = np.floor(degrees / cycle)
@@ -77,14 +77,14 @@ class CardWork:
         product, error = exact_product(share[None, :], stroke)
         return product, error + rest * stroke
 
-    def _part(self, piece: NDArray[np.intp], way: Array) -> Array:
+    def _part(self, piece: Indices, way: Array) -> Array:
         p = self._p[piece] - self._place.base
         straight: Array = way * (p + self._gradients[piece] * way / 2)
         if not self._pressure.process.polytropic:
             return straight
         return np.where(self._exponents[piece] != 0, self._polytropic(piece, way), straight)
 
-    def _polytropic(self, piece: NDArray[np.intp], way: Array) -> Array:
+    def _polytropic(self, piece: Indices, way: Array) -> Array:
         """Return P V ln(V′/V) (e^u − 1)/u with u = (1 − n) ln(V′/V) and P absolute, less the ambient times the way."""
         process: Any = self._pressure.process
         volume = self._z[piece] + process.clearance

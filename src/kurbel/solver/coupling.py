@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
@@ -20,8 +19,9 @@ from kurbel.mechanisms import Extreme
 from kurbel.solver.grid import Extremes, Grid, Sampled, extremes
 from kurbel.solver.torques import Mean, Sum, Torque
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, ComplexArray
+
 RIGID_ABOVE = 100.0
 """Natural order from which on a coupling counts as rigid: it transmits what a rigid one would but for 1 in 10⁴."""
 _NEAR = 0.1
@@ -70,11 +70,11 @@ class ElasticCoupling:
         self._orders = np.arange(1, math.ceil(most * self.cycle / 360) + 1) * (360 / self.cycle)
 
     @cached_property
-    def _spectra(self) -> tuple[Complex, Complex]:
+    def _spectra(self) -> tuple[ComplexArray, ComplexArray]:
         """Amplitudes of effort and load in N m at the orders, M(φ) = mean + Re Σ M̂ e^{inφ}."""
         return self._spectrum(self._effort), self._spectrum(self._load)
 
-    def _spectrum(self, torque: Torque) -> Complex:
+    def _spectrum(self, torque: Torque) -> ComplexArray:
         """Fourier integrals by Gauss on the smooth pieces, cut so that no harmonic swings more than twice in one."""
         widest = 720.0 / float(self._orders[-1])
         low, width = torque.breaks[:-1], np.diff(torque.breaks)
@@ -91,7 +91,7 @@ class ElasticCoupling:
         return np.asarray(np.array(found) * (2 / math.radians(self.cycle)), dtype=complex)
 
     @cached_property
-    def _balance(self) -> tuple[Complex, Complex, Complex]:
+    def _balance(self) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """Amplitudes of the torque in the coupling, of the speed it takes from the cranks, and the denominators."""
         nu = 1j * self._orders * self.shaft.omega
         effort, load = self._spectra
@@ -108,10 +108,10 @@ class ElasticCoupling:
                 "'coupling.damping', or change its stiffness or the speed"
             )
         torque = np.asarray(torque / np.where(below == 0, 1.0, below), dtype=complex)
-        speed: Complex = np.asarray(torque / (nu * self.shaft.inertia), dtype=complex)
+        speed: ComplexArray = np.asarray(torque / (nu * self.shaft.inertia), dtype=complex)
         return torque, speed, np.asarray(below, dtype=complex)
 
-    def _series(self, amplitudes: Complex, degrees: Array) -> Sampled:
+    def _series(self, amplitudes: ComplexArray, degrees: Array) -> Sampled:
         """Return Re Σ a e^{inφ} and its slope by φ at crank angles (n,)."""
         turn = np.exp(1j * np.radians(degrees) * (360 / self.cycle))
         phase, value, slope = np.ones_like(turn), np.zeros_like(turn), np.zeros_like(turn)

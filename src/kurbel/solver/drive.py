@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import CYCLES, Cylinder, Machine
@@ -18,11 +17,10 @@ from kurbel.solver.jet import jet_angle
 from kurbel.solver.state import GRAVITY, State
 
 if TYPE_CHECKING:
+    from kurbel.arrays import Array
     from kurbel.machine.resistance import RamForce
     from kurbel.solver.gas import PistonGas
     from kurbel.solver.rod import ExactRod
-
-Array = NDArray[np.float64]
 
 
 class Drive:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.solver.card_work import CardWork
@@ -21,7 +20,8 @@ from kurbel.solver.rod import ExactRod
 from kurbel.solver.state import State
 from kurbel.solver.torques import exact_product
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
 
 
 class _Shifted:

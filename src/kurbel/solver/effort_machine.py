@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -17,7 +17,9 @@ from kurbel.solver.excess import Excess, mean_torque
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.torques import Diagram, Mean, Sum, Torque, Uniform, total_work
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
 _BALANCED = 1e-9
 """Means of effort and resistance that differ by less, relatively, are equal."""
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.solver.grid import Brackets, Extremes, Grid, Sampled, extremes, roots, sign_changes
 from kurbel.solver.torques import Sum, Torque, total_work
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, Indices
 
 
 class Excess:
@@ -119,8 +120,8 @@ class Excess:
 
 
 def _ends(
-    degrees: Array, within: Array, values: Array, low: NDArray[np.intp], high: NDArray[np.intp]
-) -> tuple[tuple[Array, NDArray[np.intp]], ...]:
+    degrees: Array, within: Array, values: Array, low: Indices, high: Indices
+) -> tuple[tuple[Array, Indices], ...]:
     """Return array and indices of each field of Brackets."""
     return (degrees, low), (degrees, high), (within, low), (values, low), (values, high)
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.mechanisms import Extreme
@@ -19,7 +19,8 @@ from kurbel.solver.speed import ConstantLoad, Inertia, PowerLaw, SlipLaw, SpeedD
 from kurbel.solver.torques import Sum
 from kurbel.units import show
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
 
 
 class MachineSpeed(MachineTurning):

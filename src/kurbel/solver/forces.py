@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
@@ -17,7 +16,8 @@ from kurbel.solver.grid import Extremes, Grid, Sampled, distinct_angles, extreme
 from kurbel.solver.motion import Motion
 from kurbel.solver.state import State
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
 
 
 _SEARCHED = ("P", "P_start", "S", "N", "T", "F_pin", "N_pair", "M_bend", "F_coupler")

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Any
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms import Mechanism
 from kurbel.solver.pressure import Place, pressure_in
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
 
 
 class PistonGas:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.mechanisms import Extreme, Mechanism
 from kurbel.solver.gauss import LOBATTO, NODES, SIMPSON, WEIGHTS
 from kurbel.solver.roots import bracketed_roots
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, Flags
+
 _NARROW = 2.0  # degrees; on pieces no wider the rule of Lobatto integrates as exactly as Gauss
 _NARROWEST = 0.25  # and on these that of Simpson
 _MANY = 300  # pieces; where there are no more, sixteen points cost nothing
@@ -157,7 +158,7 @@ def extremes(
     }
 
 
-def _promising(grid: Grid, sampled: Sampled) -> NDArray[np.bool_]:
+def _promising(grid: Grid, sampled: Sampled) -> Flags:
     """Return the intervals (pieces, nodes − 1) whose ends could hide an extreme of the whole cycle between them."""
     value, slope = sampled
     width = np.radians(np.diff(grid.degrees, axis=1))

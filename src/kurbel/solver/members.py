@@ -6,16 +6,11 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from kurbel.crank_angle import CrankAngle
 
 if TYPE_CHECKING:
     from kurbel.mechanisms import Swing
     from kurbel.solver.drive import Drive
-
-Array = NDArray[np.float64]
 
 
 class Members:

@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import Extreme, Mechanism
 from kurbel.solver.grid import Extremes, Grid, Sampled, ascending, distinct_angles, extremes, roots, sign_changes
 from kurbel.solver.jet import jet_angle
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
 
 
 class Motion:

@@ -7,15 +7,16 @@ The whole cycle is solved at once, so that it does not matter how many turns a m
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.errors import NoSolutionError
 from kurbel.solver.legendre import legendre, legendre_slopes
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, Flags
+
 _STAGES = 11
 _TOLERANCE = 1e-13
 """What the last two Legendre coefficients of an element may be, over the swing of z."""
@@ -214,7 +215,7 @@ def _allowed(room: Array, step: Array) -> float:
 
 
 def _refined(
-    equation: Equation, elements: Elements, prepared: Array, whole: Array, coefficients: Array, rough: NDArray[np.bool_]
+    equation: Equation, elements: Elements, prepared: Array, whole: Array, coefficients: Array, rough: Flags
 ) -> tuple[Elements, Array, Array, Array]:
     """Cut the rough elements at 0.1 and 0.5; values on the new ones come from the polynomials of the old."""
     cuts = np.array([0.0, 0.1, 0.5])

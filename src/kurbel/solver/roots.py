@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
 
 
 def bracketed_roots(function: Callable[[Array], Array], low: Array, high: Array, f_low: Array, f_high: Array) -> Array:

@@ -10,10 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.mechanisms import Extreme
 from kurbel.solver.effort import InertiaEffort
@@ -23,7 +22,8 @@ from kurbel.solver.jet import Jet
 from kurbel.solver.radau import Periodic, Standstill, periodic
 from kurbel.solver.torques import Torque
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
 
 
 class Inertia:

@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
@@ -14,9 +13,9 @@ from kurbel.solver.jet import once_each
 from kurbel.solver.members import Members
 
 if TYPE_CHECKING:
+    from kurbel.arrays import Array
     from kurbel.solver.drive import Drive
 
-Array = NDArray[np.float64]
 GRAVITY = 9.80665
 
 

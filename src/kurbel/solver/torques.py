@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.machine.turning import Effort
 from kurbel.solver.grid import ascending
 from kurbel.solver.jet import Jet
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, Indices
 
 
 class Torque(Protocol):
@@ -141,7 +141,7 @@ class Diagram:
         turns = np.arange(0.0, cycle, self.period)
         self.breaks = np.append(np.concatenate([self._starts + turn for turn in turns]), cycle)
 
-    def _piece(self, degrees: Array) -> NDArray[np.intp]:
+    def _piece(self, degrees: Array) -> Indices:
         return np.searchsorted(self._starts, np.mod(degrees, self.period), side="right") - 1
 
     def torque(self, degrees: Array, within: Array) -> Jet:

@@ -7,16 +7,14 @@ has one.
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any, NamedTuple, Protocol
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.indicator import Chamber
 from kurbel.mechanisms import Mechanism
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
 
 
 class Place(NamedTuple):

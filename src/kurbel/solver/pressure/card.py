@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.indicator import Card, Line
@@ -17,7 +16,8 @@ from kurbel.solver.jet import once_each
 from kurbel.solver.pressure import Place
 from kurbel.solver.pressure.pieces import Piece, Process, Stroke, polytropic_exponent
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, Indices
 
 
 class ProcessPressure:
@@ -48,7 +48,7 @@ class ProcessPressure:
         straight = (self._p[piece] - self.place.base) + self._gradients[piece] * (share - self._z[piece])
         return self._curved(straight, share, piece) if self.process.polytropic else straight
 
-    def _curved(self, straight: Any, share: Any, piece: NDArray[np.intp]) -> Any:
+    def _curved(self, straight: Any, share: Any, piece: Indices) -> Any:
         """Return P (V/V′)^n less the ambient on polytropic pieces, and the straight value elsewhere."""
         clearance, exponents = self.process.clearance, self._exponents[piece]
         # beside a dead centre rounding may put x a hair outside the stroke; the clearance keeps the volume positive

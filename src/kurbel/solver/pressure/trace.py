@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.trace import Trace
@@ -15,7 +14,8 @@ from kurbel.solver.grid import Grid, cycle_breaks
 from kurbel.solver.jet import Jet, once_each
 from kurbel.solver.pressure import Place
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
 
 
 class _Piece(NamedTuple):

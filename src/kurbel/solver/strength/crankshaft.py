@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
@@ -21,7 +20,8 @@ from kurbel.solver.strength.places import PARTS, Place, Stresses, places
 from kurbel.solver.strength.sections import norm
 from kurbel.solver.strength.statics import FreeBody, Vector, equilibrium_residual, weight_in_throw
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
 
 
 class Strained(NamedTuple):
