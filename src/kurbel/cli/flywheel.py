@@ -4,31 +4,12 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.output_options import (
-    Output,
-    angle_options,
-    columns_option,
-    crank_angles,
-    machine_file,
-    output_options,
-    units_option,
-)
+from kurbel.cli.output_options import Asked, machine_table
 
 
 @click.command(short_help="Turning effort, flywheel and speed line of the machine.")
-@machine_file
-@angle_options
-@columns_option
-@units_option
-@output_options
-def flywheel(
-    file: str,
-    step: float,
-    angles: tuple[float, ...] | None,
-    columns: tuple[str, ...] | None,
-    units: str,
-    output: Output,
-) -> None:
+@machine_table
+def flywheel(asked: Asked) -> None:
     """Print the turning effort of the whole machine, its excess work, and what the flywheel makes of it.
 
     Every cylinder counts at the angle of its crank; T is referred to the radius of crank 1, T_b is the share of the
@@ -36,10 +17,8 @@ def flywheel(
     FILE, which may depend on it. Key values are exact and do not depend on --step. Exit status 3: the machine stalls,
     or its coupling is in resonance with nothing to damp it. FILE may be - for standard input.
     """
-    from kurbel.machine_file import load
     from kurbel.report.flywheel import flywheel_report
-    from kurbel.solver.case import Case
 
-    case = Case(load(file))
-    end = case.machine.revolutions * 360.0
-    output.write(flywheel_report(case, crank_angles(step, angles, end), columns, units))
+    case = asked.case()
+    angles = asked.crank_angles(360.0 * case.machine.revolutions)
+    asked.output.write(flywheel_report(case, angles, asked.columns, asked.units))

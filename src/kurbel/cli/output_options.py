@@ -12,6 +12,7 @@ from kurbel.render import FORMATS, LAYOUTS, Look
 
 if TYPE_CHECKING:
     from kurbel.report.tables import Report
+    from kurbel.solver.case import Case
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -158,3 +159,43 @@ def crank_angles(step: float, angles: tuple[float, ...] | None, end: float) -> t
     from kurbel.report.angles import stepped
 
     return stepped(step, end)
+
+
+class Asked(NamedTuple):
+    """What is asked of a command that prints a table for a machine."""
+
+    file: str
+    step: float
+    angles: tuple[float, ...] | None
+    columns: tuple[str, ...] | None
+    units: str
+    output: Output
+
+    def case(self) -> Case:
+        """Read the machine and return it with its results, none of which is computed yet."""
+        from kurbel.machine_file import load
+        from kurbel.solver.case import Case
+
+        return Case(load(self.file))
+
+    def crank_angles(self, end: float) -> tuple[float, ...]:
+        """Return the crank angles in degrees to print, from 0 to `end` where none are named."""
+        return crank_angles(self.step, self.angles, end)
+
+
+def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
+    """Give a command FILE and all options of a table, which reach it as one `asked: Asked`."""
+
+    @wraps(command)
+    def with_asked(
+        file: str,
+        step: float,
+        angles: tuple[float, ...] | None,
+        columns: tuple[str, ...] | None,
+        units: str,
+        output: Output,
+        **others: Any,
+    ) -> None:
+        command(asked=Asked(file, step, angles, columns, units, output), **others)
+
+    return _stacked(machine_file, angle_options, columns_option, units_option)(output_options(with_asked))

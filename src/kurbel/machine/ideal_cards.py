@@ -164,7 +164,7 @@ def _clearance(compression_ratio: float | None, clearance: float | None) -> floa
     return clearance
 
 
-def _peak_fault(peak: float | None, card: Otto | Diesel, lift: float) -> str:
+def _peak_fault(peak: float | None, card: _Engine, lift: float) -> str:
     """Return what to say of a peak below the end of the compression; lift makes the pressures absolute."""
     compressed = after_polytrope(card.intake + lift, 1 + card.clearance, card.clearance, card.exponent) - lift
     # as much as rounding of the clearance may take from a peak that is just that pressure
@@ -173,8 +173,31 @@ def _peak_fault(peak: float | None, card: Otto | Diesel, lift: float) -> str:
     return f"peak: {show(peak, 'pressure')} is below the end of the compression ({show(compressed, 'pressure')})"
 
 
+class _Engine:
+    """What the cards of combustion engines share."""
+
+    intake: float
+    exhaust: float | None
+    peak: float | None
+    clearance: float
+    exponent: float
+
+    @property
+    def leaving(self) -> float:
+        """Pressure of the exhaust stroke in Pa."""
+        return self.intake if self.exhaust is None else self.exhaust
+
+    def fault_in(self, cycle: str, lift: float) -> str:
+        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
+        return (
+            _no_exhaust_stroke(self.exhaust, cycle)
+            or _vacuum_fault(lift, intake=self.intake, exhaust=self.exhaust)
+            or _peak_fault(self.peak, self, lift)
+        )
+
+
 @dataclass(frozen=True, eq=False)
-class Otto:
+class Otto(_Engine):
     """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume. Pressures in Pa.
 
     exhaust: pressure of the exhaust stroke of a four-stroke cycle, None for that of the intake; a two-stroke engine
@@ -208,22 +231,9 @@ class Otto:
     def __post_init__(self) -> None:
         _raise(_order_fault("peak", self.peak, "intake", self.intake))
 
-    @property
-    def leaving(self) -> float:
-        """Pressure of the exhaust stroke in Pa."""
-        return self.intake if self.exhaust is None else self.exhaust
-
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
-        return (
-            _no_exhaust_stroke(self.exhaust, cycle)
-            or _vacuum_fault(lift, intake=self.intake, exhaust=self.exhaust)
-            or _peak_fault(self.peak, self, lift)
-        )
-
 
 @dataclass(frozen=True, eq=False)
-class Diesel:
+class Diesel(_Engine):
     """A Diesel engine: injection at constant pressure up to the cut-off. Pressures in Pa.
 
     peak: where it is given, the pressure first rises to it at constant volume (mixed cycle, Seiliger); None: the
@@ -263,19 +273,6 @@ class Diesel:
     def __post_init__(self) -> None:
         if self.peak is not None:
             _raise(_order_fault("peak", self.peak, "intake", self.intake))
-
-    @property
-    def leaving(self) -> float:
-        """Pressure of the exhaust stroke in Pa."""
-        return self.intake if self.exhaust is None else self.exhaust
-
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
-        return (
-            _no_exhaust_stroke(self.exhaust, cycle)
-            or _vacuum_fault(lift, intake=self.intake, exhaust=self.exhaust)
-            or _peak_fault(self.peak, self, lift)
-        )
 
 
 def _no_exhaust_stroke(exhaust: float | None, cycle: str) -> str:
