@@ -101,7 +101,7 @@ def _output_failed(error: OSError) -> int:
 @click.group(cls=_Kurbel, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="kurbel", message="%(prog)s %(version)s")
 def kurbel() -> None:
-    """Calculate crank drives: motion, forces and friction of piston machines.
+    """Calculate crank drives: motion, forces, friction, flywheel and crankshaft of piston machines.
 
     A machine is described in a YAML file, every value with its unit; kurbel answers in the tables and
     symbols of the old machine-element books. Start with
@@ -113,6 +113,7 @@ def kurbel() -> None:
       kurbel check engine.yaml                  what will be computed, what is left out
       kurbel motion engine.yaml                 displacement, velocity, acceleration
       kurbel forces engine.yaml                 forces and key values
+      kurbel flywheel engine.yaml               turning effort, flywheel, speed
 
     Results go to standard output, everything else to standard error. Exit status: 0 done, 1 a limit
     is broken (check), 2 wrong usage or input, 3 no solution.

@@ -11,8 +11,8 @@ class Column(NamedTuple):
     """One quantity over the crank angle, already in the unit in which it is shown; None where it has no value.
 
     decimals: fixed number of decimals in printed tables, where the digits of a source are to be kept;
-    marked: indices of the values that the printed table marks with an asterisk; alone: each value has a scale of its own,
-    since they run over many powers of ten, as errors do.
+    marked: indices of the values that the printed table marks with an asterisk; alone: each value has a scale of its
+    own, since they run over many powers of ten, as errors do.
     """
 
     id: str
@@ -62,7 +62,7 @@ class PlaceTable(NamedTuple):
 
 
 class Part(NamedTuple):
-    """The results of one cylinder, of one L/R, of one scene, or of the whole machine; the first column is the crank angle.
+    """The results of one cylinder, L/R or scene, or of the whole machine; the first column is the crank angle.
 
     `name` is the cylinder's name or the L/R as a number.
     """
@@ -79,8 +79,8 @@ class Report(NamedTuple):
     """One answer of one command.
 
     title: head line over the printed table, with its German title; command and machine as in JSON (`machine` is None
-    for `kurbel table`); group: `cylinders`, `ratios` or `scenes`, the JSON key of `parts`; whole: the results of the whole
-    machine, if any; mirrored: what changes under a second head line of the angles 360° − φ (empty: no such line);
+    for `kurbel table`); group: `cylinders`, `ratios` or `scenes`, the JSON key of `parts`; whole: the results of the
+    whole machine, if any; mirrored: what changes under a second head line of the angles 360° − φ (empty: no such line);
     notes: sentences below the table; head: sentences right below the title.
     """
 

@@ -1,0 +1,91 @@
+"""Turning effort and speed: no flywheel, or an enormous one; loads up to a slip of 1e-9; machines that stall."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+
+from kurbel.accuracy.decimals import pi
+from kurbel.accuracy.extremes import Absent, Oracle, Probe, Refusal
+from kurbel.accuracy.extremes.force_cases import _STEAM
+
+_TRAIN = "crank: 400 mm, rod: 2000 mm, bore: 450 mm"
+
+
+def _engine(more: str, masses: str = "200 kg", rpm: str = "50") -> str:
+    heavy = f"masses: {{piston: {masses}}}, " if masses else ""
+    return f"{{speed: {rpm} rpm, {_TRAIN}, indicator: {{head_end: {_STEAM}, crank_end: mirrored}}, {heavy}{more}}}"
+
+
+def _flywheel(inertia: str, load: str) -> str:
+    return f"flywheel: {{inertia: {inertia}}}, load: {load}"
+
+
+def _given(points: str, more: str = "") -> str:
+    return f"{{speed: 60 rpm, effort: {{unit: N m, points: {points}}}{more}}}"
+
+
+_BLOCK = "[[0, 200], [180, 200], [180, 0], [360, 0]]"
+_HEAVY = 1e15
+_WHEEL = ", flywheel: {inertia: 1e15 kg m2}"
+
+
+def _delta_of_block() -> Decimal:
+    """ΔE = 100 N m · π, δ = ΔE/(J ω²) where δ² no longer shows."""
+    return 100 * pi() / (Decimal(_HEAVY) * (2 * pi()) ** 2)
+
+
+def _twins(position: int) -> str:
+    cylinder = f"{_TRAIN}, indicator: {{head_end: {_STEAM}, crank_end: mirrored}}"
+    other = f"{cylinder}, crank_position: {position} deg"
+    return f"{{speed: 50 rpm, cylinders: [{{name: a, {cylinder}}}, {{name: b, {other}}}]}}"
+
+
+CASES = [
+    Probe("no flywheel", _engine("inclination: 0 deg"), "flywheel dE", Oracle()),
+    Probe("no flywheel", _engine("inclination: 0 deg"), "flywheel delta", Absent()),
+    Probe("two cranks at 90°", _twins(90), "flywheel dE", Oracle(), 32),
+    Probe("two cranks at 180°", _twins(180), "flywheel dE", Oracle(), 32),
+    Probe("uniform effort", _given("[[0, 100], [360, 100]]"), "flywheel dE", 0),
+    Probe("effort in a block", _given(_BLOCK), "flywheel dE", lambda: 100 * pi(), 4),
+    Probe("J = 1e15 kg m²", _given(_BLOCK, _WHEEL), "flywheel delta", _delta_of_block, 16),
+    *(
+        Probe(f"slip {slip}", _engine(_flywheel("900 kg m2", f"{{slip: {slip}}}")), f"flywheel {asked}", Oracle(), 16)
+        for slip in ("0.1", "1e-3", "1e-6", "1e-9")
+        for asked in ("omega@60", "omega@270")
+    ),
+    *(
+        Probe(f"fan, J = {inertia}", _engine(_flywheel(inertia, "{power_law: 2}")), "flywheel omega@60", Oracle(), 24)
+        for inertia in ("1e3 kg m2", "1e6 kg m2", "1e12 kg m2")
+    ),
+    Probe("power law 30", _engine(_flywheel("900 kg m2", "{power_law: 30}")), "flywheel omega@60", Oracle(), 16),
+    Probe(
+        "J varying tenfold", _engine(_flywheel("4 kg m2", "{slip: 0.05}"), "300 kg"), "flywheel omega@90", Oracle(), 24
+    ),
+    Probe(
+        "hardly a flywheel, slip 1e-6",
+        _engine(_flywheel("1 kg m2", "{slip: 1e-6}"), ""),
+        "flywheel omega@60",
+        Oracle(),
+        16,
+    ),
+    Probe(
+        "flywheel of no inertia",
+        _engine(_flywheel("0 kg m2", "constant"), ""),
+        "flywheel delta",
+        Refusal("any inertia"),
+    ),
+    Probe(
+        "stalls under a constant load",
+        _engine(_flywheel("30 kg m2", "constant"), ""),
+        "flywheel delta",
+        Refusal("the machine stops near", 3),
+    ),
+    Probe(
+        "stalls under a falling load",
+        _engine(_flywheel("300 kg m2", "{power_law: -2}"), ""),
+        "flywheel delta",
+        Refusal("", 3),
+    ),
+    Probe("no speed, no speed line", _given(_BLOCK, _WHEEL).replace("speed: 60 rpm, ", ""), "flywheel delta", Absent()),
+    Probe("nothing turns the shaft", f"{{speed: 50 rpm, {_TRAIN}}}", "flywheel dE", Refusal("no force acts")),
+]

@@ -1,0 +1,238 @@
+"""One row for every method of every quantity of a scene: error against the reference, time, state."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from decimal import Decimal
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.accuracy import references, rivals
+from kurbel.accuracy.decimals import precise
+from kurbel.accuracy.marching import BLOW_UP, OK, March
+from kurbel.accuracy.oracle import CrankMotion, CylinderOracle, why_no_motion, why_not
+from kurbel.accuracy.periodic import NoReference, SpeedOracle, why_no_speed
+from kurbel.accuracy.rivals import OWN, Method
+from kurbel.accuracy.scenes import Scene
+from kurbel.accuracy.timing import Patience, timed
+from kurbel.errors import KurbelError
+from kurbel.machine import Cylinder, Machine
+
+IN_ULP = 1e-12
+"""Relative errors below this are also given in units of the last place."""
+
+
+class Row(NamedTuple):
+    """One method: evaluations of the motion (None: not counted), relative error and ulp (None: no answer, or large).
+
+    median, least: seconds; ratio: its median over that of kurbel's own method.
+    """
+
+    quantity: str
+    method: str
+    points: str
+    state: str
+    evaluations: int | None
+    error: float | None
+    ulp: float | None
+    median: float
+    least: float
+    ratio: float
+
+
+class Question(NamedTuple):
+    """A quantity: its symbol, the reference (n,), and its methods for a machine, kurbel's own first."""
+
+    quantity: str
+    reference: Callable[[], Sequence[Decimal]]
+    methods: Callable[[Machine], Iterator[Method]]
+
+
+class Lacking(NamedTuple):
+    """A quantity that is not examined, and why."""
+
+    what: str
+    why: str
+
+
+def questions(scene: Scene, quick: bool) -> tuple[list[Question], list[Lacking]]:
+    """Return the quantities of a scene that can be examined, and those that cannot."""
+    machine = scene.machine
+    asked: list[Question] = []
+    lacking: list[Lacking] = []
+    if machine.cylinders:
+        first = machine.cylinders[0]
+        if why := why_no_motion(first):
+            lacking.append(Lacking("x, c, b", why))
+        elif scene.moving:
+            asked += _motions(scene, quick)
+        _of_forces(machine, quick, asked, lacking)
+    _of_machine(machine, quick, asked, lacking)
+    return asked, lacking
+
+
+def _motions(scene: Scene, quick: bool) -> Iterator[Question]:
+    mechanism: Any = scene.machine.cylinders[0].mechanism
+    motion = (mechanism.crank, getattr(mechanism, "rod", None), getattr(mechanism, "offset", 0.0))
+    for order, name in enumerate(rivals.MOTIONS):
+
+        def reference(order: int = order) -> list[Decimal]:
+            with precise():
+                return [at[order] for at in references.motion_at(CrankMotion(*motion), scene.angles)]
+
+        yield Question(name, reference, _motion_methods(name, scene.angles, quick))
+
+
+def _motion_methods(name: str, angles: tuple[float, ...], quick: bool) -> Callable[[Machine], Iterator[Method]]:
+    return lambda machine: rivals.motion_methods(machine.cylinders[0], name, angles, quick)
+
+
+def _of_forces(machine: Machine, quick: bool, asked: list[Question], lacking: list[Lacking]) -> None:
+    first = machine.cylinders[0]
+    found = list(_forces_in(machine, first))
+    if found and (why := why_not(machine, first)):
+        lacking.append(Lacking("work, T, friction work", why))
+        return
+    for quantity, reference, methods in found:
+        ask = _once(lambda: CylinderOracle(machine, first), reference)
+        asked.append(Question(quantity, ask, _cylinder_methods(methods, quick)))
+
+
+_Reference = Callable[[CylinderOracle], Any]
+_Methods = Callable[[Machine, Cylinder, bool], Iterator[Method]]
+
+
+def _forces_in(machine: Machine, cylinder: Cylinder) -> Iterator[tuple[str, _Reference, _Methods]]:
+    """Yield symbol, reference and methods of what the forces of a cylinder give."""
+    has_gas = any(piston.indicator for piston in cylinder.pistons)
+    if has_gas:
+        yield "A_i", references.work, rivals.work_methods
+    if not has_gas and (cylinder.masses is None or machine.speed is None):
+        return
+    if cylinder.mechanism.slides:
+        yield "T_max, T_min", references.tangential_extremes, rivals.extreme_methods
+    if cylinder.friction and cylinder.friction.crosshead and cylinder.mechanism.has_rod:
+        yield "A_f", references.friction_work, rivals.friction_methods
+
+
+def _cylinder_methods(methods: _Methods, quick: bool) -> Callable[[Machine], Iterator[Method]]:
+    return lambda machine: methods(machine, machine.cylinders[0], quick)
+
+
+def _of_machine(machine: Machine, quick: bool, asked: list[Question], lacking: list[Lacking]) -> None:
+    if not any(piston.indicator for cylinder in machine.cylinders for piston in cylinder.pistons):
+        if machine.effort is not None:
+            lacking.append(Lacking("ΔE, ω", "no independent calculation of a given turning effort"))
+        return
+    why = next((why for cylinder in machine.cylinders if (why := why_not(machine, cylinder))), "")
+    if machine.load and machine.load.diagram:
+        why = why or "no independent calculation of a load given by points"
+    if machine.efficiency != 1:
+        why = why or "no independent calculation with an efficiency"
+    if why:
+        lacking.append(Lacking("ΔE, ω", why))
+        return
+    asked.append(
+        Question("ΔE", _once(lambda: machine, references.excess_energy), lambda m: rivals.excess_methods(m, quick))
+    )
+    if why := why_no_speed(machine):
+        if machine.flywheel is not None:
+            lacking.append(Lacking("ω", why))
+        return
+    asked.append(
+        Question("ω", _once(lambda: SpeedOracle(machine), SpeedOracle.omega), lambda m: rivals.speed_methods(m, quick))
+    )
+
+
+def _once(make: Callable[[], Any], ask: Callable[[Any], Any]) -> Callable[[], Sequence[Decimal]]:
+    def reference() -> Sequence[Decimal]:
+        with precise():
+            answer = ask(make())
+        return answer if isinstance(answer, (list, tuple)) else (answer,)
+
+    return reference
+
+
+def rows(question: Question, machine: Machine, patience: Patience) -> Iterator[Row]:
+    """Yield the rows of one quantity, kurbel's own method first. Raises NoReference, KurbelError."""
+    reference = question.reference()
+    own_median = 0.0
+    for method in question.methods(machine):
+        with np.errstate(all="ignore"):
+            answer, median, least = timed(method.run, patience)
+        own_median = median if method.name == OWN else own_median
+        values, state, used = _unpacked(answer, method)
+        if method.name == OWN and used is None:
+            used = _evaluations(question, machine)
+        error, ulp = (None, None) if values is None else errors(values, reference)
+        if error is None and state == OK:
+            state = BLOW_UP
+        yield Row(
+            question.quantity, method.name, method.points, state, used, error, ulp, median, least, median / own_median
+        )
+
+
+def _unpacked(answer: Any, method: Method) -> tuple[Sequence[float] | None, str, int | None]:
+    if isinstance(answer, March):
+        return (None if answer.omega is None else answer.omega.tolist()), answer.state, answer.evaluations
+    return np.atleast_1d(np.asarray(answer, dtype=float)).tolist(), OK, method.evaluations
+
+
+def _evaluations(question: Question, machine: Machine) -> int:
+    """Run kurbel's own method once more, on mechanisms that count."""
+    counting, counters = rivals.counted(machine)
+    next(question.methods(counting)).run()
+    return sum(counter.angles for counter in counters)
+
+
+def errors(values: Sequence[float], reference: Sequence[Decimal]) -> tuple[float | None, float | None]:
+    """Return the largest relative error, and the same in units of the last place where it is below 1e-12.
+
+    Where the reference is zero, the error counts relative to the largest reference. None for what is not finite.
+    """
+    if not all(map(math.isfinite, values)):
+        return None, None
+    with precise():
+        scale = max(map(abs, reference))
+        zero = scale * Decimal("1e-30")
+        worst, places = Decimal(0), 0.0
+        for value, truth in zip(values, reference):
+            missed = abs(Decimal(value) - truth)
+            base = scale if abs(truth) <= zero else abs(truth)
+            worst = max(worst, missed / base if base else missed)
+            places = max(places, float(missed / Decimal(math.ulp(float(base)))))
+        error = float(worst)
+    return error, places if error < IN_ULP else None
+
+
+def examined(scene: Scene, quick: bool) -> tuple[list[Row], list[Lacking]]:
+    """Return all rows of a scene, and what could not be examined."""
+    patience = Patience(5, 0.1) if quick else Patience()
+    asked, lacking = questions(scene, quick)
+    found: list[Row] = []
+    for question in asked:
+        try:
+            found += rows(question, scene.machine, patience)
+        except (NoReference, KurbelError) as error:
+            lacking.append(Lacking(question.quantity, str(error)))
+    return found, lacking
+
+
+def dominating(found: Sequence[Row]) -> list[Row]:
+    """Return the rows that are both more exact and faster than kurbel's own for the quantity, by more than noise.
+
+    Noise: a fifth of the time, and 16 roundings (2^-53) of the error.
+    """
+    own = next(row for row in found if row.method == OWN)
+    assert own.error is not None
+    return [
+        row
+        for row in found
+        if row is not own
+        and row.state == OK
+        and row.error is not None
+        and row.error < own.error - 16 * 2.0**-53
+        and row.least < 0.8 * own.least
+    ]

@@ -1,0 +1,219 @@
+"""The reports of `kurbel accuracy`: error against run time, and the verdicts on stiff and extreme cases."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.accuracy.extremes import Probe, all_cases
+from kurbel.accuracy.inexact import Difference, data_errors, model_errors
+from kurbel.accuracy.leaving_out import Saving, savings
+from kurbel.accuracy.scenes import Loads, Scene, built_in
+from kurbel.accuracy.timing import Patience
+from kurbel.accuracy.trials import Lacking, Row, dominating, examined
+from kurbel.machine import Machine
+from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report, Value
+from kurbel.solver.case import Case
+
+NUMERICAL = "numerical_error"
+"""Id of the table that the picture is drawn from."""
+
+
+class Measured(NamedTuple):
+    """All that was found out about one scene."""
+
+    name: str
+    rows: tuple[Row, ...]
+    lacking: tuple[Lacking, ...]
+    model: tuple[Difference, ...]
+    data: tuple[Difference, ...]
+    savings: tuple[Saving, ...]
+
+
+def accuracy_report(machine: Machine | None, quick: bool, loads: Loads) -> Report:
+    """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and points."""
+    scenes = built_in(quick, loads) if machine is None else [Scene(machine)]
+    with np.errstate(all="ignore"):
+        found = [_measured(scene, quick) for scene in scenes]
+    name = "built-in scenes" if machine is None else machine.name
+    parts = tuple(
+        Part(one.name, (), left_out=tuple(LeftOut(*lack) for lack in one.lacking), place_tables=tuple(_tables(one)))
+        for one in found
+    )
+    named = None if machine is None else machine.name
+    head = (environment(), "Times are of this machine and this run; compare them only with one another.")
+    title = f"{name}. Genauigkeit und Rechenzeit"
+    return Report(title, "accuracy", named, "scenes", parts, notes=(*_NOTES, *_edge(found)), head=head)
+
+
+def _measured(scene: Scene, quick: bool) -> Measured:
+    rows, lacking = examined(scene, quick)
+    machine = scene.machine
+    worth = bool(machine.cylinders) and any(one.masses or one.pistons for one in machine.cylinders)
+    return Measured(
+        machine.name,
+        tuple(rows),
+        tuple(lacking),
+        tuple(model_errors(machine)),
+        tuple(data_errors(machine)),
+        tuple(savings(machine, everything, Patience(5, 0.1) if quick else Patience())) if worth else (),
+    )
+
+
+def everything(case: Case) -> None:
+    """Ask a case for all that `kurbel forces` prints: every column at 37 angles, and every key value."""
+    from kurbel.report.forces import FORCE_COLUMNS, key_values
+
+    for forces in case.cylinders:
+        state = forces.at(np.arange(0.0, 361.0, 10.0))
+        for column in FORCE_COLUMNS:
+            getattr(state, column)
+        for _ in key_values(forces):
+            pass
+
+
+_NOTES = (
+    "Error: the largest relative error against a reference of 40 digits by another method; where the exact value is "
+    "zero, relative to the largest value. ulp: the same in units of the last place, below 1e-12.",
+    "Ratio: median time over that of kurbel's own method. Evaluations: crank angles at which the motion was computed.",
+    "Points: divisions of a turn, or a tolerance. A march counts as periodic when all further cycles would "
+    "change the speed by less than 1e-9 of its swing, or its tolerance; it is given up after 12 (quick: 4) cycles.",
+)
+
+
+def _edge(found: Sequence[Measured]) -> Iterator[str]:
+    """Yield what is both more exact and faster than kurbel's own method, or that nothing is."""
+    beaten = [
+        f"{one.name}, {row.quantity}: {row.method} ({row.points}) is both more exact and faster than kurbel's own"
+        for one in found
+        for quantity in dict.fromkeys(row.quantity for row in one.rows)
+        for row in dominating([row for row in one.rows if row.quantity == quantity])
+    ]
+    yield from beaten
+    if not beaten and any(one.rows for one in found):
+        yield "No method listed is both more exact and faster than kurbel's own, beyond noise (20 % of time, 16 u)."
+
+
+def _tables(one: Measured) -> Iterator[PlaceTable]:
+    if one.rows:
+        names = tuple((row.quantity, row.method, row.points, row.state) for row in one.rows)
+        heads = ("quantity", "method", "points", "state")
+        yield PlaceTable(NUMERICAL, f"{one.name}: numerical error", heads, names, _row_columns(one.rows), True)
+    for id, title, differences in (
+        ("model_error", "error of the model", one.model),
+        ("data_error", "error of the data", one.data),
+    ):
+        if differences:
+            causes = tuple((each.quantity, each.cause) for each in differences)
+            column = _column("error", "error", "", [each.error for each in differences])
+            yield PlaceTable(id, f"{one.name}: {title}", ("quantity", "cause"), causes, (column,), True)
+    if one.savings:
+        whats = tuple((saving.what,) for saving in one.savings)
+        title = f"{one.name}: what leaving out saves"
+        yield PlaceTable("leaving_out", title, ("machine",), whats, _saving_columns(one.savings), True)
+
+
+def _column(id: str, symbol: str, unit: str, values: Sequence[Value]) -> Column:
+    return Column(id, symbol, symbol, unit, tuple(values), alone=True)
+
+
+def _row_columns(rows: Sequence[Row]) -> tuple[Column, ...]:
+    return (
+        _column("evaluations", "evaluations", "", [row.evaluations for row in rows]),
+        _column("error", "error", "", [row.error for row in rows]),
+        _column("ulp", "ulp", "", [row.ulp for row in rows]),
+        _column("median", "median", "ms", [row.median * 1e3 for row in rows]),
+        _column("least", "least", "ms", [row.least * 1e3 for row in rows]),
+        _column("ratio", "ratio", "", [row.ratio for row in rows]),
+    )
+
+
+def _saving_columns(found: Sequence[Saving]) -> tuple[Column, ...]:
+    return (
+        _column("stages", "stages", "", [saving.stages for saving in found]),
+        _column("median", "median", "ms", [saving.median * 1e3 for saving in found]),
+        _column("least", "least", "ms", [saving.least * 1e3 for saving in found]),
+        _column("ratio", "ratio", "", [saving.ratio for saving in found]),
+    )
+
+
+def environment() -> str:
+    """Return versions and processor, which the times belong to."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    def named(package: str) -> str:
+        try:
+            return f"{package} {version(package)}"
+        except PackageNotFoundError:
+            return f"{package} not installed"
+
+    packages = [named("kurbel"), f"Python {platform.python_version()}", named("numpy"), named("scipy")]
+    return f"{', '.join(packages)}; {platform.system()} {platform.machine()}, {_processor()}"
+
+
+def _processor() -> str:
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as file:
+            names = [line.partition(":")[2].strip() for line in file if line.startswith("model name")]
+    except OSError:
+        names = []
+    return " ".join((names[0] if names else platform.processor() or "unknown processor").split())
+
+
+# stiff and extreme cases
+
+
+def extremes_report(loads: Loads, cases: Sequence[Probe] | None = None) -> tuple[Report, bool]:
+    """Return the verdicts on the cases, on all if none are given, and whether every one is passed."""
+    from kurbel.accuracy.extremes.judge import verdicts as judge
+
+    def ask(text: str, asked: str) -> float | None:
+        return answer(loads(text), asked)
+
+    verdicts = list(judge(all_cases() if cases is None else cases, ask, loads))
+    passed = sum(verdict.passed for verdict in verdicts)
+    names = tuple(
+        (v.case.name, v.case.asked, v.expected, v.observed, "passed" if v.passed else "FAILED") for v in verdicts
+    )
+    columns = (
+        _column("ulp", "ulp", "", [verdict.ulp for verdict in verdicts]),
+        _column("allowed", "allowed", "", [None if v.ulp is None else v.case.ulp for v in verdicts]),
+    )
+    heads = ("case", "asked", "expected", "observed", "verdict")
+    table = PlaceTable("extremes", f"{passed} of {len(verdicts)} cases passed", heads, names, columns, True)
+    part = Part("stiff and extreme cases", (), place_tables=(table,))
+    title = "Stiff and extreme cases. Grenzfälle"
+    return Report(title, "accuracy", None, "scenes", (part,), head=(environment(),)), passed == len(verdicts)
+
+
+def answer(machine: Machine, asked: str) -> float | None:
+    """Return what the program prints for `forces T_max` or `motion x@30`, in SI; None where it is left out.
+
+    The machine goes the whole way to the report. Raises KurbelError as the program does.
+    """
+    command, _, quantity = asked.partition(" ")
+    name, _, at = quantity.partition("@")
+    report = _reports()[command](Case(machine), (float(at or 0),), None, "si")
+    for part in (report.whole, *report.parts):
+        for column in part.columns if part and at else ():
+            if column.id == name:
+                return _number(column.values[0])
+        for one in part.key_values if part and not at else ():
+            if one.id == name:
+                return _number(one.value)
+    return None
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
+def _reports() -> dict[str, Callable[..., Any]]:
+    from kurbel.report.flywheel import flywheel_report
+    from kurbel.report.forces import forces_report
+    from kurbel.report.motion import motion_report
+
+    return {"motion": motion_report, "forces": forces_report, "flywheel": flywheel_report}

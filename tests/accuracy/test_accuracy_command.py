@@ -1,0 +1,186 @@
+"""`kurbel accuracy` as a user sees it."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+
+MOTION = "{name: plain, speed: 50 rpm, crank: 400 mm, rod_ratio: 5}"
+ENGINE = """
+{name: engine, speed: 50 rpm, crank: 400 mm, rod: 2000 mm, bore: 450 mm, masses: {piston: 500 kg},
+ indicator: {head_end: {unit: bar, expansion: [[0, 9], [0.3, 9], [1, 2]], compression: [[1, 1], [0.2, 1], [0, 9]]}},
+ friction: {crosshead: 0.05}}
+"""
+
+
+def run(*arguments: str, machine: str = MOTION) -> Result:
+    return CliRunner().invoke(kurbel, ["accuracy", *arguments], input=machine)
+
+
+@pytest.fixture(scope="module")
+def engine() -> dict[str, object]:
+    result = run("-", "--quick", "-f", "json", machine=ENGINE)
+    assert result.exit_code == 0, result.output
+    content: dict[str, object] = json.loads(result.stdout)
+    return content
+
+
+def tables(content: dict[str, object]) -> dict[str, dict[str, object]]:
+    return {table["id"]: table for table in content["scenes"][0]["place_tables"]}  # type: ignore[index]
+
+
+def test_text_names_versions_methods_and_states() -> None:
+    text = run("-", "--quick").stdout
+    assert text.startswith("plain. Genauigkeit und Rechenzeit\nkurbel ")
+    assert re.search(r"Python 3\.\d+\.\d+, numpy \d", text)
+    assert "quantity  method             points  state  evaluations" in text
+    assert "textbook, radians" in text
+    assert "plain: error of the model" in text
+    assert "error of the data" not in text  # no cards
+
+
+def test_json_has_the_four_sections(engine: dict[str, object]) -> None:
+    assert engine["command"] == "accuracy"
+    assert engine["machine"] == "engine"
+    assert list(tables(engine)) == ["numerical_error", "model_error", "data_error", "leaving_out"]
+    rows = tables(engine)["numerical_error"]["rows"]
+    assert {row["quantity"] for row in rows} == {"x", "c", "b", "A_i", "T_max, T_min", "A_f", "ΔE"}
+    assert {row["state"] for row in rows} == {"ok"}
+
+
+def test_own_methods_are_exact_and_data_worse_than_model_worse_than_numbers(engine: dict[str, object]) -> None:
+    found = tables(engine)
+    numerical = found["numerical_error"]
+    errors = next(column for column in numerical["columns"] if column["id"] == "error")["values"]
+    own = [error for row, error in zip(numerical["rows"], errors) if row["method"] == "kurbel"]
+    assert len(own) == 7
+    assert max(own) < 1e-12
+    model = next(column for column in found["model_error"]["columns"] if column["id"] == "error")["values"]
+    data = next(column for column in found["data_error"]["columns"] if column["id"] == "error")["values"]
+    assert min(model) > 1e6 * max(own)
+    assert min(data) > 1e6 * max(own)
+
+
+def test_csv_has_one_head_for_all_sections() -> None:
+    rows = list(csv.DictReader(io.StringIO(run("-", "--quick", "-f", "csv", machine=ENGINE).stdout)))
+    assert {row["table"] for row in rows} == {"numerical_error", "model_error", "data_error", "leaving_out"}
+    assert all(row["scene"] == "engine" for row in rows)
+    numerical = [row for row in rows if row["table"] == "numerical_error"]
+    assert all(float(row["median_ms"]) > 0 and float(row["error"]) >= 0 for row in numerical)
+    assert all(row["cause"] == "" for row in numerical)
+
+
+def test_markdown() -> None:
+    text = run("-", "--quick", "-f", "markdown").stdout
+    assert text.startswith("## plain. Genauigkeit und Rechenzeit\n\nkurbel ")
+    assert (
+        "| quantity | method | points | state | evaluations | error | ulp | median (ms) | least (ms) | ratio |" in text
+    )
+
+
+def test_a_mechanism_without_a_reference_says_so() -> None:
+    machine = "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm}"
+    result = run("-", "--quick", machine=machine)
+    assert result.exit_code == 0
+    assert "no independent calculation of the four-bar" in result.stdout
+
+
+def test_picture_is_drawn_the_same_every_time(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    from kurbel.machine_file import loads
+    from kurbel.render.plot import draw
+    from kurbel.report.accuracy import accuracy_report
+
+    report = accuracy_report(loads(MOTION), True, loads)
+    for name in ("a.svg", "b.svg", "c.png"):
+        draw(report, str(tmp_path / name))
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+    assert (tmp_path / "c.png").read_bytes().startswith(b"\x89PNG")
+    svg = (tmp_path / "a.svg").read_text(encoding="utf-8")
+    assert "textbook" in svg
+    assert "<dc:date>" not in svg
+
+
+def test_picture_needs_a_name_it_knows() -> None:
+    result = run("-", "--plot", "picture.gif")
+    assert result.exit_code == 2
+    assert "the name of a picture ends in .svg or .png" in result.stderr
+
+
+def test_without_matplotlib_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    import importlib.util
+
+    real = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name, *more: None if name == "matplotlib" else real(name, *more)
+    )
+    result = run("-", "--plot", "picture.svg")
+    assert result.exit_code == 2
+    assert "pip install 'kurbel[plot]'" in result.stderr
+
+
+def test_a_picture_that_cannot_be_written(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    result = run("-", "--quick", "--plot", str(tmp_path / "no folder" / "picture.svg"))
+    assert result.exit_code == 2
+    assert "cannot write" in result.stderr
+
+
+def test_plot_is_imported_only_for_a_picture() -> None:
+    import subprocess
+
+    code = (
+        "import sys\nfrom kurbel.cli import kurbel\n"
+        "try:\n    kurbel.main(['accuracy', '-', '--quick'])\nexcept SystemExit as end:\n    assert not end.code\n"
+        "assert 'matplotlib' not in sys.modules"
+    )
+    done = subprocess.run([sys.executable, "-c", code], input=MOTION.encode(), capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr.decode()
+
+
+def test_a_failed_extreme_case_ends_with_status_1(monkeypatch: pytest.MonkeyPatch) -> None:
+    from kurbel.accuracy.extremes import Probe, Refusal
+    from kurbel.report import accuracy
+
+    cases = [
+        Probe("right", MOTION, "motion c@180", 0),
+        Probe("wrong", MOTION, "motion c@30", Refusal("never")),
+    ]
+    monkeypatch.setattr(accuracy, "all_cases", lambda: cases)
+    result = run("--extremes")
+    assert result.exit_code == 1
+    assert "1 of 2 cases passed" in result.stdout
+    assert "FAILED" in result.stdout
+    monkeypatch.setattr(accuracy, "all_cases", lambda: cases[:1])
+    assert run("--extremes").exit_code == 0
+
+
+def test_extremes_take_no_machine() -> None:
+    result = run("-", "--extremes")
+    assert result.exit_code == 2
+    assert "--extremes has its own machines" in result.stderr
+
+
+def test_ascii_output() -> None:
+    import os
+    import subprocess
+
+    done = subprocess.run(
+        [sys.executable, "-m", "kurbel", "accuracy", "-", "--quick"],
+        input=ENGINE.encode(),
+        capture_output=True,
+        check=False,
+        env={**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"},
+    )
+    assert done.returncode == 0, done.stderr.decode()
+    assert b"dE " in done.stdout
+    assert b"?" not in done.stdout

@@ -1,0 +1,62 @@
+"""Stiff and extreme cases: the whole table passes, and a wrong answer would not."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+
+import pytest
+
+from kurbel.accuracy.extremes import Absent, Oracle, Probe, Refusal, all_cases
+from kurbel.accuracy.extremes.judge import judged
+from kurbel.errors import NoSolutionError, UsageError
+from kurbel.machine_file import loads
+from kurbel.report.accuracy import answer
+
+CASES = all_cases()
+PLAIN = "{speed: 60 rpm, crank: 400 mm, rod_ratio: 5}"
+
+
+def ask(text: str, asked: str) -> float | None:
+    return answer(loads(text), asked)
+
+
+def test_there_are_many_cases() -> None:
+    assert len(CASES) >= 60
+
+
+@pytest.mark.parametrize("case", CASES, ids=[f"{case.name}: {case.asked}" for case in CASES])
+def test_case(case: Probe) -> None:
+    verdict = judged(case, ask, loads)
+    assert verdict.passed, f"expected {verdict.expected}, observed {verdict.observed} ({verdict.ulp} ulp)"
+
+
+@pytest.mark.parametrize(
+    ("expected", "observed"),
+    [
+        (Oracle(), 0.1),
+        (Oracle(), None),
+        (Oracle(), float("nan")),
+        (Oracle(), UsageError("no")),
+        (Oracle(), ZeroDivisionError("division by zero")),
+        (Absent(), 1.0),
+        (Refusal("too large"), 1.0),
+        (Refusal("too large"), UsageError("too small")),
+        (Refusal("locks", 3), UsageError("locks")),
+        (lambda: Decimal(1), 1.0 + 1e-14),
+        (0, 1e-300),
+    ],
+)
+def test_a_wrong_answer_fails(expected: object, observed: object) -> None:
+    def wrong(text: str, asked: str) -> object:
+        if isinstance(observed, Exception):
+            raise observed
+        return observed
+
+    assert not judged(Probe("wrong", PLAIN, "motion x@30", expected), wrong, loads).passed  # type: ignore[arg-type]
+
+
+def test_a_right_refusal_passes() -> None:
+    def refuses(text: str, asked: str) -> object:
+        raise NoSolutionError("the crosshead locks itself")
+
+    assert judged(Probe("right", PLAIN, "motion x@30", Refusal("locks itself", 3)), refuses, loads).passed

@@ -1,0 +1,105 @@
+"""What a machine does not have is neither computed nor printed nor imported."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import cached_property
+
+import pytest
+
+from kurbel.accuracy.leaving_out import evaluated, savings
+from kurbel.accuracy.timing import Patience
+from kurbel.machine_file import loads
+from kurbel.report.accuracy import everything
+from kurbel.report.forces import forces_report
+from kurbel.solver.case import Case
+
+BARE = "{name: bare, speed: 60 rpm, crank: 400 mm, rod: 2000 mm}"
+FULL = """
+{name: full, speed: 60 rpm, crank: 400 mm, rod: 2000 mm, bore: 450 mm, inclination: 0 deg,
+ indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}, crank_end: mirrored},
+ masses: {piston: 200 kg}, friction: {crosshead: 0.05},
+ flywheel: {inertia: 900 kg m2}, load: {slip: 0.1}}
+"""
+NOT_OF_A_BARE_MACHINE = (
+    *("kurbel.solver.pressure", "kurbel.solver.gas", "kurbel.solver.card_work", "kurbel.solver.friction"),
+    *(
+        "kurbel.solver.rod",
+        "kurbel.solver.effort",
+        "kurbel.solver.excess",
+        "kurbel.solver.radau",
+        "kurbel.solver.speed",
+    ),
+    *("kurbel.solver.flywheel", "kurbel.solver.coupling", "kurbel.solver.strength", "kurbel.accuracy"),
+    *("kurbel.machine.indicator", "kurbel.machine.masses", "kurbel.machine.friction", "kurbel.machine.turning"),
+    *("kurbel.machine.trace", "kurbel.machine.ideal_cards", "kurbel.machine.crankshaft"),
+    *("kurbel.mechanisms.four_bar", "kurbel.mechanisms.slotted_lever", "kurbel.mechanisms.scotch_yoke"),
+    *("scipy", "matplotlib", "rich", "decimal", "fractions", "kurbel.render.csv_text", "kurbel.render.json_text"),
+)
+
+
+@pytest.mark.parametrize("command", ["motion", "forces"])
+def test_nothing_is_imported_for_what_is_absent(command: str) -> None:
+    code = (
+        "import sys\nfrom kurbel.cli import kurbel\n"
+        f"try:\n    kurbel.main([{command!r}, '-'])\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
+        f"found = [name for name in {NOT_OF_A_BARE_MACHINE!r} if name in sys.modules]\n"
+        "assert not found, found"
+    )
+    done = subprocess.run([sys.executable, "-c", code], input=BARE, capture_output=True, check=False, encoding="utf-8")
+    assert done.returncode == 0, done.stderr
+
+
+def stages_of(thing: object) -> set[str]:
+    """Names of the cached properties that have been computed and are not empty."""
+    return {
+        name
+        for name, value in vars(thing).items()
+        if isinstance(getattr(type(thing), name, None), cached_property) and value not in (None, (), 0.0, False)
+    }
+
+
+def test_nothing_is_computed_for_what_is_absent() -> None:
+    case = Case(loads(BARE))
+    everything(case)
+    forces = case.cylinders[0]
+    assert stages_of(case) == {"cylinders"}
+    assert stages_of(forces) == set()  # no grid, no samples, no extremes, no work
+    assert stages_of(forces.drive) == {"omega"}
+
+
+def test_only_what_the_command_needs_is_computed() -> None:
+    case = Case(loads(FULL))
+    everything(case)
+    assert "flywheel" not in vars(case)
+    assert "strength" not in vars(case)
+    assert {"grid", "_samples", "_force_extremes", "crosshead_work", "work"} <= stages_of(case.cylinders[0])
+
+
+def test_nothing_is_printed_for_what_is_absent() -> None:
+    part = forces_report(Case(loads(BARE)), (0.0, 90.0), None, "si").parts[0]
+    assert [column.id for column in part.columns] == ["phi", "psi", "x", "c", "b"]
+    assert not {"P_max", "T_max", "work", "friction_work", "loss_crosshead", "m"} & {one.id for one in part.key_values}
+
+
+def test_every_thing_left_out_saves_stages() -> None:
+    found = list(savings(loads(FULL), everything, Patience(1, 0.0)))
+    assert [one.what for one in found] == [
+        "everything",
+        "no friction",
+        "no masses either",
+        "no cards either: motion alone",
+        "no speed either: positions alone",
+    ]
+    counts = [one.stages for one in found]
+    assert counts == sorted(counts, reverse=True)
+    assert len(set(counts)) == len(counts)
+    assert found[0].ratio == 1.0
+
+
+def test_stages_are_counted_through_everything_a_case_holds() -> None:
+    case = Case(loads(BARE))
+    assert evaluated(case) == 0
+    _ = case.cylinders[0].motion.c_max
+    assert evaluated(case) >= 4  # the cylinders, the extreme, what it hangs on, and ω
