@@ -194,9 +194,10 @@ class State(Members):
 
     def _locks(self, degrees: float) -> str:
         f = self.drive.crosshead_friction
+        bound = 1 / np.sqrt(1 + f * f)
         return (
             f"{self.drive.name}: the crosshead locks itself near φ = {degrees % 360:.4g}°, where the machine is driven "
-            f"and f tan ψ ≥ 1 (f = {f:g}); a driven machine needs (R + |e|)/L < 1/√(1 + f²) = {1 / np.sqrt(1 + f * f):.6g}"
+            f"and f tan ψ ≥ 1 (f = {f:g}); a driven machine needs (R + |e|)/L < 1/√(1 + f²) = {bound:.6g}"
         )
 
     @cached_property
