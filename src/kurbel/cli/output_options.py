@@ -14,10 +14,16 @@ if TYPE_CHECKING:
     from kurbel.report.tables import Report
     from kurbel.solver.case import Case
 
+    _NumberType = click.ParamType[float]
+    _NumbersType = click.ParamType[tuple[float, ...]]
+    _WordsType = click.ParamType[tuple[str, ...]]
+else:  # before click 8.4 a ParamType has no parameter
+    _NumberType = _NumbersType = _WordsType = click.ParamType
+
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-class Number(click.ParamType[float]):
+class Number(_NumberType):
     """A finite number with a decimal point; `words` are texts allowed instead, with their values."""
 
     name = "number"
@@ -40,7 +46,7 @@ class Number(click.ParamType[float]):
             self.fail(str(error), param, ctx)
 
 
-class Numbers(click.ParamType[tuple[float, ...]]):
+class Numbers(_NumbersType):
     """Numbers, separated by commas."""
 
     name = "numbers"
@@ -52,7 +58,7 @@ class Numbers(click.ParamType[tuple[float, ...]]):
         return tuple(Number().convert(text, param, ctx) for text in value.split(","))
 
 
-class Words(click.ParamType[tuple[str, ...]]):
+class Words(_WordsType):
     """Words, separated by commas."""
 
     name = "words"
