@@ -70,7 +70,8 @@ def output_of(command: str, folder: Path) -> str:
 
 
 def steady(text: str) -> str:
-    return ROUNDING.sub("ΔA/A ", text)
+    """Return the text without its rounding, and without the widths of the columns in which that stands."""
+    return re.sub(" +", " ", ROUNDING.sub("ΔA/A ", text))
 
 
 BLOCKS = BLOCK.findall(README.read_text(encoding="utf-8"))
