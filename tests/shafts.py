@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.indicator import Indicator
@@ -11,6 +13,8 @@ from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from kurbel.solver.strength.places import Place, places
+from kurbel.solver.strength.statics import FreeBody, Vector
 from machines import constant_pressure
 
 SHAFT: dict[str, Any] = {
@@ -29,6 +33,17 @@ SHAFT: dict[str, Any] = {
 def shaft(**changed: Any) -> Crankshaft:
     """The crankshaft above with these lengths instead."""
     return Crankshaft(**(SHAFT | changed))
+
+
+def body(D: float, T: float, weight: tuple[float, float] = (0.0, 0.0), **changed: Any) -> FreeBody:
+    """The crankshaft above on a crank of 0.3 m, under these forces on its pin and at its flywheel in N."""
+    pin, turned = (Vector(np.array([x]), np.array([y])) for x, y in ((D, T), weight))
+    return FreeBody(shaft(**changed), 0.3, pin, turned)
+
+
+def place_at(crankshaft: Crankshaft, part: str, name: str) -> Place:
+    """The place of this name."""
+    return next(place for place in places(crankshaft) if (place.part, place.name) == (part, name))
 
 
 def strength(

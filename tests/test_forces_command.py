@@ -137,6 +137,84 @@ def test_self_locking_ends_with_status_3() -> None:
     assert result.stdout == ""
 
 
+LOCKING = (
+    "speed: 60 rpm\ncrank: 95 mm\nrod: 100 mm\nbore: 50 mm\nfriction: {crosshead: 0.5}\n"
+    "indicator: {head_end: {constant: {expansion: 0 bar, compression: 5 bar}}}\n"
+)
+
+
+def test_the_locking_angle_does_not_depend_on_the_step() -> None:
+    told = {run("forces", "-", "--step", step, text=LOCKING).stderr for step in ("1", "7", "10", "45")}
+    assert len(told) == 1
+
+
+def test_check_tells_that_the_crosshead_locks_itself() -> None:
+    result = run("check", "-", text=LOCKING + "limits: {c_max: 1 m/s, stroke: 190 mm}\n")
+    assert result.exit_code == 0
+    assert "the crosshead locks itself near φ = " in result.stdout
+    assert "kurbel forces ends with status 3" in result.stdout
+    assert result.stdout.count("kept") == 2
+
+
+def test_check_says_nothing_of_a_driving_crosshead() -> None:
+    """With this friction it would lock, were it driven."""
+    result = run(
+        "check", "-", text=LOCKING.replace("expansion: 0 bar, compression: 5", "expansion: 5 bar, compression: 0")
+    )
+    assert "locks" not in result.stdout
+
+
+def test_an_absent_column_is_told_with_those_that_are_there() -> None:
+    result = run(
+        "forces",
+        "-",
+        "--columns",
+        "N,D",
+        text="mechanism: slotted-lever\ncrank: 100 mm\nframe: 250 mm\nlever: 600 mm\nram_force: {work: 1 kN}\n",
+    )
+    assert result.exit_code == 2
+    assert (
+        "'N' is left out for this machine, which has phi, theta, x, P_ram, P, F_pin, D, T, M"
+        in result.stderr.replace("\n", " ")
+    )
+
+
+SLOTTED = (
+    "mechanism: slotted-lever\ncrank: 100 mm\nframe: 250 mm\nlever: 600 mm\nram_force: {work: 1 kN}\nspeed: 30 rpm\n"
+)
+
+
+def test_the_forces_of_a_link_are_left_out_for_what_they_are() -> None:
+    linked = run("check", "-", text=SLOTTED + "link: 400 mm\n").stdout
+    assert "S, N: the forces of the link on the ram are not computed" in linked
+    assert "S, N: a slotted-lever has no connecting rod" in run("check", "-", text=SLOTTED).stdout
+
+
+def test_of_a_ram_without_a_piston_nobody_expects_an_indicated_work() -> None:
+    stdout = run("check", "-", text=SLOTTED).stdout
+    assert "no bore given" not in stdout.replace("gas force: no bore given", "")
+
+
+@pytest.mark.parametrize(("missing", "why"), [("speed: 50 rpm\n", "no speed given"), (None, "no indicator given")])
+def test_what_the_brake_measured_needs_an_indicated_power(missing: str | None, why: str) -> None:
+    text = (
+        DEMO.replace(missing, "")
+        if missing
+        else "crank: 1 m\nrod: 5 m\nbore: 1 m\nspeed: 9 rpm\nmasses: {piston: 1 kg}\n"
+    )
+    stdout = run("check", "-", text=text + "brake_power: 100 kW\n").stdout
+    assert f"comparison with brake_power: {why}" in " ".join(stdout.split())
+
+
+def test_a_cylinder_may_hang_below_the_shaft_leaning_over() -> None:
+    text = "speed: 60 rpm\ncrank: 95 mm\nrod: 300 mm\nmasses: {piston: 10 kg}\ninclination: "
+    upright, leaning = (
+        run("forces", "-", "-f", "csv", "--columns", "P_weight", "--angles", "0", text=text + angle).stdout
+        for angle in ("60 deg", "120 deg")
+    )
+    assert leaning.splitlines()[1] == pytest.approx(upright.splitlines()[1])
+
+
 def test_numbers_too_large_are_refused_by_name() -> None:
     text = "speed: 1e200 rpm\ncrank: 1e200 m\nrod_ratio: 5\nmasses: {piston: 1e200 kg}\n"
     result = run("forces", "-", text=text)

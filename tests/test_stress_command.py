@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -13,8 +14,9 @@ from click.testing import CliRunner, Result
 from kurbel.cli import kurbel
 
 ENGINE = (Path(__file__).parents[1] / "src/kurbel/configs/gas-engine.yaml").read_text("utf-8")
+EXACT_ROD = ENGINE.replace("share: 0.4", "center_of_gravity: 900 mm, inertia: 60 kg m2")
 PLACES = [
-    *(("pin", "middle"),),
+    *(("pin", place) for place in ("middle", "at_web_A", "at_web_B")),
     *((web, place) for web in ("web_A", "web_B") for place in ("wide_face", "narrow_face", "corner")),
     *(("journal_A", "at_web"), ("journal_B", "at_web"), ("journal_B", "in_bearing")),
 ]
@@ -55,18 +57,20 @@ def test_json() -> None:
     assert ids == ["dead_centre", "largest_torque", "largest_stress"]
     assert [(row["part"], row["place"]) for row in dead_centre["rows"]] == PLACES
     combined = next(column["values"] for column in worst["columns"] if column["id"] == "combined")
-    assert max(combined[1:4]) == values["sigma_web_A_max"]["value"]
+    assert max(combined[:3]) == values["sigma_pin_max"]["value"]
+    assert max(combined[3:6]) == values["sigma_web_A_max"]["value"]
     assert "cylinders" not in result
 
 
 def test_csv_over_the_crank_angle_and_by_place() -> None:
     rows = list(csv.DictReader(io.StringIO(run("stress", "-", "-f", "csv", "--angles", "0,35").stdout)))
     assert [row["phi_deg"] for row in rows] == ["0", "35"]
-    assert float(rows[0]["D_N"]) == pytest.approx(float(rows[0]["A_D_N"]) * 2, rel=1e-12)
+    pull = 0.6 * 260 * 0.3 * (200 * math.pi / 30) ** 2  # of the connecting rod's turning part
+    assert float(rows[0]["D_N"]) - pull == pytest.approx(float(rows[0]["A_D_N"]) * 2, rel=1e-12)
     rows = list(csv.DictReader(io.StringIO(run("stress", "-", "--places", "-f", "csv").stdout)))
     assert [(row["part"], row["place"]) for row in rows] == PLACES * 3
     assert rows[0]["compression_Pa"] == ""
-    assert float(rows[1]["torsion_Pa"]) > 0
+    assert float(rows[3]["torsion_Pa"]) > 0
 
 
 def test_markdown_and_units() -> None:
@@ -99,7 +103,11 @@ def test_what_is_not_given_is_left_out_by_name() -> None:
         (ENGINE.partition("crankshaft:")[0], "no 'crankshaft' is given"),
         (ENGINE.partition("indicator:")[0] + ENGINE[ENGINE.index("masses:") :], "no pressure loads the crankshaft"),
         (ENGINE.replace("web_width: 250 mm", "web_width: 1e-150 mm").replace("140 mm", "1e-160 mm"), "too large"),
-        (ENGINE.replace("210 mm", "1e-200 mm").replace("160 mm", "1e-200 mm"), "too large"),
+        (ENGINE.replace("210 mm", "1e-200 mm").replace("160 mm", "1e-200 mm"), "too large to compute with"),
+        (ENGINE.replace("200 rpm", "1e170 rpm"), "too large to compute with"),
+        (EXACT_ROD.replace("200 rpm", "1e170 rpm"), "too large to compute with"),
+        (ENGINE.replace("pin_length: 160 mm", "pin_length: 400 mm"), "400 mm does not fit between the webs"),
+        (ENGINE.replace("journal_length: 320 mm", "journal_length: 5 m"), "half of 5000 mm does not fit between"),
     ],
 )
 def test_refused_with_a_message(file: str, message: str) -> None:
@@ -107,6 +115,15 @@ def test_refused_with_a_message(file: str, message: str) -> None:
     assert result.exit_code == 2
     assert message in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_turning_part_of_the_rod_is_told() -> None:
+    """Once: the D of an exact rod has it already."""
+    shared, exact = (json.loads(run("stress", "-", "-f", "json", file=file).stdout) for file in (ENGINE, EXACT_ROD))
+    values = {value["id"]: value["value"] for value in shared["machine_key_values"]}
+    assert values["C_rod"] == pytest.approx(0.6 * 260 * 0.3 * (200 * math.pi / 30) ** 2, rel=1e-14)
+    assert "C_rod" not in {value["id"] for value in exact["machine_key_values"]}
+    assert "carry D less C_rod" in run("stress", "-", "--places").stdout
 
 
 def test_limits_work_on_strength() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 
@@ -42,3 +43,35 @@ def bearing(sin: Any, cos: Any) -> Any:
     import numpy as np
 
     return np.degrees(np.arctan2(sin, cos))
+
+
+def exact_sum(terms: Iterable[float]) -> float:
+    """Return the sum of floats, rounded once; inf where it, or anything on the way, is beyond the range of floats."""
+    try:
+        return math.fsum(terms)
+    except (OverflowError, ValueError):
+        return math.inf
+
+
+def running_sums(groups: Iterable[Iterable[float]]) -> Iterator[tuple[float, float]]:
+    """Yield the sum of the terms of the first one, two, … groups, rounded once, and what the rounding took (Shewchuk).
+
+    >>> list(running_sums([(1.0, 1e-20), (-1.0,)]))
+    [(1.0, 1e-20), (1e-20, 0.0)]
+    """
+    parts: list[float] = []  # they do not overlap, and their sum is exact
+    for group in groups:
+        for term in group:
+            parts = [*_joined(parts, term)]
+        total = exact_sum(parts)
+        yield total, exact_sum((*parts, -total)) if math.isfinite(total) else 0.0
+
+
+def _joined(parts: list[float], term: float) -> Iterator[float]:
+    """Yield parts that do not overlap, whose sum is exactly that of the given ones and a term."""
+    for part in parts:
+        large, small = (part, term) if abs(part) >= abs(term) else (term, part)
+        term = large + small
+        if rest := small - (term - large):
+            yield rest
+    yield term

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, Union
 
+from kurbel.errors import Fault, RuleError
+
 
 class Physical(NamedTuple):
     """A number with a unit of this kind, such as `450 mm`; becomes a float in the base of the kind.
@@ -31,6 +33,31 @@ class Number(NamedTuple):
     below: float | None = None
     most: float | None = None
     words: tuple[tuple[str, float], ...] = ()
+
+
+def out_of_bounds(value: float, form: Physical | Number) -> str:
+    """Return in what way a value is too small or too large for its form, with the bound; '' when it is not.
+
+    >>> out_of_bounds(-0.3, Physical("length", least=0.1))
+    'is too small; it must be at least 100 mm'
+    """
+    below = form.below if isinstance(form, Number) else None
+    kind = form.kind if isinstance(form, Physical) else "ratio"
+    if form.above is not None and not value > form.above:
+        return f"is too small; it must be more than {_bound(form.above, kind)}"
+    if form.least is not None and not value >= form.least:
+        return f"is too small; it must be at least {_bound(form.least, kind)}"
+    if below is not None and not value < below:
+        return f"is too large; it must be less than {_bound(below, kind)}"
+    if form.most is not None and not value <= form.most:
+        return f"is too large; it must be at most {_bound(form.most, kind)}"
+    return ""
+
+
+def _bound(value: float, kind: str) -> str:
+    from kurbel.units import show
+
+    return "0" if value == 0 else show(value, kind)
 
 
 class Count(NamedTuple):
@@ -152,6 +179,21 @@ class Key(NamedTuple):
 
 
 Keys = dict[str, Key]
+
+
+def check_bounds(keys: Keys, **values: float | None) -> None:
+    """Raise RuleError for the values, in the base of their kinds, that are out of the bounds of their keys.
+
+    What a machine file gives has been held against them already; this is for records that are made in Python.
+    """
+    faults = [
+        Fault((name,), f"{value:g} {wrong}")
+        for name, value in values.items()
+        if value is not None and isinstance(form := keys[name].form, (Physical, Number))
+        if (wrong := out_of_bounds(value, form))
+    ]
+    if faults:
+        raise RuleError(*faults)
 
 
 def load(record: Record) -> Any:

@@ -28,6 +28,9 @@ def _index(*quantities: Quantity) -> dict[str, Quantity]:
     return {quantity.id: quantity for quantity in quantities}
 
 
+LISTS = ("phi_b_zero", "phi_reversal", "phi_crossing", "lobes")
+"""Key values that are lists: no bound can be put on them."""
+
 SHAFT_PARTS = {
     "pin": ("pin", "the crank pin"),
     "web_A": ("w,A", "web A"),
@@ -85,7 +88,12 @@ COLUMNS = _index(
     Quantity("M_out", "M_2", "torque", "Moment on what swings, or on the second crank, against its motion"),
     Quantity("P", "P", "force", "Force along the stroke line: gas, inertia, weight, and what a ram works against"),
     Quantity("S", "S", "force", "Force in the connecting rod, compression positive"),
-    Quantity("N", "N", "force", "Force on the guide, positive on the side where it lies while an engine drives"),
+    Quantity(
+        "N",
+        "N",
+        "force",
+        "Force on the guide (yoke frame: on the piston rod), positive on the side where it lies while an engine drives",
+    ),
     Quantity("D", "D", "force", "Radial force at the crank pin, positive toward the shaft"),
     Quantity("T", "T", "force", "Tangential force at the crank pin, positive when it drives"),
     Quantity(
@@ -94,7 +102,7 @@ COLUMNS = _index(
     Quantity("F_pin", "F_z", "force", "Force of the sliding block on the crank pin, in the sense of P"),
     Quantity("N_pair", "N_2", "force", "Force on each of the two guides of a yoke, opposite to one another"),
     Quantity("M_bend", "M_b", "torque", "Bending moment of N on the piston rod at its stuffing box"),
-    Quantity("F_coupler", "F_K", "force", "Force in the coupler"),
+    Quantity("F_coupler", "F_K", "force", "Force in the coupler, thrust positive"),
     Quantity("M", "M", "torque", "Torque on the shaft"),
     Quantity("T_inertia", "T_b", "force", "Share of the inertia forces in T, at uniform rotation (Tolle)"),
     Quantity("E", "E", "energy", "Excess of the work of M over that of the resistance since angle 0"),
@@ -122,6 +130,9 @@ _FLYWHEEL = (
     Quantity("J", "J", "inertia", "Moment of inertia of the flywheel: the given one, or that for the wanted δ"),
     Quantity("GD2", "GD²", "gd2", "Old form of the moment of inertia, 4gJ as a weight times an area", "GD2"),
     Quantity("J_needed", "J_δ", "inertia", "Flywheel for the wanted δ, ΔE/(δ ω²)", "J_delta"),
+    Quantity(
+        "J_exact", "J_δ,ω", "inertia", "Flywheel with which δ of the speed line is the wanted one", "J_delta,omega"
+    ),
     Quantity("GD2_needed", "GD²_δ", "gd2", "The same as GD² = 4gJ", "GD2_delta"),
     Quantity("delta", "δ", "ratio", "Coefficient of speed fluctuation, (ω_max − ω_min)/ω_m", "delta"),
     Quantity("delta_book", "δ_0", "ratio", "The same after the books, ΔE/(J ω²)", "delta_0"),
@@ -139,6 +150,9 @@ _FLYWHEEL = (
 )
 _STRENGTH = (
     Quantity("P_dc", "P_dc", "force", "Full piston force, without inertia, taken in the dead centre"),
+    Quantity(
+        "C_rod", "C_r", "force", "Centrifugal force of the connecting rod's turning part, which D does not contain"
+    ),
     *_each("sigma_*_dc", "σ_*,dc", "stress", "Combined stress of * in the dead centre under full force (Bach)"),
     *_each("sigma_*_max", "σ_*,max", "stress", "Largest combined stress of * over the cycle (Bach)"),
     *_each("mises_*_max", "σ_v,*,max", "stress", "Largest equivalent stress of * over the cycle (von Mises)"),
@@ -157,7 +171,7 @@ _STRENGTH = (
         "sum F, M",
     ),
 )
-KEY_VALUES = _index(
+_MOTION = (
     Quantity("stroke", "s", "length", "Stroke"),
     Quantity("swing", "θ_s", "angle", "Angle through which the member swings", "theta_s"),
     Quantity("theta_min", "θ_min", "angle", "Smallest angle of the swinging member", "theta_min"),
@@ -183,6 +197,9 @@ KEY_VALUES = _index(
     Quantity("b_coupler", "b_K", "acceleration", "Acceleration v²/R of every coupler point, toward its centre"),
     Quantity("transmission_min", "μ_min", "angle", "Smallest transmission angle", "mu_min"),
     Quantity("transmission_max", "μ_max", "angle", "Largest transmission angle", "mu_max"),
+)
+KEY_VALUES = _index(
+    *_MOTION,
     Quantity("A_head", "A_H", "area", "Piston area at the head end"),
     Quantity("A_crank", "A_C", "area", "Piston area at the crank end"),
     Quantity("m", "m", "mass", "Reciprocating mass with its share of the connecting rod"),
@@ -243,10 +260,13 @@ KEY_VALUES = _index(
 """Key values, by id."""
 
 OF_COMMAND = {
+    "motion": tuple(quantity.id for quantity in _MOTION),
     "flywheel": tuple(quantity.id for quantity in _FLYWHEEL),
     "stress": tuple(quantity.id for quantity in _STRENGTH),
 }
 """Command -> the ids of the key values that it answers; all others belong to `kurbel forces`."""
+OF_WHOLE_MACHINE = ("W", "T_max", "T_min", "M_max", "M_min")
+"""Key values that `kurbel flywheel` has of the whole machine, beside those of its cylinders."""
 
 STRESSES = _index(
     Quantity(

@@ -17,10 +17,11 @@ from kurbel.errors import UnitError
 Factor = tuple[float, float]
 """A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""
 
-_G = 9.80665  # standard gravity, m/s2: makes kgf and at exact
+GRAVITY = 9.80665
+"""m/s²; makes kgf and at exact."""
 _INCH = 0.0254
 _POUND = 0.45359237
-_LBF = _POUND * _G
+_LBF = _POUND * GRAVITY
 
 _LENGTH: dict[str, Factor] = {
     "m": (1, 1),
@@ -38,9 +39,9 @@ _FORCE: dict[str, Factor] = {
     "N": (1, 1),
     "kN": (1e3, 1),
     "MN": (1e6, 1),
-    "kgf": (_G, 1),
-    "kp": (_G, 1),
-    "tf": (1e3 * _G, 1),
+    "kgf": (GRAVITY, 1),
+    "kp": (GRAVITY, 1),
+    "tf": (1e3 * GRAVITY, 1),
     "lbf": (_LBF, 1),
 }
 _TIME: dict[str, Factor] = {"s": (1, 1), "min": (60, 1), "h": (3600, 1)}
@@ -69,7 +70,7 @@ _PRESSURE: dict[str, Factor] = {
     "psi": (_LBF, _INCH * _INCH),
     "Torr": (101325, 760),
     "mmHg": (133.322387415, 1),
-    "mWS": (_G * 1e3, 1),
+    "mWS": (GRAVITY * 1e3, 1),
 }
 _TORQUE: dict[str, Factor] = {"Nm": (1, 1), "kNm": (1e3, 1)}
 
@@ -101,9 +102,9 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         "W": (1, 1),
         "kW": (1e3, 1),
         "MW": (1e6, 1),
-        "PS": (75 * _G, 1),
+        "PS": (75 * GRAVITY, 1),
         "hp": (550 * _LBF * 3048, 1e4),
-        "kgf m/s": (_G, 1),
+        "kgf m/s": (GRAVITY, 1),
     },
     "inertia": lambda: _product(_MASS, _AREA, " "),
     "gd2": lambda: {
@@ -111,7 +112,7 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         "kgf m2": (1, 1),
         "kp m2": (1, 1),
         "tf m2": (1e3, 1),
-        "N m2": (1, _G),
+        "N m2": (1, GRAVITY),
     },
     "stiffness": lambda: _product(
         {**_product(_FORCE, {"m": (1, 1), "mm": (1, 1e3)}, " "), **_TORQUE}, {"rad": (1, 1)}, "/"
@@ -119,8 +120,9 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
     "damping": lambda: (
         _product({**_product(_FORCE, {"m": (1, 1)}, " "), **_TORQUE}, {"rad/s": (1, 1), "s/rad": (1, 1)}, " ")
         | {"N m s/rad": (1, 1), "Nm s/rad": (1, 1), "kN m s/rad": (1e3, 1)}
+        | {"N m s": (1, 1), "Nm s": (1, 1), "kN m s": (1e3, 1)}
     ),
-    "pressure_velocity": lambda: {"W/m2": (1, 1), "kgf m/s/cm2": (_G * 1e4, 1)},
+    "pressure_velocity": lambda: {"W/m2": (1, 1), "kgf m/s/cm2": (GRAVITY * 1e4, 1)},
 }
 """Kind -> its units. `gd2` counts in kg m2 of GD2 = 4J: a weight of 1 kgf is that of 1 kg."""
 

@@ -10,7 +10,7 @@ import pytest
 
 from kurbel.machine.masses import Masses
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.state import GRAVITY
+from kurbel.units import GRAVITY
 from machines import one_cylinder, single_acting
 
 BOOK_G = 9.81

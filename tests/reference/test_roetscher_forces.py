@@ -10,7 +10,7 @@ from kurbel.machine.indicator import Constant, Indicator
 from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.state import GRAVITY
+from kurbel.units import GRAVITY
 from machines import AT, STEAM_CARD, one_cylinder
 
 TAFEL_I = SliderCrank(crank=0.4, rod=2.0)

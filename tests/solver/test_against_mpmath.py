@@ -16,7 +16,7 @@ from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.state import GRAVITY
+from kurbel.units import GRAVITY
 from machines import AT, STEAM_CARD, one_cylinder
 
 mp = mpmath.mp

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from kurbel.errors import NoSolutionError
+from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.turning import Coupling, Load
 from kurbel.solver.coupling import natural_frequency
 from kurbel.solver.flywheel import MachineSpeed
@@ -101,3 +101,42 @@ def test_a_load_that_rises_with_the_speed_damps() -> None:
     free, held = coupled(2.0, damping=1.0), coupled(2.0, damping=1.0, load=Load(power=2.0))
     assert held.elastic.amplification < free.elastic.amplification
     assert held.elastic.shaft.load_slope == pytest.approx(2 * held.M_mean / OMEGA, rel=1e-13)
+
+
+def test_a_speed_that_falls_to_zero_is_a_stall_with_its_angle() -> None:
+    light = of_points(POINTS, RPM, inertia=3.0, coupling=Coupling(20.0, 3.0))
+    with pytest.raises(NoSolutionError, match=r"stops near φ = [\d.]+°: with the elastic coupling, J = 3 kg"):
+        _ = light.delta
+    assert coupled(0.4).omega_min.value > 0
+
+
+def test_no_inertia_before_the_coupling_is_refused() -> None:
+    with pytest.raises(UsageError, match="nothing before the coupling has any inertia"):
+        _ = of_points(POINTS, RPM, inertia=0.0, coupling=Coupling(2631.0, 20.0)).speed
+    uniform = of_points([(0, 100), (360, 100)], RPM, delta=0.02, coupling=Coupling(1e6, 30.0))
+    assert (uniform.J, uniform.delta) == (0, 0)
+
+
+@pytest.mark.parametrize("power", [-3.0, -1.0, 1.0, 2.0])
+def test_what_is_left_of_a_disturbance_after_a_turn(power: float) -> None:
+    """scipy marches the two linearised masses, J₁ ω̇₁ = −T, J₂ ω̇₂ = T − c ω₂, for a turn from three states."""
+    machine = coupled(2.5, damping=60.0, load=Load(power=power))
+    coupling, slope = machine.machine.coupling, power * machine.M_mean / OMEGA
+
+    def rates(_: float, state: np.ndarray) -> list[float]:
+        twist, one, two = state
+        torque = coupling.stiffness * twist + coupling.damping * (one - two)
+        return [one - two, -torque / 60.0, (torque - slope * two) / coupling.inertia]
+
+    after = [solve_ivp(rates, (0, 1), start, method="DOP853", rtol=1e-11, atol=1e-13).y[:, -1] for start in np.eye(3)]
+    assert machine.multiplier == pytest.approx(np.abs(np.linalg.eigvals(np.array(after))).max(), rel=1e-8)
+    assert (machine.multiplier > 1) == (power < 0)
+
+
+def test_a_load_without_a_speed_of_its_own_has_no_multiplier() -> None:
+    assert coupled(2.5).multiplier is None
+    assert coupled(2.5).elastic.growth == pytest.approx(0, abs=1e-9)
+
+
+def test_what_is_damped_is_no_resonance() -> None:
+    assert coupled(2.05, damping=1e5).elastic.resonances == ()

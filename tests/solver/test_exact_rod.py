@@ -9,15 +9,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurbel.errors import MachineFileError
+from kurbel.errors import MachineFileError, RuleError
 from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
+from kurbel.machine.resistance import RamForce
 from kurbel.machine_file import loads
+from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.state import GRAVITY
+from kurbel.units import GRAVITY
 from machines import STEAM_CARD, one_cylinder
 
 CRANK, LENGTH, RPM = 0.3, 1.3, 140.0
@@ -43,7 +45,7 @@ def kinetic_energy(phi: Any, mass: float, at: float, inertia: float, offset: flo
     return mass / 2 * (v_along**2 + v_across**2) + inertia / 2 * psi_dot**2
 
 
-ROD = st.tuples(st.floats(1, 500), st.floats(-0.2, 1.5), st.floats(0.0, 200.0), st.sampled_from([0.0, 0.15, -0.3]))
+ROD = st.tuples(st.floats(1, 500), st.floats(0.0, LENGTH), st.floats(0.0, 200.0), st.sampled_from([0.0, 0.15, -0.3]))
 
 
 @given(ROD)
@@ -157,3 +159,41 @@ def test_an_infinite_rod_cannot_be_exact() -> None:
     )
     with pytest.raises(MachineFileError, match="an infinite rod has no centre of gravity"):
         loads(text)
+
+
+@pytest.mark.parametrize(
+    ("place", "message"),
+    [
+        ("1.5 m", "1500 mm from the crosshead pin is beyond the crank pin: the rod is 1300 mm long"),
+        ("-1 mm", "-1 mm is too small; it must be at least 0"),
+    ],
+)
+def test_the_centre_of_gravity_lies_on_the_rod(place: str, message: str) -> None:
+    with pytest.raises(MachineFileError) as caught:
+        loads(
+            "crank: 300 mm\nrod: 1300 mm\n"
+            f"masses: {{connecting_rod: {{mass: 10 kg, center_of_gravity: {place}, inertia: 1 kg m2}}}}\n"
+        )
+    (fault,) = caught.value.faults
+    assert fault.path == ("masses", "connecting_rod", "center_of_gravity")
+    assert fault.message == message
+
+
+def test_bounds_hold_in_python_too() -> None:
+    for wrong in (
+        {"mass": -1.0},
+        {"mass": 1.0, "share": 1.2},
+        {"mass": 1.0, "center_of_gravity": 0.1, "inertia": -1.0},
+    ):
+        with pytest.raises(RuleError, match="it must be at"):
+            ConnectingRod(**wrong)
+    for make in (lambda: RamForce(-1.0), lambda: RamForce(1.0, -1.0), lambda: ParallelCrank(0.3, 1.0, -5.0)):
+        with pytest.raises(RuleError, match="it must be at least 0"):
+            make()
+
+
+def test_largest_and_smallest_inertia_force_by_value() -> None:
+    forces = one_cylinder(SliderCrank(CRANK, LENGTH), RPM, masses=Masses(-5.0))
+    found = forces.extremes_of("P_inertia")
+    assert found is not None
+    assert found.largest.value > 0 > found.smallest.value

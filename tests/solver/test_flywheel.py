@@ -10,9 +10,11 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
+from kurbel.errors import MachineFileError, UsageError
 from kurbel.machine_file import load, loads
 from kurbel.report.check import checked
 from kurbel.solver.case import Case
+from kurbel.units import parse_quantity
 
 CONFIGS = Path(__file__).parents[2] / "src" / "kurbel" / "configs"
 ENGINE = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8")
@@ -155,3 +157,81 @@ def test_technical_units_and_text() -> None:
     assert "Drehkraftlinie und Schwungrad" in text
     assert "kgf m²" in text
     assert "T and W are referred to the radius of crank 1, 400 mm" in text
+
+
+MIXED = """
+cycle: four-stroke
+speed: 100 rpm
+cylinders:
+  - {crank: 100 mm, rod: 500 mm, masses: {piston: 5 kg}}
+  - {crank: 100 mm, rod: 500 mm, cycle: two-stroke, bore: 100 mm,
+     indicator: {head_end: {constant: {expansion: -0.4 at, compression: 5 at}}}}
+"""
+
+
+def test_a_cylinder_has_a_cycle_of_its_own() -> None:
+    """A pump beside a four-stroke engine: both of its turns are alike, and its card is held against its own cycle."""
+    case = Case(loads(MIXED))
+    assert [cylinder.drive.cycle for cylinder in case.cylinders] == [720, 360]
+    assert case.flywheel.cycle == 720
+    assert case.flywheel.work_shaft == pytest.approx(2 * case.cylinders[1].work, rel=1e-12)
+    with pytest.raises(MachineFileError, match=r"cylinders\[1\]\.indicator\.head_end: a four-stroke cycle needs"):
+        loads(MIXED.replace("two-stroke", "four-stroke"))
+
+
+TWO = (CONFIGS / "waterworks-two-cranks.yaml").read_text(encoding="utf-8")
+
+
+def entries(text: str, title: str) -> list[tuple[str, str]]:
+    sections = {section.title: section.entries for section in checked(loads(text), ("forces", "flywheel")).sections}
+    return [(entry.what, entry.text) for entry in sections[title]]
+
+
+def test_a_limit_on_T_is_for_every_cylinder_and_for_the_whole_machine() -> None:
+    kept = entries(TWO + "limits: {T_max: 1 MN, W: 1 MN, M_min: -1000 kN m}\n", "Limits")
+    cylinders = [cylinder.name for cylinder in loads(TWO).cylinders]
+    where = [(what, text.rpartition("(")[2].rstrip(")")) for what, text in kept]
+    both = [*cylinders, "whole machine"]
+    assert where == [*(("T_max", name) for name in both), *(("W", name) for name in both), ("M_min", "whole machine")]
+    alone = entries(ENGINE + "limits: {T_max: 1 MN, M_max: 1000 kN m}\n", "Limits")
+    assert [what for what, _ in alone] == ["T_max", "M_max"]
+
+
+def test_a_limit_on_the_flywheel_needed_is_kept_though_it_is_not_printed() -> None:
+    text = ENGINE + "flywheel: {fluctuation: 0.01}\n"
+    assert "J_needed" not in values(text)
+    assert not checked(loads(text + "limits: {J_needed: 1000 t m2}\n"), ("forces", "flywheel")).broken
+    with pytest.raises(UsageError, match=r"this machine has no delta: coefficient .*ω_max"):
+        checked(loads(ENGINE + "limits: {delta: 0.1}\n"), ("forces", "flywheel"))
+
+
+def test_the_warning_of_a_missed_wish_names_the_flywheel_that_meets_it() -> None:
+    text = ENGINE + "flywheel: {fluctuation: 0.1}\n"
+    exact = values(text)["J_exact"]
+    assert f"J = {exact:.6g} kg m^2 gives the wanted one" in warnings(text)
+    assert values(text.replace("fluctuation: 0.1", f"inertia: {exact!r} kg m2"))["delta"] == pytest.approx(0.1)
+    both = values(text.replace("fluctuation", "inertia: 9000 kg m2, fluctuation"))
+    assert both["J_exact"] == pytest.approx(exact, rel=1e-12)
+
+
+def test_check_tells_what_flywheel_makes_of_the_machine() -> None:
+    given = dict(entries(PUNCH, "Whole machine"))
+    assert given["left out"] == "T, W: no crank: the effort is given as a torque"
+    coupled = ENGINE.replace("speed: 50 rpm\n", "") + (
+        "flywheel: {inertia: 1 t m2}\nload: {slip: 0.02}\ncoupling: {stiffness: 1 N m/rad, inertia: 1 kg m2}\n"
+    )
+    found = entries(coupled, "Whole machine")
+    assert [text for what, text in found if what == "left out"] == [
+        f"{what}: no speed given" for what in ("power", "speed line, δ", "load over the speed", "coupling")
+    ]
+    assert found[-1] == ("load", "slip 0.02")
+
+
+def test_a_damping_is_a_torque_over_an_angular_velocity() -> None:
+    assert parse_quantity("3 N m s", "damping") == parse_quantity("3 N m s/rad", "damping") == 3
+
+
+def test_a_column_that_is_not_there_is_told_with_those_that_are() -> None:
+    answer = run(ENGINE + "flywheel: {inertia: 9000 kg m2}\n", "--columns", "M_coupling")
+    assert answer.exit_code == 2
+    assert "'M_coupling' is left out for this machine, which has phi, T, T_inertia, M, E, omega" in answer.stderr

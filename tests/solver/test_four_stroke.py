@@ -12,15 +12,18 @@ import pytest
 from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.friction import Friction
-from kurbel.machine.indicator import Card, Indicator
+from kurbel.machine.ideal_cards import Compressor, Otto
+from kurbel.machine.indicator import Card, Constant, Indicator
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
+from kurbel.machine.trace import Trace
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.angles import stepped
 from kurbel.report.forces import forces_report
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.state import GRAVITY
+from kurbel.units import GRAVITY
+from machines import STEAM_CARD, constant_pressure
 
 BAR = 1e5
 LINES: dict[str, list[tuple[float, float]]] = {
@@ -136,3 +139,44 @@ def test_a_missing_line_is_named(missing: str) -> None:
     lines = {name: points for name, points in LINES.items() if name != missing}
     with pytest.raises(RuleError, match=f"the '{missing}' line of the four-stroke card is missing"):
         Card.from_keys((BAR, 1), **lines)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "pump",
+    [
+        constant_pressure(2e5),
+        Constant.from_keys(-0.3e5, 6e5),
+        STEAM_CARD,
+        Compressor(0.0, 6e5, clearance=0.05),
+        Trace.from_keys((1e5, 1), points=[(0.0, 6.0), (90.0, 0.1), (200.0, 0.0), (360.0, 6.0)]),
+    ],
+    ids=["gas at rest", "pump", "card", "compressor", "trace"],
+)
+def test_a_pump_behind_a_four_stroke_engine_works_on_every_turn(pump: Any) -> None:
+    """Its force repeats after 360°, and its work counts twice in 720°; the engine's is that without it."""
+    engine = Piston(0.3, indicator=Indicator(Otto(0.0, 25e5, clearance=0.2)))
+    behind = Piston(0.2, indicator=Indicator(pump), name="pump")
+    mechanism = SliderCrank(0.2, 0.9)
+
+    def solved(cycle: str, *pistons: Piston) -> CylinderForces:
+        own = Cylinder(mechanism, pistons=pistons)
+        return CylinderForces(Machine((own,), speed=2.0, cycle=cycle), own)
+
+    both, alone, pumping = (
+        solved("four-stroke", engine, behind),
+        solved("four-stroke", engine),
+        solved("two-stroke", behind),
+    )
+    degrees = np.arange(1.0, 720.0, 7.3)
+    expected = alone.at(degrees).P + pumping.at(degrees).P
+    assert pytest.approx(expected, rel=1e-12, abs=1e-6) == both.at(degrees).P
+    assert both.work == pytest.approx((alone.work or 0) + 2 * (pumping.work or 0), rel=1e-12, abs=1e-6)
+    assert abs(both.energy_residual or 0.0) < 1e-12
+
+
+def test_the_cylinders_own_piston_fits_its_cycle() -> None:
+    with pytest.raises(RuleError, match="a four-stroke cycle needs the lines"):
+        Machine(
+            (Cylinder(SliderCrank(0.2, 0.9), pistons=(Piston(0.3, indicator=Indicator(STEAM_CARD)),)),),
+            cycle="four-stroke",
+        )

@@ -258,3 +258,53 @@ def test_the_module_of_ideal_cards_is_left_alone_without_them() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == ""
+
+
+@pytest.mark.parametrize("beside", [np.nextafter(0.3, 1), np.nextafter(0.3, 1) + 1e-16, 0.3 + 1e-15])
+@pytest.mark.parametrize("crank_end", [False, True])
+def test_fractions_a_rounding_apart_are_a_jump(beside: float, crank_end: bool) -> None:
+    """A line cannot be followed over no crank angle: the pressure stays among those of the card."""
+    lines = [(1.0, 1.0), (float(beside), 1.0), (0.3, 5.0), (0.0, 5.0)]
+    card = Card.from_keys(unit=(BAR, 1), expansion=[(0, 5), (1, 5)], compression=lines)
+    piston = Piston(0.15, indicator=Indicator(None, card) if crank_end else Indicator(card))
+    own = Cylinder(SliderCrank(0.09, 0.36), pistons=(piston,))
+    forces = CylinderForces(Machine((own,)), own)
+    found = forces.extremes_of("P")
+    assert found is not None
+    assert max(abs(found.largest.value), abs(found.smallest.value)) == pytest.approx(
+        5 * BAR * piston.head_area, rel=1e-9
+    )
+    assert abs(forces.energy_residual or 0.0) < 1e-12
+
+
+def test_a_rounding_beside_the_dead_centre_is_a_jump_too() -> None:
+    lines = [(1.0, 1.0), (5e-324, 1.0), (0.0, 5.0)]
+    forces = cylinder(Card.from_keys(unit=(BAR, 1), expansion=[(0, 5), (1e-300, 3), (1, 3)], compression=lines))
+    assert forces.at([0.0, 90.0, 270.0, 359.99]).p_head == pytest.approx(np.array([3, 3, 1, 1]) * BAR, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("key", "indicator"),
+    [
+        ("steam.exponent", "steam: {admission: 9 bar, exhaust: 1 bar, cut_off: 0.3, clearance: 0.05, exponent: 1000}"),
+        ("steam.clearance", "steam: {admission: 9 bar, exhaust: 1 bar, cut_off: 0.3, clearance: 1e-300}"),
+        ("diesel.exponent", "diesel: {intake: 0 bar, cut_off: 0.1, compression_ratio: 16, exponent: 250}"),
+        ("otto.compression_ratio", "otto: {intake: 0 bar, peak: 30 bar, compression_ratio: 1e300}"),
+        ("otto.compression_ratio", "otto: {intake: 0 bar, peak: 30 bar, compression_ratio: 1.0000000000000002}"),
+        ("diesel.intake", "diesel: {intake: 1e300 bar, cut_off: 0.1, compression_ratio: 16}"),
+        (
+            "clearance",
+            "unit: bar, interpolate: polytropic, clearance: 1e-300, expansion: [[0, 5], [1, 1]], "
+            "compression: [[1, 1], [0, 5]]",
+        ),
+    ],
+)
+def test_what_cannot_be_computed_with_is_a_fault_with_its_place(key: str, indicator: str) -> None:
+    from kurbel.errors import MachineFileError
+    from kurbel.machine_file import loads
+
+    with pytest.raises(MachineFileError) as caught:
+        loads(f"crank: 1 m\nrod: 5 m\nbore: 1 m\nindicator: {{head_end: {{{indicator}}}}}\n")
+    (fault,) = caught.value.faults
+    assert ".".join(map(str, fault.path)) == f"indicator.head_end.{key}"
+    assert "it must be at" in fault.message

@@ -284,3 +284,17 @@ def test_a_hair_beyond_a_right_angle() -> None:
     assert alone.cos == pytest.approx(-1e-20 * math.pi / 180, rel=1e-15)
     assert alone.cos == among.cos[0]
     assert CrankAngle.of(90.0, np.array([0.0, 1e-20])).cos.tolist() == [0.0, alone.cos]
+
+
+@pytest.mark.parametrize("degrees", [20.0, 70.0, 160.0, 290.0])
+def test_thrust_in_the_coupler_counts_positive(degrees: float) -> None:
+    """Statics of the rocker: the thrust of the coupler on its pin holds the moment on it, R ch. 14 A."""
+    coupler, rocker, frame = 0.4, 0.3, 0.45
+    own = Cylinder(FourBar(crank=0.1, coupler=coupler, rocker=rocker, frame=frame), moment=Moment(100.0, 100.0))
+    state = CylinderForces(Machine((own,)), own).at([degrees])
+    phi, theta = math.radians(degrees), math.radians(state.theta[0])
+    pin = 0.1 * math.cos(phi), 0.1 * math.sin(phi)
+    end = rocker * math.cos(theta), rocker * math.sin(theta)
+    along = (frame + end[0] - pin[0]) / coupler, (end[1] - pin[1]) / coupler
+    moment = state.F_coupler[0] * (end[0] * along[1] - end[1] * along[0])
+    assert moment == pytest.approx(-state.M_out[0], rel=1e-12)

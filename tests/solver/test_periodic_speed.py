@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -15,13 +16,13 @@ from scipy.integrate import solve_ivp
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import Masses
+from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.machine.turning import Flywheel, Load
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineSpeed
-from kurbel.solver.radau import rule
+from kurbel.solver.radau import Unsettled, rule
 from kurbel.solver.speed import SpeedDependentLoad
 from machines import STEAM_CARD
 from turning_machines import of_points
@@ -37,9 +38,17 @@ CYLINDER = Cylinder(
 )
 
 
-def steam(inertia: float, load: Load | None, *more: Cylinder, rpm: float = 50, **machine: Any) -> MachineSpeed:
-    cylinders = tuple(replace(c, name=f"cylinder {i}") for i, c in enumerate((CYLINDER, *more), 1))
-    return Case(Machine(cylinders, speed=rpm / 60, flywheel=Flywheel(inertia), load=load, **machine)).flywheel
+def steam(
+    inertia: float | None,
+    load: Load | None,
+    *more: Cylinder,
+    rpm: float = 50,
+    delta: float | None = None,
+    cylinder: Cylinder = CYLINDER,
+    **machine: Any,
+) -> MachineSpeed:
+    cylinders = tuple(replace(c, name=f"cylinder {i}") for i, c in enumerate((cylinder, *more), 1))
+    return Case(Machine(cylinders, speed=rpm / 60, flywheel=Flywheel(inertia, delta), load=load, **machine)).flywheel
 
 
 # a fan, M_load = M_m (ω/ω_n)², is linear in the energy: E′ = M(φ) − a E with a = M_m/E_n has a closed solution
@@ -226,3 +235,119 @@ def test_radau_rule_integrates_polynomials() -> None:
     for k in range(2 * len(nodes) - 1):
         assert matrix[-1] @ nodes**k == pytest.approx(1 / (k + 1), abs=1e-15)
     assert nodes[-1] == 1
+
+
+@pytest.mark.parametrize(("power", "inertia"), [(-2.0, 800.0), (-1.5, 800.0), (1000.0, 300.0), (3000.0, 3000.0)])
+def test_the_speed_line_does_not_hang_on_where_the_angle_begins(power: float, inertia: float) -> None:
+    lines = [
+        steam(inertia, Load(power=power), cylinder=replace(CYLINDER, masses=None, crank_position=position))
+        for position in (0.0, 45.0, 90.0, 200.3, 315.0)
+    ]
+    deltas = [line.delta for line in lines]
+    assert deltas == pytest.approx([deltas[0]] * 5, rel=1e-9)
+    own = [line.speed.omega(np.array([0.0, 100.0]) + line.machine.cylinders[0].crank_position) for line in lines]
+    for omega in own:
+        assert omega == pytest.approx(own[0], rel=1e-10)
+
+
+@pytest.mark.parametrize("inertia", [10.0, 60.0, 300.0, 800.0])
+def test_under_a_load_as_1_over_omega_the_time_of_a_turn_is_the_nominal_one(inertia: float) -> None:
+    """∮ M_load dφ = M_m ω_n ∮ dφ/ω must be the work of the effort, 2π M_m, however unstable that is."""
+    machine = steam(inertia, Load(power=-1.0), cylinder=replace(CYLINDER, masses=None))
+    assert machine.omega_mean == pytest.approx(machine.omega, rel=1e-12)
+    assert machine.multiplier > 1e3
+
+
+def test_an_unstable_line_is_where_marching_backward_ends() -> None:
+    """Forward a disturbance grows 1e20 times in a turn; backward scipy comes to the periodic state from anywhere."""
+    machine = steam(300.0, Load(power=-2.0), cylinder=replace(CYLINDER, masses=None))
+
+    def slope(phi: float, energy: Any, low: float, high: float) -> Any:
+        angle = np.array([min(max(math.degrees(phi), low), high)])
+        effort = machine.effort.torque(angle, np.array([(low + high) / 2])).value
+        return effort - machine.M_mean * 150.0 * machine.omega**2 / energy
+
+    energy = np.array([150.0 * 25.0])
+    for low, high in list(pairwise(machine.excess.grid.breaks))[::-1]:
+        span = (math.radians(high), math.radians(low))
+        march = solve_ivp(slope, span, energy, method="LSODA", args=(low, high), rtol=1e-9, atol=1e-6)
+        energy = march.y[:, -1]
+    assert math.sqrt(energy[0] / 150.0) == pytest.approx(machine.speed.omega(np.array([0.0]))[0], rel=1e-7)
+
+
+def test_the_multiplier_is_exact_far_beyond_what_a_stability_function_can() -> None:
+    """A fan: μ = exp(−∮ k M_m/(J ω_n²) dφ), whatever ω does; below the smallest float it is 0."""
+    for inertia, exponent in ((1.0, None), (30.0, None), (0.01, 0.0)):
+        machine = of_points(rectangle_above_zero(), RPM, inertia=inertia, load=Load(power=2.0))
+        expected = math.exp(-2 * 2 * math.pi * machine.M_mean / (inertia * OMEGA**2))
+        assert machine.multiplier == pytest.approx(expected, rel=1e-11)
+        assert exponent is None or machine.multiplier == exponent
+
+
+def rectangle_above_zero() -> list[tuple[float, float]]:
+    return [(0, 500), (180, 500), (180, 300), (360, 300)]
+
+
+def test_failing_to_settle_is_not_called_a_standstill(monkeypatch: pytest.MonkeyPatch) -> None:
+    machine = steam(800.0, Load(power=2.0))
+
+    def never(*_: Any) -> Any:
+        raise Unsettled(1000.0)
+
+    monkeypatch.setattr("kurbel.solver.speed.periodic", never)
+    with pytest.raises(NoSolutionError, match="no speed line is found that repeats under this load; from about J = 8"):
+        _ = machine.speed
+
+
+def test_the_turning_part_of_the_rod_counts_as_inertia() -> None:
+    """(1 − share) m R²; as much as an exact rod of the same two masses without a couple of its own."""
+    share, exact = (
+        replace(CYLINDER, masses=Masses(826.0, rod))
+        for rod in (
+            ConnectingRod(300.0, share=0.4),
+            ConnectingRod(300.0, center_of_gravity=0.6 * 2.0, inertia=300.0 * 1.2 * 0.8),
+        )
+    )
+    one, other = (steam(500.0, None, cylinder=cylinder) for cylinder in (share, exact))
+    angles = np.array([0.0, 50.0, 90.0, 222.0])
+    plain = steam(500.0, None, cylinder=replace(CYLINDER, masses=Masses(826.0 + 0.4 * 300.0)))
+    more = one.speed.inertia.at(angles, angles).value - plain.speed.inertia.at(angles, angles).value
+    assert more == pytest.approx(0.6 * 300.0 * 0.4**2, rel=1e-11)
+    assert other.delta == pytest.approx(one.delta, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("load", "efficiency"), [(None, 1.0), (Load(slip=0.02), 1.0), (Load(slip=0.02), 0.85), (None, 0.7)]
+)
+def test_the_exact_flywheel_meets_the_wish(load: Load | None, efficiency: float) -> None:
+    machine = steam(None, load, delta=0.03, efficiency=efficiency)
+    assert machine.J == machine.J_needed == pytest.approx(machine.dE / (0.03 * machine.omega**2), rel=1e-13)
+    assert machine.misses_the_wish
+    assert steam(machine.J_exact, load, efficiency=efficiency).delta == pytest.approx(0.03, rel=1e-9)
+
+
+def test_the_flywheel_of_the_books_is_exact_enough_where_it_is() -> None:
+    machine = of_points(POINTS, RPM, delta=1e-4)
+    assert not machine.misses_the_wish
+    assert machine.J_exact is None
+
+
+def test_a_uniform_effort_needs_no_flywheel() -> None:
+    machine = of_points([(0, 100), (360, 100)], RPM, delta=0.02)
+    assert (machine.J, machine.delta, machine.omega_max.value) == (0, 0, OMEGA)
+    with pytest.raises(UsageError, match="inertia"):
+        _ = of_points([(0, 100), (360, 100)], RPM, inertia=0.0).speed
+
+
+@pytest.mark.parametrize(("rpm", "size"), [(1e160, "large"), (1e170, "large"), (1e-150, "small")])
+def test_speeds_beyond_all_machines_are_refused(rpm: float, size: str) -> None:
+    with pytest.raises(UsageError, match=f"too {size} to compute with"):
+        _ = steam(500.0, None, rpm=rpm)
+
+
+def test_nothing_is_said_on_standard_error_by_numpy() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(NoSolutionError):
+            _ = steam(60, Load(power=2.0)).speed
+        assert steam(300.0, Load(power=1000.0)).delta > 0

@@ -297,6 +297,81 @@ def test_gaps_are_told(tmp_path: Path) -> None:
     assert note == "no samples from 100 to 120 deg; a straight line joins them"
 
 
+def rows(*angles: float) -> str:
+    return "".join(f"{angle:.10g},{2 + (angle > 180):g}\n" for angle in angles)
+
+
+@pytest.mark.parametrize(("begin", "end"), [(100, 126), (40, 140), (10, 330), (2, 200)])
+@pytest.mark.parametrize("step", [0.5, 2])
+def test_large_holes_are_refused(tmp_path: Path, begin: int, end: int, step: float) -> None:
+    """Also those over more than half of the cycle, and whatever the largest step elsewhere is."""
+    angles = [a for a in np.arange(0, 360 + step, step).tolist() if not begin < a < end]
+    with pytest.raises(MachineFileError) as caught:
+        machine_of(tmp_path, rows(*angles))
+    assert f"no samples from {begin} to {end} deg" in caught.value.faults[0].message
+
+
+def test_a_hole_does_not_widen_what_may_be_missing_at_the_end(tmp_path: Path) -> None:
+    angles = [a for a in np.arange(0, 344).tolist() if not 100 < a < 118]
+    with pytest.raises(MachineFileError, match="no samples from 343 to 360 deg"):
+        machine_of(tmp_path, rows(*angles))
+
+
+def test_small_holes_are_told_and_a_denser_stretch_is_none(tmp_path: Path) -> None:
+    dense = np.unique(np.concatenate((np.arange(0, 361), np.arange(0, 600) / 10)))
+    assert notes_of(machine_of(tmp_path, rows(*dense.tolist()))) == ()
+    holed = [a for a in dense.tolist() if not 200 < a < 204]
+    assert notes_of(machine_of(tmp_path, rows(*holed))) == (
+        "no samples from 200 to 204 deg; a straight line joins them",
+    )
+
+
+def notes_of(machine: Machine) -> tuple[str, ...]:
+    return machine.cylinders[0].pistons[0].indicator.head_end.notes  # type: ignore
+
+
+def test_an_angle_that_begins_anew_is_put_in_order(tmp_path: Path) -> None:
+    turned = [*range(180, 360, 5), *range(0, 180, 5)]
+    machine = machine_of(tmp_path, "".join(f"{a},{1 + a / 100}\n" for a in turned))
+    angles, pressures = columns_of(machine)
+    assert angles == [*range(0, 360, 5), 360]
+    assert pressures[:-1] == pytest.approx([BAR * (1 + a / 100) for a in range(0, 360, 5)])
+    assert notes_of(machine)[0] == "the angle begins anew at 0 deg; the samples from there on come first"
+
+
+def test_faults_of_a_turned_trace_name_their_own_lines(tmp_path: Path) -> None:
+    turned = "".join(f"{a},2\n" for a in [*range(180, 360, 5), 0, 5, 5, 5, *range(10, 180, 5)])
+    with pytest.raises(MachineFileError, match="line 40: three points at 5 deg"):
+        machine_of(tmp_path, turned)
+
+
+@pytest.mark.parametrize("broken", ["\r", "\r\n", "\n"])
+def test_lines_are_counted_as_they_are_read(tmp_path: Path, broken: str) -> None:
+    text = broken.join(["# a form feed \x0c, and a separator \x1c \u2028", "0,1", "90,x", "360,1"])
+    with pytest.raises(MachineFileError, match="line 3: 'x' is no number"):
+        machine_of(tmp_path, text.encode())
+
+
+@pytest.mark.parametrize(
+    ("text", "more", "advice"),
+    [("0,x\n", "", "line 1: 'x' is no number; write 'skip_rows: 1'"), ("0 1\n1\n", ", delimiter: space", "line 2")],
+)
+def test_nothing_is_advised_that_is_already_set(tmp_path: Path, text: str, more: str, advice: str) -> None:
+    with pytest.raises(MachineFileError) as caught:
+        machine_of(tmp_path, text, more)
+    assert advice in caught.value.faults[0].message
+    assert "delimiter" not in caught.value.faults[0].message
+
+
+def test_a_pipe_is_no_file_of_samples(tmp_path: Path) -> None:
+    """Opening one would wait for ever."""
+    import os
+
+    os.mkfifo(tmp_path / "p.csv")
+    with pytest.raises(MachineFileError, match="is a device or a pipe"):
+        loads(f"{HEAD}indicator: {{head_end: {{trace: {{unit: bar, file: {tmp_path / 'p.csv'}}}}}}}")
+
+
 def test_samples_given_twice(tmp_path: Path) -> None:
     machine = machine_of(tmp_path, "0,1\n120,2\n120,2\n360,1\n")
     assert columns_of(machine)[0] == [0, 120, 360]
@@ -346,6 +421,37 @@ def test_motored_peak_away_from_the_dead_centre(late: float, text: str) -> None:
     assert "check angle_zero" in warning
 
 
+@pytest.mark.parametrize("late", [-5.0, -2.0, 0.5, 1.0, 2.0, 5.0])
+def test_motored_traces_are_known_by_their_shape(late: float) -> None:
+    """Too late, a motored trace does positive work; its two sides are alike all the same."""
+    (warning,) = warned(finely_motored(late))
+    assert warning.startswith("piston, head end: no combustion shows, and the peak stands")
+    assert f"{abs(late):.3g} deg {'after' if late > 0 else 'before'}" in warning
+
+
+@pytest.mark.parametrize("late", [-1.0, -0.5, 0.0])
+def test_heat_loss_puts_a_motored_peak_before_the_dead_centre(late: float) -> None:
+    assert warned(finely_motored(late)) == []
+
+
+@pytest.mark.parametrize("late", [2.0, 5.0, 8.0, 15.0])
+def test_late_combustion_is_not_taken_for_a_motored_engine(late: float) -> None:
+    """Burning evenly over 40° from 10° before the dead centre, or later: (p V^n)′ ∝ the heat set free."""
+    angles = np.arange(0.0, 360.1, 0.1)
+    phi = (angles + 180) % 360 - 180
+    volume = 0.12 + (1 - np.cos(np.radians(angles))) / 2
+    burnt = np.clip((phi + 25 - late) / 40, 0, 1)
+    heat = 1 + 1.5 * burnt**2 * (3 - 2 * burnt)
+    pressures = (1.12 / volume) ** 1.33 * heat - 0.9
+    assert not [w for w in warned(list(zip(angles.tolist(), pressures.tolist()))) if "motored" in w]
+
+
+def finely_motored(late: float) -> list[tuple[float, float]]:
+    angles = np.arange(0.0, 360.05, 0.1)
+    volume = 0.1 + (1 - np.cos(np.radians(angles - late))) / 2
+    return list(zip(angles.tolist(), ((1.1 / volume) ** 1.35 - 0.4).tolist()))
+
+
 def test_jump_between_the_ends() -> None:
     (warning,) = warned([(0.0, 5.0), (90.0, 9.0), (180.0, 2.0), (360.0, 4.0)])
     assert warning == "piston, head end: the pressure jumps by 1 bar where the cycle closes"
@@ -374,3 +480,17 @@ def test_indicated_below_brake_power(tmp_path: Path) -> None:
     assert "is below the brake power, 500000 W" in warning
     notes = [entry.text for section in checked(machine, ("forces",)).sections for entry in section.entries]
     assert warning in notes
+
+
+def test_samples_too_far_apart_are_told() -> None:
+    from kurbel.report.forces import forces_report
+
+    def told(points: list[tuple[float, float]]) -> bool:
+        piston = Piston(0.3, indicator=Indicator(Trace.from_keys((BAR, 1), points=points)))
+        (part,) = forces_report(Case(Machine((Cylinder(CRANK, pistons=(piston,)),))), [0.0], None, "si").parts
+        return any("the samples stand too far apart" in warning for warning in part.warnings)
+
+    coarse = [(a, float(smooth(a))) for a in range(0, 361, 60)]
+    fine = [(a, float(smooth(a))) for a in range(0, 361, 5)]
+    assert told(coarse)
+    assert not told(fine)

@@ -60,14 +60,14 @@ class SpeedProblem:
         self.mean = mean
 
     def _moving(self, phi: Array) -> tuple[Array, Array]:
-        """Return Σ m x′² and Σ m x′ x″ in kg m²."""
+        """Return Σ (m x′² + (1 − s) m_r R²), with the rod's share s, and Σ m x′ x″ in kg m²."""
         square, product = np.zeros_like(phi), np.zeros_like(phi)
         for cylinder in self._machine.cylinders:
             masses = cylinder.masses
             rod = masses.connecting_rod if masses else None
             mass = masses.parts + (rod.mass * rod.share if rod else 0.0) if masses else 0.0
             at = moved(cylinder.mechanism, phi - math.radians(cylinder.crank_position))
-            square += mass * at.slope**2
+            square += mass * at.slope**2 + (rod.mass * (1 - rod.share) * cylinder.mechanism.crank**2 if rod else 0.0)
             product += mass * at.slope * at.curvature
         return square, product
 

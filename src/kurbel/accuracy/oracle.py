@@ -171,6 +171,7 @@ class CylinderOracle:
         self.omega = None if machine.speed is None else 2 * pi() * Decimal(machine.speed)
         self.chambers = tuple(_chambers(machine, cylinder))
         self.mass = _mass(cylinder) if self.omega is not None else Decimal(0)
+        self.turning_inertia = _turning_inertia(cylinder)
         self._has_guide = mechanism.name != "scotch-yoke"
         self.weight, self.guide_weight = _weights(cylinder)
         friction = cylinder.friction
@@ -289,6 +290,12 @@ def _mass(cylinder: Cylinder) -> Decimal:
         return Decimal(0)
     rod = masses.connecting_rod
     return Decimal(masses.parts) + (Decimal(rod.mass) * Decimal(rod.share) if rod else 0)
+
+
+def _turning_inertia(cylinder: Cylinder) -> Decimal:
+    """Return (1 − s) m_r R² in kg m²: what of the connecting rod turns with the crank pin."""
+    rod = cylinder.masses.connecting_rod if cylinder.masses else None
+    return Decimal(rod.mass) * (1 - Decimal(rod.share)) * Decimal(cylinder.mechanism.crank) ** 2 if rod else Decimal(0)
 
 
 def _weights(cylinder: Cylinder) -> tuple[Decimal, Decimal]:

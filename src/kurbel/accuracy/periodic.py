@@ -140,9 +140,12 @@ class SpeedOracle:
         return _Law(self._mean, half=Decimal(load.power or 0) / 2)
 
     def inertia(self, degrees: Decimal) -> Decimal:
-        """Return J(φ) = J + Σ m x′² in kg m²."""
+        """Return J(φ) = J + Σ (m x′² + (1 − s) m_r R²) in kg m²: what of a rod is no share s turns with the pin."""
         assert self.machine.flywheel is not None
-        moving = (one.mass * one.motion.at(degrees - position).slope ** 2 for one, position in self.effort.cylinders)
+        moving = (
+            one.mass * one.motion.at(degrees - position).slope ** 2 + one.turning_inertia
+            for one, position in self.effort.cylinders
+        )
         return Decimal(self.machine.flywheel.inertia or 0.0) + sum(moving, Decimal(0))
 
     def turning(self, degrees: Decimal, within: Decimal) -> Decimal:

@@ -71,14 +71,14 @@ class Cylinder:
             absent="slider-crank",
         ),
         "inclination": Key(
-            Physical("angle", least=-90, most=90),
-            "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft",
+            Physical("angle", least=-180, most=180),
+            "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft, beyond it leaning over",
             absent="weight left out",
         ),
         "piston": Key(Inline(Record("kurbel.machine.piston:Piston")), "The cylinder's own piston"),
         "tandem": Key(
             Listing(Record("kurbel.machine.piston:Piston")),
-            "Further pistons on the same rod, such as a directly driven pump",
+            "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
             absent="none",
         ),
         "masses": Key(Record("kurbel.machine.masses:Masses"), "Masses of the moving parts", absent="no inertia"),
@@ -96,6 +96,9 @@ class Cylinder:
             "Moment against the motion of a mechanism whose output only swings or turns",
             absent="none",
         ),
+        "cycle": Key(
+            Choice(tuple(CYCLES)), "Working cycle of this cylinder, among others", absent="that of the machine"
+        ),
     }
 
     @classmethod
@@ -111,12 +114,13 @@ class Cylinder:
         crank_position: float = 0.0,
         ram_force: RamForce | None = None,
         moment: Moment | None = None,
+        cycle: str | None = None,
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe."""
         if tandem and piston is None:
             raise RuleError(Fault(("tandem",), "a tandem piston stands beside the cylinder's own one; give its 'bore'"))
         pistons = () if piston is None else (piston, *tandem)
-        return cls(mechanism, name, pistons, masses, friction, inclination, crank_position, ram_force, moment)
+        return cls(mechanism, name, pistons, masses, friction, inclination, crank_position, ram_force, moment, cycle)
 
     def __post_init__(self) -> None:
         rings = self.friction and self.friction.rings
@@ -250,13 +254,18 @@ class Machine:
             Fault(("cylinders", index, *path), message)
             for number, piston in enumerate(cylinder.pistons)
             for path, message in piston.indicator_faults(
-                self.cycle_of(cylinder), self.ambient, () if number == 0 else ("tandem", number - 1)
+                self.cycle_of_piston(cylinder, number), self.ambient, () if number == 0 else ("tandem", number - 1)
             )
         ]
 
     def cycle_of(self, cylinder: Cylinder) -> str:
         """Return the working cycle of a cylinder: its own, or that of the machine."""
         return cylinder.cycle or self.cycle
+
+    def cycle_of_piston(self, cylinder: Cylinder, number: int) -> str:
+        """Return the working cycle of a piston of a cylinder, counted from its own one as 0."""
+        cycle = self.cycle_of(cylinder)
+        return cylinder.pistons[number].cycle_beside(cycle) if number else cycle
 
     @property
     def _common_cycle(self) -> str:

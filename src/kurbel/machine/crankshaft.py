@@ -11,7 +11,12 @@ from kurbel.keys import Key, Keys, Physical
 from kurbel.units import show
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from kurbel.machine import Machine
+
+_ROUNDED = 1.05
+"""What lengths may contradict one another by: printed examples round them."""
 
 
 def _length(text: str, symbol: str, required: bool = True, absent: str = "") -> Key:
@@ -76,7 +81,7 @@ class Crankshaft:
         return cls(flywheel_mass=flywheel_mass or 0.0, flywheel_position=flywheel_position or 0.0, **keys)
 
     def __post_init__(self) -> None:
-        faults = [*self._web_faults(), *self._place_faults()]
+        faults = [*self._web_faults(), *self._place_faults(), *self._length_faults()]
         if faults:
             raise RuleError(*faults)
 
@@ -127,6 +132,31 @@ class Crankshaft:
                 )
             )
         return faults
+
+    def _length_faults(self) -> Iterator[Fault]:
+        """Yield what is wrong with the lengths of pin and journals, beside faults of the places themselves."""
+        gap = 2 * self.web_distance - self.web_thickness
+        if self.pin_length > _ROUNDED * gap > 0:
+            yield Fault(
+                ("pin_length",),
+                f"{show(self.pin_length, 'length')} does not fit between the webs, which leave {show(gap, 'length')}: "
+                "twice web_distance less web_thickness",
+            )
+        room, what = min(self._rooms)
+        if self.journal_length and self.journal_length / 2 > _ROUNDED * room > 0:
+            yield Fault(
+                ("journal_length",),
+                f"half of {show(self.journal_length, 'length')} does not fit between {what}, which leave "
+                f"{show(room, 'length')}; 'a', 'b' and 'flywheel_position' go to the middle of a bearing",
+            )
+
+    @property
+    def _rooms(self) -> Iterator[tuple[float, str]]:
+        """Lengths in m beside the middles of the bearings, with what stands at both ends."""
+        yield self.a - self._web_end, "the middle of bearing A and web A"
+        yield self.b - self._web_end, "the middle of bearing B and web B"
+        if self.flywheel_mass and self.flywheel_position:
+            yield abs(self.flywheel_position), "the middles of bearing B and flywheel"
 
     @property
     def _web_end(self) -> float:

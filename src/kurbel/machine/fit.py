@@ -6,10 +6,14 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.errors import Fault
+from kurbel.units import show
 
 if TYPE_CHECKING:
     from kurbel.machine import Cylinder
+    from kurbel.machine.masses import ConnectingRod
+    from kurbel.mechanisms import Mechanism
 
 _SLIDING = ("inclination", "masses", "friction", "ram_force")
 """Keys of a cylinder that only something that slides can have, besides those of its pistons."""
@@ -20,6 +24,13 @@ def misfits(cylinder: Cylinder) -> Iterator[Fault]:
     yield from _of_output(cylinder)
     if cylinder.mechanism.slides:
         yield from _of_rod(cylinder)
+
+
+def may_lock(cylinder: Cylinder) -> bool:
+    """Return whether the friction of the crosshead is great enough to lock it where it is driven: f tan ψ ≥ 1."""
+    coefficient = cylinder.friction.crosshead if cylinder.friction else None
+    widest = [rod for centre in (90.0, 270.0) if (rod := cylinder.mechanism.rod_angle(CrankAngle.of(centre)))]
+    return bool(coefficient) and any(coefficient * abs(sin_psi) >= cos_psi for sin_psi, cos_psi in widest)
 
 
 def _of_output(cylinder: Cylinder) -> Iterator[Fault]:
@@ -53,11 +64,18 @@ def _of_rod(cylinder: Cylinder) -> Iterator[Fault]:
     if masses is not None and masses.connecting_rod is not None and not mechanism.has_rod:
         message = f"a {mechanism.name} has no connecting rod; give what goes to and fro as 'other'"
         yield Fault(("masses", "connecting_rod"), message)
-    elif (
-        masses is not None
-        and masses.connecting_rod
-        and masses.connecting_rod.exact
-        and math.isinf(getattr(mechanism, "rod", math.inf))
-    ):
-        message = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+    elif masses is not None and masses.connecting_rod and (message := _off_rod(masses.connecting_rod, mechanism)):
         yield Fault(("masses", "connecting_rod", "center_of_gravity"), message)
+
+
+def _off_rod(rod: ConnectingRod, mechanism: Mechanism) -> str:
+    """Return what is wrong with the place of the centre of gravity of a rod, or an empty text."""
+    if rod.center_of_gravity is None:
+        return ""
+    if math.isinf(mechanism.rod_length):
+        return "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+    # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
+    if rod.center_of_gravity > mechanism.rod_length:
+        place, length = show(rod.center_of_gravity, "length"), show(mechanism.rod_length, "length")
+        return f"{place} from the crosshead pin is beyond the crank pin: the rod is {length} long"
+    return ""

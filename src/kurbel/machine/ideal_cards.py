@@ -12,19 +12,21 @@ from typing import ClassVar, Union
 
 from kurbel.errors import Fault, RuleError
 from kurbel.keys import Key, Keys, Number, Physical
+from kurbel.machine.indicator import CLEARANCE
 from kurbel.units import show
 
-_CLEARANCE = Key(Number(above=0), "Clearance volume over stroke volume", "c", required=True)
+_CLEARANCE = Key(CLEARANCE, "Clearance volume over stroke volume", "c", required=True)
 AIR_EXPONENT = 1.4
 """Exponent of the adiabatic line of air."""
 
 
 def _pressure(text: str, required: bool = True, absent: str = "") -> Key:
-    return Key(Physical("pressure"), text, required=required, absent=absent)
+    # beyond any machine; powers of the volume ratio, up to 1e60, cannot make it overflow
+    return Key(Physical("pressure", most=1e15), text, required=required, absent=absent)
 
 
 def _exponent(text: str, absent: str) -> Key:
-    return Key(Number(above=0), text, "n", absent=absent)
+    return Key(Number(above=0, most=10), text, "n", absent=absent)
 
 
 def _order_fault(key: str, high: float, low_name: str, low: float) -> list[Fault]:
@@ -76,6 +78,7 @@ class Steam:
     compression: float = 0.0
     exponent: float = 1.0
 
+    cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
     KEYS: ClassVar[Keys] = {
         "admission": _pressure("Pressure while steam is admitted"),
         "exhaust": _pressure("Pressure while steam leaves"),
@@ -110,6 +113,7 @@ class Compressor:
     clearance: float
     exponent: float = AIR_EXPONENT
 
+    cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
     KEYS: ClassVar[Keys] = {
         "suction": _pressure("Pressure while the chamber fills"),
         "delivery": _pressure("Pressure while the chamber empties"),
@@ -136,9 +140,9 @@ class Compressor:
 _ENGINE_KEYS: Keys = {
     "intake": _pressure("Pressure in the cylinder when compression begins, and while it fills"),
     "exhaust": _pressure("Pressure while the burnt gas leaves, in a four-stroke cycle", False, "that of the intake"),
-    "compression_ratio": Key(Number(above=1), "Largest over smallest volume; or give `clearance`", "ε"),
+    "compression_ratio": Key(Number(least=1.00001, most=1e6), "Largest over smallest volume; or give `clearance`", "ε"),
     "clearance": Key(
-        Number(above=0),
+        CLEARANCE,
         "Clearance volume over stroke volume; or give `compression_ratio`",
         "c",
         instead="compression_ratio",
@@ -181,6 +185,11 @@ class _Engine:
     peak: float | None
     clearance: float
     exponent: float
+
+    @property
+    def cycles(self) -> tuple[str, ...]:
+        """Both; with an exhaust stroke the four-stroke cycle alone."""
+        return ("two-stroke", "four-stroke") if self.exhaust is None else ("four-stroke",)
 
     @property
     def leaving(self) -> float:

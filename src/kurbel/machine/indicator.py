@@ -10,10 +10,17 @@ from kurbel.keys import Choice, Key, Keyed, Keys, Number, OneOf, Physical, Point
 from kurbel.units import Factor, show
 
 Point = tuple[float, float]
+CLEARANCE = Number(least=1e-6, most=1e5)
+"""A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
 
 
 class Chamber(Protocol):
     """What stands in one end of a cylinder: a card, an ideal card or a trace."""
+
+    @property
+    def cycles(self) -> tuple[str, ...]:
+        """The working cycles that it can be part of."""
+        ...
 
     def fault_in(self, cycle: str, lift: float) -> str:
         """Return what does not fit the cycle of the machine, or pressures that `lift` makes absolute (Pa); or ''."""
@@ -56,7 +63,7 @@ class Card:
         "intake": Key(Points("stroke fraction", "pressure"), "Suction line of a four-stroke cycle"),
         "exhaust": Key(Points("stroke fraction", "pressure"), "Exhaust line of a four-stroke cycle"),
         "interpolate": Key(Choice(("linear", "polytropic")), "How points are joined", absent="linear"),
-        "clearance": Key(Number(above=0), "Clearance volume over stroke volume, for `polytropic`", absent="not known"),
+        "clearance": Key(CLEARANCE, "Clearance volume over stroke volume, for `polytropic`", absent="not known"),
     }
 
     @classmethod
@@ -94,6 +101,11 @@ class Card:
     def faults_of_key(name: str, value: object) -> list[Fault]:
         """Return what is wrong with the line under one key, whatever the others say."""
         return _line_faults(name, value) if isinstance(value, list) else []
+
+    @property
+    def cycles(self) -> tuple[str, ...]:
+        """The one cycle that has so many lines."""
+        return tuple(cycle for cycle, lines in STROKES.items() if len(lines) == len(self.lines))
 
     def fault_in(self, cycle: str, lift: float) -> str:
         """Return what does not fit the cycle of the machine, or what no polytropic line can be drawn through; or ''."""

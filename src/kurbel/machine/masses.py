@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Form, Key, Keys, Listing, Number, OneOf, Physical, Record
+from kurbel.keys import Form, Key, Keys, Listing, Number, OneOf, Physical, Record, check_bounds
 
 _ONE_OR_MORE: Form = OneOf((Physical("mass", least=0), Listing(Physical("mass", least=0))))
 
@@ -28,7 +28,9 @@ class ConnectingRod:
     KEYS: ClassVar[Keys] = {
         "mass": Key(Physical("mass", least=0), "Mass of the rod", required=True),
         "share": Key(Number(least=0, most=1), "Reciprocating share of the mass", absent="1/2"),
-        "center_of_gravity": Key(Physical("length"), "Distance of its centre of gravity from the crosshead pin", "a"),
+        "center_of_gravity": Key(
+            Physical("length", least=0), "Distance of its centre of gravity from the crosshead pin", "a"
+        ),
         "inertia": Key(Physical("inertia", least=0), "Moment of inertia about the centre of gravity", "I_r"),
     }
 
@@ -48,6 +50,8 @@ class ConnectingRod:
         return cls(mass, 0.5 if share is None else share, center_of_gravity, inertia)
 
     def __post_init__(self) -> None:
+        check_bounds(self.KEYS, mass=self.mass, share=self.share, inertia=self.inertia)
+        check_bounds(self.KEYS, center_of_gravity=self.center_of_gravity)
         if (self.center_of_gravity is None) != (self.inertia is None):
             missing, given = ("inertia", "center_of_gravity")
             if self.center_of_gravity is None:
@@ -68,8 +72,9 @@ class ConnectingRod:
         )
 
     def at_pin(self, length: float) -> float:
-        """Mass m a/L in kg that turns with the crank pin; for an exact rod of length L in m."""
-        assert self.center_of_gravity is not None
+        """Mass in kg that turns with the crank pin: what the share leaves, or m a/L with the length L in m."""
+        if self.center_of_gravity is None:
+            return self.mass * (1 - self.share)
         return self.mass * self.center_of_gravity / length
 
     def excess_inertia(self, length: float) -> float:

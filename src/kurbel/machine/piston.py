@@ -53,6 +53,16 @@ class Piston:
         """Effective area at the crank end in m²."""
         return math.pi / 4 * (self.bore - self.crank_end_rod) * (self.bore + self.crank_end_rod)
 
+    def cycle_beside(self, cycle: str) -> str:
+        """Return the working cycle of a tandem piston: that of the cylinder, or the two-stroke one of its cards.
+
+        A pump or a compressor works in two strokes, whatever drives it: its cards then run twice in 720°.
+        """
+        chambers = (self.indicator.head_end, self.indicator.crank_end) if self.indicator else ()
+        given = [chamber.cycles for chamber in chambers if chamber is not None]
+        fits = all(cycle in each for each in given)
+        return cycle if fits or not all("two-stroke" in each for each in given) else "two-stroke"
+
     def indicator_faults(self, cycle: str, ambient: float, path: Path) -> list[Fault]:
         """Return what of the indicator does not fit the cycle of the machine or the ambient pressure in Pa."""
         if self.indicator is None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Key, Keys, Physical
+from kurbel.keys import Key, Keys, Physical, check_bounds
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,6 +20,9 @@ class RamForce:
         "work": Key(Physical("force", least=0), "Force against the motion on the working stroke", "P_a", absent="0"),
         "return": Key(Physical("force", least=0), "Force against the motion on the return stroke", "P_r", absent="0"),
     }
+
+    def __post_init__(self) -> None:
+        check_bounds(self.KEYS, **{"work": self.work, "return": self.back})
 
     @classmethod
     def from_keys(cls, work: float | None = None, **others: float) -> RamForce:

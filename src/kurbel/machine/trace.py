@@ -79,6 +79,11 @@ class Trace:
         """What was tidied up in the samples."""
         return self.samples.notes
 
+    @property
+    def cycles(self) -> tuple[str, ...]:
+        """The one cycle that is as long."""
+        return tuple(cycle for cycle, turns in CYCLES.items() if 360.0 * turns == self.samples.period)
+
     def fault_in(self, cycle: str, lift: float) -> str:
         """Return what does not fit the cycle of the machine, or an empty text."""
         whole = 360.0 * CYCLES[cycle]

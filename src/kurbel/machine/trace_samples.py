@@ -89,7 +89,8 @@ def _text(file: str) -> str:
             raise RuleError(Fault(("file",), f"is larger than {LARGEST_FILE // 2**20} MiB; thin out the samples"))
         with open(file, "rb") as stream:
             # headings may be in any encoding, figures are ASCII
-            return stream.read().decode("utf-8-sig", "replace")
+            text = stream.read().decode("utf-8-sig", "replace")
+            return text.replace("\r\n", "\n").replace("\r", "\n")
     except OSError as error:
         raise RuleError(Fault(("file",), f"cannot be read: {error.strerror or error}")) from None
 
@@ -100,13 +101,13 @@ def _figures(line: str) -> str:
 
 
 def _line_numbers(text: str, columns: Columns) -> list[int]:
-    lines = text.splitlines()[columns.skip_rows :]
+    lines = text.split("\n")[columns.skip_rows :]
     return [columns.skip_rows + i for i, line in enumerate(lines, 1) if _figures(line)]
 
 
 def _first_fault(text: str, columns: Columns) -> Fault:
     """Return the fault of the first line that is no row of figures."""
-    lines = text.splitlines()
+    lines = text.split("\n")
     for number in _line_numbers(text, columns):
         cells = _figures(lines[number - 1]).split(columns.between)
         last = max(columns.angle, columns.pressure)
@@ -134,9 +135,10 @@ def _hint(lines: list[str], number: int, columns: Columns, cell: str = "") -> st
     line = lines[number - 1]
     if _is_number(cell.replace(",", ".")) and columns.decimal == ".":
         return "; write 'decimal: comma'"
-    joined = [word for word, sign in (("semicolon", ";"), ("tab", "\t"), ("comma", ",")) if sign in (cell or line)]
-    if any(c.isdigit() for c in line) and (joined or not cell):
-        return f"; write 'delimiter: {joined[0] if joined else 'space'}' if that stands between its columns"
+    signs = (("semicolon", ";"), ("tab", "\t"), ("comma", ","), ("space", " "))
+    joined = [word for word, sign in signs if sign in (cell or line).strip() and sign != columns.delimiter]
+    if any(c.isdigit() for c in line) and joined:
+        return f"; write 'delimiter: {joined[0]}' if that stands between its columns"
     return f"; write 'skip_rows: {number}' if it is a heading" if number == columns.skip_rows + 1 else ""
 
 
@@ -155,17 +157,34 @@ def whole_cycle(angles: Array, pressures: Array, named: Callable[[int], Fault]) 
     """
     if len(angles) > MOST_SAMPLES:
         raise RuleError(_say(named(0), f"{len(angles)} samples; more than {MOST_SAMPLES} are not taken, thin them out"))
-    fault = _number_fault(angles, pressures, named) or _order_fault(angles, named)
+    first = _wrap(angles)
+    angles, pressures = np.roll(angles, -first), np.roll(pressures, -first)
+    place = _rolled(named, first, len(angles))
+    fault = _number_fault(angles, pressures, place) or _order_fault(angles, place)
     if fault:
         raise RuleError(fault)
-    angles, pressures, notes = _without_twins(angles, pressures)
+    turned = (f"the angle begins anew at {angles[0]:.10g} deg; the samples from there on come first",) if first else ()
+    angles, pressures, twins = _without_twins(angles, pressures)
+    notes = (*turned, *twins)
     span = float(angles[-1] - angles[0])
     period = next((p for p in PERIODS if span <= p * (1 + 1e-9)), 0.0)
     if not period:
         raise RuleError(
-            _say(named(len(angles) - 1), f"the samples run over {span:g} deg; cut one cycle of 720 deg out")
+            _say(place(len(angles) - 1), f"the samples run over {span:g} deg; cut one cycle of 720 deg out")
         )
-    return _closed(angles, pressures, period, notes, named)
+    return _closed(angles, pressures, period, notes, place)
+
+
+def _wrap(angles: Array) -> int:
+    """Return the index of the sample at which the angle of one cycle begins anew, 0 where it does not."""
+    back = np.flatnonzero(np.diff(angles) < 0)
+    once = len(back) == 1 and angles[back[0]] - angles[back[0] + 1] > 180 and angles[-1] <= angles[0]
+    return int(back[0]) + 1 if once else 0
+
+
+def _rolled(named: Callable[[int], Fault], first: int, count: int) -> Callable[[int], Fault]:
+    """Return `named` for samples of which the one with index `first` has come to the front."""
+    return lambda index: named((index + first) % count)
 
 
 def _say(place: Fault, message: str) -> Fault:
@@ -209,25 +228,47 @@ def _closed(
     angles: Array, pressures: Array, period: float, notes: tuple[str, ...], named: Callable[[int], Fault]
 ) -> Samples:
     """Close the cycle with the first sample where only the last one is missing."""
-    steps = np.diff(angles)
     end = float(angles[0]) + period
     missing = end - float(angles[-1])
-    if missing > 1.5 * steps.max():
-        message = f"no samples from {angles[-1]:.10g} to {end:.10g} deg; a trace covers a whole cycle of 360 or 720 deg"
-        raise RuleError(_say(named(len(angles) - 1), message))
+    if missing > 1.5 * _usual_step(angles):
+        raise RuleError(_say(named(len(angles) - 1), _hole(float(angles[-1]), end)))
     if missing > 1e-9 * period:
         notes += (f"the closing sample at {end:.10g} deg is missing; that at {angles[0]:.10g} deg closes the cycle",)
         angles, pressures = np.append(angles, end), np.append(pressures, pressures[0])
     else:
         angles = np.append(angles[:-1], end)
-    return Samples(angles, pressures, period, (*notes, *_gap_notes(angles)))
+    _refuse_large_holes(angles, named)
+    return Samples(angles, pressures, period, (*notes, *_hole_notes(angles)))
 
 
-def _gap_notes(angles: Array) -> tuple[str, ...]:
-    """Say where samples are missing: steps far wider than the usual one."""
+def _hole(begin: float, end: float) -> str:
+    return f"no samples from {begin:.10g} to {end:.10g} deg; a trace covers a whole cycle of 360 or 720 deg"
+
+
+def _usual_step(angles: Array) -> float:
+    """Return the step in degrees such that no wider ones cover half of the angle: a denser stretch is no rule."""
+    steps = np.sort(np.diff(angles))
+    return float(steps[np.searchsorted(np.cumsum(steps), steps.sum() / 2)])
+
+
+_LARGE_HOLES = ((20.0, 10.0), (45.0, 3.0))
+"""(degrees, times the median step) beyond both of which no straight line stands for what was not measured."""
+
+
+def _refuse_large_holes(angles: Array, named: Callable[[int], Fault]) -> None:
     steps = np.diff(angles)
-    usual = float(np.sort(steps)[len(steps) // 2])  # numpy.median imports numpy.ma, a fifth of the start-up
-    wide = np.flatnonzero((steps > 20 * usual) & (steps > 2))
+    given = np.sort(steps[steps > 0])
+    median = float(given[len(given) // 2])  # numpy.median imports numpy.ma, a fifth of the start-up
+    for width, times in _LARGE_HOLES:
+        wide = np.flatnonzero((steps > width) & (steps > times * median))
+        if len(wide):
+            i = int(wide[0])
+            raise RuleError(_say(named(i), _hole(float(angles[i]), float(angles[i + 1]))))
+
+
+def _hole_notes(angles: Array) -> tuple[str, ...]:
+    """Say where samples are missing: steps wider than three usual ones."""
+    wide = np.flatnonzero(np.diff(angles) > 3 * _usual_step(angles))
     return tuple(
         f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; a straight line joins them"
         for i in wide[:5].tolist()

@@ -9,12 +9,13 @@ from typing import Any
 
 from kurbel import keys as forms
 from kurbel.errors import Path, UnitError
+from kurbel.keys import out_of_bounds
 from kurbel.machine_file.events import REFUSED, Plain
 from kurbel.machine_file.reading import Reading
 from kurbel.machine_file.source import shown
 from kurbel.machine_file.words import expected, kind_of, listed
 from kurbel.near_words import did_you_mean
-from kurbel.units import parse_number, parse_quantity, show, unit_factor
+from kurbel.units import parse_number, parse_quantity, unit_factor
 
 _LONGEST = 200  # characters of a value; what is longer is no number, and would flood the message
 _GLUED = re.compile(r"[A-Za-z_]\w*:\S")
@@ -49,7 +50,7 @@ def physical(reading: Reading, form: forms.Physical, value: Any, path: Path) -> 
         number = parse_quantity(value, form.kind)
     except UnitError as error:
         return reading.fault(path, f"{error}{glued_hint(value)}")
-    wrong = _out_of_bounds(number, form, form.kind)
+    wrong = out_of_bounds(number, form)
     return reading.fault(path, f"{value} {wrong}") if wrong else number
 
 
@@ -68,7 +69,7 @@ def number(reading: Reading, form: forms.Number, value: Any, path: Path) -> Any:
         bare = parse_number(value)
     except UnitError as error:
         return reading.fault(path, f"{error}{glued_hint(value)}")
-    wrong = _out_of_bounds(bare, form)
+    wrong = out_of_bounds(bare, form)
     return reading.fault(path, f"{value} {wrong}") if wrong else bare
 
 
@@ -76,24 +77,6 @@ def glued_hint(value: str) -> str:
     """Return what to write when a key without a space after its colon hides in a value, or an empty text."""
     found = _GLUED.search(value)
     return f"; perhaps a space is missing after the colon of '{found.group().split(':')[0]}'" if found else ""
-
-
-def _out_of_bounds(value: float, form: Any, kind: str = "ratio") -> str:
-    """Return in what way a value is too small or too large, with the bound; '' when it is not."""
-    below = getattr(form, "below", None)
-    if form.above is not None and not value > form.above:
-        return f"is too small; it must be more than {_bound(form.above, kind)}"
-    if form.least is not None and value < form.least:
-        return f"is too small; it must be at least {_bound(form.least, kind)}"
-    if below is not None and not value < below:
-        return f"is too large; it must be less than {_bound(below, kind)}"
-    if form.most is not None and value > form.most:
-        return f"is too large; it must be at most {_bound(form.most, kind)}"
-    return ""
-
-
-def _bound(value: float, kind: str) -> str:
-    return "0" if value == 0 else show(value, kind)
 
 
 def count(reading: Reading, form: forms.Count, value: Any, path: Path) -> Any:
@@ -136,6 +119,8 @@ def file_path(reading: Reading, form: forms.FilePath, value: Any, path: Path) ->
     full = os.path.join(reading.folder, value)
     if os.path.isdir(full):
         return reading.fault(path, f"'{shown(value)}' is a folder; name the file in it")
+    if os.path.exists(full) and not os.path.isfile(full):
+        return reading.fault(path, f"'{shown(value)}' is a device or a pipe; name a file that can be read again")
     if not os.path.isfile(full):
         where = f"in {shown(reading.folder)}" if reading.folder else "in the working directory"
         return reading.fault(path, f"there is no file '{shown(value)}' {where}")
@@ -154,7 +139,7 @@ def unit_name(reading: Reading, form: forms.UnitName, value: Any, path: Path) ->
 
 def limits(reading: Reading, form: forms.Limits, value: Any, path: Path) -> Any:
     """Read bounds for key values into pairs of id and bound in the base of its quantity."""
-    from kurbel.quantities import KEY_VALUES
+    from kurbel.quantities import KEY_VALUES, LISTS
 
     if not isinstance(value, dict) or not value:
         got = "nothing" if isinstance(value, Plain) and value in _NOTHING else kind_of(value)
@@ -164,6 +149,9 @@ def limits(reading: Reading, form: forms.Limits, value: Any, path: Path) -> Any:
         if name not in KEY_VALUES:
             hint = did_you_mean(name, tuple(KEY_VALUES)) or f"; known are {listed([*KEY_VALUES][:6], '…')}"
             reading.fault((*path, name), f"unknown key value '{shown(name)}'{hint}", at_key=True)
+            continue
+        if name in LISTS:
+            reading.fault((*path, name), f"'{name}' is a list of values; no bound can be put on it", at_key=True)
             continue
         bounds.append((name, _limit(reading, KEY_VALUES[name].kind, bound, (*path, name))))
     return REFUSED if any(bound is REFUSED for _, bound in bounds) else tuple(bounds)

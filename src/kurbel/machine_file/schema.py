@@ -189,7 +189,7 @@ def _spellings(unit: str) -> str:
 
 
 def _limits(definitions: dict[str, Schema]) -> Schema:
-    from kurbel.quantities import KEY_VALUES
+    from kurbel.quantities import KEY_VALUES, LISTS
 
     quotient = {"type": "string", "pattern": f"^\\s*{NUMBER.pattern}\\s*/\\s*{NUMBER.pattern}\\s*$"}
     ratio = {"anyOf": [{"type": "number"}, quotient]}
@@ -199,5 +199,6 @@ def _limits(definitions: dict[str, Schema]) -> Schema:
             "description": quantity.text,
         }
         for quantity in KEY_VALUES.values()
+        if quantity.id not in LISTS
     }
     return {"type": "object", "additionalProperties": False, "minProperties": 1, "properties": properties}

@@ -147,6 +147,16 @@ class Mechanism:
 
         return self.rod_angle(CrankAngle.of(0.0)) is not None
 
+    @property
+    def rod_length(self) -> float:
+        """Length L in m of the connecting rod on the crank; infinite where there is none."""
+        return float("inf")
+
+    @property
+    def lam(self) -> float:
+        """λ = R/L, 0 without a connecting rod."""
+        return self.crank / self.rod_length
+
     def radial(self, angle: CrankAngle) -> Any | None:
         """Return D/P, the radial force at the crank pin (positive toward the shaft) over the force at the output."""
         return None

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.keys import Key, Keys, Physical
+from kurbel.keys import Key, Keys, Physical, check_bounds
 from kurbel.mechanisms import Extreme, Mechanism, Swing, check_lengths
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ class ParallelCrank(Mechanism):
 
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank, frame=self.frame)
+        check_bounds(self.KEYS, coupler_mass=self.coupler_mass)
 
     @property
     def stroke(self) -> float:

@@ -88,9 +88,9 @@ class SliderCrank(Mechanism):
         return f"{rod} {relation} the crank ({crank}); the crank turns fully only with a longer rod"
 
     @property
-    def lam(self) -> float:
-        """λ = R/L, 0 for the infinite rod."""
-        return self.crank / self.rod
+    def rod_length(self) -> float:
+        """L in m, `math.inf` for the infinite rod."""
+        return self.rod
 
     @property
     def rho(self) -> float:

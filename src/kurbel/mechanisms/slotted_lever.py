@@ -253,9 +253,10 @@ class SlottedLever(Mechanism):
 
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
-        """Name the lever, and the pin where its size is not given."""
+        """Name the forces of a link, the lever, and the pin where its size is not given."""
+        link = () if self._forked else (("S, N", "the forces of the link on the ram are not computed"),)
         lever = ("inertia of the lever", "kurbel takes masses on the ram only")
-        return (lever,) if self.pin_area is not None else (lever, NO_PIN)
+        return (*link, lever) if self.pin_area is not None else (*link, lever, NO_PIN)
 
     def block_slope(self, angle: CrankAngle) -> Any:
         """Return dρ/dφ = −r e sin φ/ρ in m: times ω, the speed at which the block slides along the lever."""

@@ -6,12 +6,13 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from kurbel.errors import UsageError
+from kurbel.errors import NoSolutionError, UsageError
 from kurbel.keys import Key, Physical
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.fit import may_lock
 from kurbel.mechanisms import Mechanism
 from kurbel.quantities import KEY_VALUES
-from kurbel.report.left_out import left_out, stages, strength_left_out, warnings
+from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages, warnings
 from kurbel.units import SI, show
 
 
@@ -48,6 +49,7 @@ def checked(machine: Machine, commands: Sequence[str]) -> Checked:
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder) for cylinder in machine.cylinders),
+        Section("Whole machine", tuple(_turning_entries(machine))),
         Section("Crankshaft", tuple(_crankshaft_entries(machine))),
         Section("Not used yet", tuple(_unused(machine, commands))),
         Section("Limits", limits),
@@ -70,6 +72,7 @@ def _cylinder_section(machine: Machine, cylinder: Cylinder) -> Section:
         *(Entry("left out", f"{what}: {why}") for what, why in left_out(machine, cylinder)),
         *(Entry("note", note) for note in (*warnings(cylinder), *cylinder.mechanism.notes)),
         *(Entry("note", note) for note in _of_measurements(machine, cylinder)),
+        *(Entry("note", note) for note in _of_locking(machine, cylinder)),
     ]
     return Section(cylinder.name, tuple(entries))
 
@@ -84,6 +87,41 @@ def _of_measurements(machine: Machine, cylinder: Cylinder) -> Iterable[str]:
 
     case = Case(machine)
     yield from measured_warnings(case, case.cylinders[machine.cylinders.index(cylinder)])
+
+
+def _of_locking(machine: Machine, cylinder: Cylinder) -> Iterable[str]:
+    """Yield where a crosshead locks itself; nothing is computed unless it may."""
+    if not may_lock(cylinder):
+        return
+    from kurbel.solver.case import Case
+
+    forces = Case(machine).cylinders[machine.cylinders.index(cylinder)]
+    try:
+        forces.extremes_of("N")
+    except NoSolutionError as error:
+        yield f"{error}. kurbel forces ends with status {error.exit_status}"
+
+
+def _turning_entries(machine: Machine) -> Iterable[Entry]:
+    """Yield what kurbel flywheel has to say of a machine, where that is more than its only cylinder has."""
+    given = (machine.flywheel, machine.load, machine.effort, machine.coupling)
+    if len(machine.cylinders) == 1 and machine.efficiency == 1 and not any(given):
+        return
+    stages = turning_stages(machine)
+    yield Entry("computed", ", ".join(what for what, why in stages.items() if not why))
+    for what, why in stages.items():
+        if why:
+            yield Entry("left out", f"{what}: {why}")
+    yield Entry("load", _load(machine))
+
+
+def _load(machine: Machine) -> str:
+    load = machine.load
+    if load is None:
+        return "constant"
+    if load.diagram:
+        return f"a diagram of {len(load.diagram.angles)} points"
+    return f"slip {load.slip:g}" if load.slip is not None else f"torque as the speed to the power {load.power:g}"
 
 
 def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
@@ -133,7 +171,8 @@ def _limits(machine: Machine, commands: Sequence[str]) -> Iterable[Entry]:
         if command_of(name) not in commands:
             yield Entry(name, f"not checked: kurbel {command_of(name)} does not exist yet")
         elif not found:
-            raise UsageError(f"limits.{name}: this machine has no {name}: {KEY_VALUES[name].text.lower()}")
+            text = KEY_VALUES[name].text
+            raise UsageError(f"limits.{name}: this machine has no {name}: {text[:1].lower()}{text[1:]}")
         for where, value in found:
             yield _compared(name, bound, where, value)
 

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from kurbel.machine import Machine
-from kurbel.mechanisms import Extreme
 from kurbel.report.left_out import flywheel_left_out, warnings
-from kurbel.report.motion import refuse_absent
+from kurbel.report.motion import given, plain_values, refuse_absent
 from kurbel.report.shown import shown_column, shown_key_value
 from kurbel.report.tables import Column, Part, Report
 from kurbel.solver.case import Case
@@ -28,6 +27,7 @@ _KEY_VALUES = (
         "GD2",
         "J_needed",
         "GD2_needed",
+        "J_exact",
         "delta",
         "delta_book",
         "omega_max",
@@ -37,6 +37,8 @@ _KEY_VALUES = (
     ),
 )
 _OF_COUPLING = ("M_coupling_max", "M_coupling_min", "amplification")
+_BEYOND = 1e308
+"""Floquet multiplier that is as large as a float can be."""
 _LINEAR = 0.1
 """δ up to which a harmonic balance about the mean speed may be trusted."""
 
@@ -58,7 +60,8 @@ def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] 
             tuple(_warnings(machine, turning)),
         )
         parts = tuple(_cylinder_parts(case, system))
-    refuse_absent((whole,), columns or (), "flywheel", FLYWHEEL_COLUMNS)
+        there = [column.id for column in _columns(turning, (0.0,), FLYWHEEL_COLUMNS, system)] if columns else []
+    refuse_absent((whole,), columns or (), "flywheel", FLYWHEEL_COLUMNS, there)
     title = f"{machine.name}. Drehkraftlinie und Schwungrad"
     return Report(title, "flywheel", machine.name, "cylinders", parts, whole, notes=tuple(_notes(machine, turning)))
 
@@ -74,21 +77,18 @@ def _columns(turning: MachineSpeed, angles: Sequence[float], columns: Sequence[s
             yield shown_column(name, values, system)
 
 
-def key_values(turning: MachineSpeed) -> Iterable[tuple[str, Any]]:
-    """Yield (id, value in SI) of every key value that the machine has; the value may be an Extreme or a tuple."""
+def key_values(turning: MachineSpeed, repeated: bool = False) -> Iterable[tuple[str, Any]]:
+    """Yield (id, value in SI) of every key value that the machine has; the value may be an Extreme or a tuple.
+
+    repeated: also the flywheel for the wanted δ where it is the flywheel.
+    """
     for name in _KEY_VALUES:
-        repeated = name.endswith("_needed") and turning.J_needed == turning.J
-        if not repeated:
-            yield from _given(name, getattr(turning, name))
-    yield from _given("natural_order", turning.natural_order)
+        if repeated or not (name.endswith("_needed") and turning.J_needed == turning.J):
+            yield from given(name, getattr(turning, name))
+    yield from given("natural_order", turning.natural_order)
     if turning.elastic:
         for name in _OF_COUPLING:
-            yield from _given(name, getattr(turning.elastic, name))
-
-
-def _given(name: str, value: Any) -> Iterable[tuple[str, Any]]:
-    if value is not None:
-        yield name, value
+            yield from given(name, getattr(turning.elastic, name))
 
 
 def _cylinder_parts(case: Case, system: str) -> Iterable[Part]:
@@ -127,11 +127,24 @@ def _warnings(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
         yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
     if machine.efficiency != 1 and turning.M_mean < 0:
         yield "the machine absorbs work: it needs more than its turning effort to be driven, 'efficiency' makes it less"
+    yield from _wish_warnings(turning)
     if turning.multiplier is not None and turning.multiplier > 1:
-        yield f"unstable: a disturbance of the speed grows {turning.multiplier:.4g} times in every cycle"
+        least = "at least " if turning.multiplier > _BEYOND else ""
+        yield f"unstable: a disturbance of the speed grows {least}{turning.multiplier:.4g} times in every cycle"
     if turning.load_ignored:
         yield "the mean torque is zero, so that a load in proportion to it does not hold the speed; it is left out"
     yield from _coupling_warnings(turning)
+
+
+def _wish_warnings(turning: MachineSpeed) -> Iterable[str]:
+    """Yield by how much the flywheel of the books misses the wish, which is for the speed under the true load."""
+    if turning.J_needed is None or turning.delta_needed is None or not turning.misses_the_wish:
+        return
+    better = "" if turning.J_exact is None else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
+    yield (
+        f"with J = ΔE/(δ ω²) = {show(turning.J_needed, 'inertia')} of the books the speed line has δ = "
+        f"{turning.delta_needed:.4g}{better}"
+    )
 
 
 def _coupling_warnings(turning: MachineSpeed) -> Iterable[str]:
@@ -151,14 +164,8 @@ def limited_values(machine: Machine) -> list[tuple[str, str, float]]:
     """Return (what it belongs to, id, value in SI) of all key values that a limit can be put on."""
     with np.errstate(all="ignore"):
         case = Case(machine)
-        found = [("whole machine", name, value) for name, value in key_values(case.flywheel)]
+        found = [("whole machine", *one) for one in plain_values(key_values(case.flywheel, repeated=True))]
         for forces in case.cylinders:
-            found += [
-                (forces.drive.name, *given)
-                for given in _given("P_dead_centre", case.flywheel.dead_centre_force(forces))
-            ]
-    return [
-        (where, name, value.value if isinstance(value, Extreme) else value)
-        for where, name, value in found
-        if isinstance(value, (Extreme, float))
-    ]
+            in_centre = given("P_dead_centre", case.flywheel.dead_centre_force(forces))
+            found += [(forces.drive.name, *one) for one in plain_values(in_centre)]
+    return found

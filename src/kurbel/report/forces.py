@@ -9,9 +9,17 @@ import numpy as np
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms import Extreme
+from kurbel.machine.fit import may_lock
 from kurbel.report.left_out import left_out, warnings
-from kurbel.report.motion import mechanism_notes, motion_key_values, refuse_absent, shown_columns
+from kurbel.report.motion import (
+    columns_of,
+    given,
+    mechanism_notes,
+    motion_key_values,
+    plain_values,
+    refuse_absent,
+    shown_columns,
+)
 from kurbel.report.shown import shown_key_value
 from kurbel.report.tables import LeftOut, Part, Report
 from kurbel.solver.case import Case
@@ -46,7 +54,7 @@ def forces_report(case: Case, angles: Sequence[float], columns: Sequence[str] | 
         raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
     with np.errstate(all="ignore"):  # what overflows is refused below, by name
         parts = tuple(_part(case, forces, angles, columns, system) for forces in case.cylinders)
-    refuse_absent(parts, columns or (), "forces", _ALL_COLUMNS)
+    refuse_absent(parts, columns or (), "forces", _ALL_COLUMNS, columns_of(case, _ALL_COLUMNS) if columns else ())
     title = f"{machine.name}. Kräfte im Kurbeltriebe"
     return Report(title, "forces", machine.name, "cylinders", parts, notes=mechanism_notes(machine))
 
@@ -55,6 +63,9 @@ def _part(
     case: Case, forces: CylinderForces, angles: Sequence[float], columns: Sequence[str] | None, system: str
 ) -> Part:
     cylinder = forces.drive.cylinder
+    if may_lock(cylinder):
+        # first, so that a crosshead that locks itself is told with an angle that does not depend on the step
+        forces.extremes_of("N")
     fitting = FORCE_COLUMNS if cylinder.mechanism.slides else _ALL_COLUMNS
     return Part(
         cylinder.name,
@@ -80,12 +91,20 @@ def measured_warnings(case: Case, forces: CylinderForces) -> Iterable[str]:
 
 _CLOSED = 1e-9
 """An energy residual beyond this is no rounding."""
+_COARSE = 0.01
+"""An energy residual beyond this is more than an indicator may miss by its spacing."""
 
 
 def _balance_warnings(forces: CylinderForces) -> Iterable[str]:
-    residual = forces.energy_residual
-    # with a measured trace it shows the spacing of the samples, which has its own key value
-    if residual is not None and abs(residual) > _CLOSED and not any(gas.traced for gas in forces.drive.gas):
+    residual = forces.energy_residual or 0.0
+    if any(gas.traced for gas in forces.drive.gas):
+        # with a measured trace it shows the spacing of the samples
+        if abs(residual) > _COARSE:
+            yield (
+                "the samples stand too far apart: the indicated work, by the trapezoid rule, and that of T, by "
+                f"straight lines between them, differ by {abs(residual):.1%} of what goes to and fro"
+            )
+    elif abs(residual) > _CLOSED:
         yield f"the energy balance of the cycle does not close (residual {residual:.1e}); trust no figure beyond that"
 
 
@@ -105,11 +124,11 @@ def key_values(forces: CylinderForces) -> Iterable[tuple[str, Any]]:
             yield f"{column}_max", found.largest
             yield f"{column}_min", found.smallest
     for name in _PARTICULAR:
-        yield from _given(name, getattr(forces, name))
-    yield from _given("phi_reversal", forces.phi_reversal)
+        yield from given(name, getattr(forces, name))
+    yield from given("phi_reversal", forces.phi_reversal)
     for name in _WORK:
         if _worth_showing(name, forces):
-            yield from _given(name, getattr(forces, name))
+            yield from given(name, getattr(forces, name))
 
 
 def _areas(forces: CylinderForces) -> Iterable[tuple[str, Any]]:
@@ -126,11 +145,6 @@ def _worth_showing(name: str, forces: CylinderForces) -> bool:
     return name not in ("work_driving", "work_driven") or bool(forces.work_driving and forces.work_driven)
 
 
-def _given(name: str, value: Any) -> Iterable[tuple[str, Any]]:
-    if value is not None:
-        yield name, value
-
-
 def _no_loss(forces: CylinderForces) -> tuple[LeftOut, ...]:
     if forces.friction_work is None or forces.work_driving:
         return ()
@@ -141,8 +155,5 @@ def limited_values(machine: Machine) -> list[tuple[str, str, float]]:
     """Return (cylinder, id, value in SI) of all key values that a limit can be put on, of every cylinder."""
     with np.errstate(all="ignore"):
         return [
-            (forces.drive.name, name, value.value if isinstance(value, Extreme) else value)
-            for forces in Case(machine).cylinders
-            for name, value in key_values(forces)
-            if isinstance(value, (Extreme, float))
+            (forces.drive.name, *one) for forces in Case(machine).cylinders for one in plain_values(key_values(forces))
         ]

@@ -14,7 +14,8 @@ def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     if not has_force:
         idle = {"friction": "no force acts"} if cylinder.friction else {}
         return {**motion, **acting, "forces in the crank train": "no force acts", **idle}
-    return {**motion, **acting, "forces in the crank train": "", **_of_mechanism(cylinder), **_works(machine, acting)}
+    of_crank = {"forces in the crank train": "", **_of_mechanism(cylinder)}
+    return {**motion, **acting, **of_crank, **_works(machine, cylinder, acting)}
 
 
 def _motion_stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
@@ -46,11 +47,13 @@ def _of_mechanism(cylinder: Cylinder) -> dict[str, str]:
     return rod | dict(mechanism.lacks)
 
 
-def _works(machine: Machine, acting: dict[str, str]) -> dict[str, str]:
-    if "gas force" not in acting:
+def _works(machine: Machine, cylinder: Cylinder, acting: dict[str, str]) -> dict[str, str]:
+    if "gas force" not in acting or (not cylinder.pistons and cylinder.ram_force):
+        # of a ram without a piston nobody expects an indicator
         return {}
     power = "no speed given" if machine.speed is None else "" if machine.speed else "not defined at rest"
-    return {"work": acting["gas force"], "power": acting["gas force"] or power}
+    brake = {} if machine.brake_power is None else {"comparison with brake_power": acting["gas force"] or power}
+    return {"work": acting["gas force"], "power": acting["gas force"] or power, **brake}
 
 
 def left_out(machine: Machine, cylinder: Cylinder) -> tuple[LeftOut, ...]:
@@ -107,16 +110,25 @@ def flywheel_left_out(machine: Machine) -> tuple[LeftOut, ...]:
         for cylinder, ones in list(zip(machine.cylinders, of_each))[: 1 if alike else None]
         for one in ones
     ]
+    stages = turning_stages(machine)
+    return (*found, *(LeftOut(what, why) for what, why in stages.items() if why))
+
+
+def turning_stages(machine: Machine) -> dict[str, str]:
+    """Return all that `kurbel flywheel` can have of the whole machine, with the reason why it is left out, or ""."""
     speed = "no speed given" if machine.speed is None else "" if machine.speed else "not defined at rest"
     wheel = speed or ("" if machine.flywheel else "no flywheel given")
-    reasons = {
+    wanted = machine.flywheel is not None and machine.flywheel.fluctuation is not None
+    varies = machine.load is not None and machine.load.diagram is None
+    return {
+        "turning effort, ΔE": "",
         "T, W": "" if machine.cylinders else "no crank: the effort is given as a torque",
         "power": speed,
-        "J": speed if machine.flywheel and machine.flywheel.inertia is None else "",
+        **({"J": speed} if wanted else {}),
         "speed line, δ": wheel,
-        "coupling": wheel if machine.coupling else "",
+        **({"load over the speed": wheel} if varies else {}),
+        **({"coupling": wheel} if machine.coupling else {}),
     }
-    return (*found, *(LeftOut(what, why) for what, why in reasons.items() if why))
 
 
 _IN_EFFORT = ("gas force", "inertia", "weight", "friction")

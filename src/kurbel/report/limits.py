@@ -6,14 +6,14 @@ from collections.abc import Iterable
 from importlib import import_module
 
 from kurbel.machine import Machine
-from kurbel.quantities import OF_COMMAND
+from kurbel.quantities import OF_COMMAND, OF_WHOLE_MACHINE
 
 
 def command_of(name: str) -> str:
     """Return the command that answers the key value of this id.
 
-    >>> command_of("sigma_pin_max"), command_of("c_max")
-    ('stress', 'forces')
+    >>> command_of("sigma_pin_max"), command_of("T_max"), command_of("c_max")
+    ('stress', 'forces', 'motion')
     """
     return next((command for command, names in OF_COMMAND.items() if name in names), "forces")
 
@@ -26,6 +26,15 @@ def limited_values(machine: Machine, names: Iterable[str]) -> list[tuple[str, st
     """
     wanted = set(names)
     found: list[tuple[str, str, float]] = []
-    for command in sorted({command_of(name) for name in wanted}):
-        found += import_module(f"kurbel.report.{command}").limited_values(machine)
-    return [value for value in found if value[1] in wanted]
+    for command in ("motion", "forces", "flywheel", "stress"):
+        asked = {name for name in wanted if command in _commands(machine, name)}
+        if asked:
+            values = import_module(f"kurbel.report.{command}").limited_values(machine)
+            found += [value for value in values if value[1] in asked]
+    return found
+
+
+def _commands(machine: Machine, name: str) -> set[str]:
+    """Return the commands whose value the limit is for; one cylinder has it alike, but for the efficiency."""
+    whole = len(machine.cylinders) != 1 or machine.efficiency != 1 or name.startswith("M_")
+    return {command_of(name), *(("flywheel",) if whole and name in OF_WHOLE_MACHINE else ())}

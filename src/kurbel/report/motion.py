@@ -9,6 +9,7 @@ import numpy as np
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.mechanisms import Extreme
 from kurbel.report.left_out import motion_left_out
 from kurbel.report.shown import shown_column, shown_key_value
 from kurbel.report.tables import Column, Part, Report
@@ -42,7 +43,7 @@ def motion_report(case: Case, angles: Sequence[float], columns: Sequence[str] | 
         raise UsageError(f"{machine.name} has no cylinder; kurbel motion needs one")
     with np.errstate(all="ignore"):  # what overflows is refused by name
         parts = tuple(_part(machine, forces, angles, columns, system) for forces in case.cylinders)
-    refuse_absent(parts, columns or (), "motion", MOTION_COLUMNS)
+    refuse_absent(parts, columns or (), "motion", MOTION_COLUMNS, columns_of(case, MOTION_COLUMNS) if columns else ())
     title = f"{machine.name}. Bewegung des Kurbeltriebes"
     return Report(title, "motion", machine.name, "cylinders", parts, notes=mechanism_notes(machine))
 
@@ -79,16 +80,48 @@ def motion_key_values(motion: Motion) -> Iterable[tuple[str, Any]]:
             yield name, value
 
 
+def limited_values(machine: Machine) -> list[tuple[str, str, float]]:
+    """Return (cylinder, id, value in SI) of all key values of motion that a limit can be put on, of every cylinder."""
+    with np.errstate(all="ignore"):
+        return [
+            (forces.drive.name, *one)
+            for forces in Case(machine).cylinders
+            for one in plain_values(motion_key_values(forces.motion))
+        ]
+
+
+def given(name: str, value: Any) -> Iterable[tuple[str, Any]]:
+    """Yield (id, value) unless the machine has no such value."""
+    if value is not None:
+        yield name, value
+
+
+def plain_values(found: Iterable[tuple[str, Any]]) -> Iterable[tuple[str, float]]:
+    """Yield (id, value in SI) of those key values that are one number."""
+    for name, value in found:
+        if isinstance(value, (Extreme, float)):
+            yield name, value.value if isinstance(value, Extreme) else value
+
+
 def mechanism_notes(machine: Machine) -> tuple[str, ...]:
     """Return what a reader should know about the mechanisms of a machine, each sentence once."""
     return tuple(dict.fromkeys(note for cylinder in machine.cylinders for note in cylinder.mechanism.notes))
 
 
-def refuse_absent(parts: Sequence[Part], columns: Sequence[str], command: str, known: Sequence[str]) -> None:
-    """Raise UsageError for a column that was asked for and that no part has, with the reason."""
+def columns_of(case: Case, known: Sequence[str]) -> tuple[str, ...]:
+    """Return the ids of the columns that any cylinder of a machine has."""
+    states = [forces.at([0.0]) for forces in case.cylinders]
+    return tuple(name for name in known if any(getattr(state, name) is not None for state in states))
+
+
+def refuse_absent(
+    parts: Sequence[Part], columns: Sequence[str], command: str, known: Sequence[str], there: Sequence[str] = ()
+) -> None:
+    """Raise UsageError for a column that was asked for and that no part has; there: ids of those that it has."""
     shown = {column.id for part in parts for column in part.columns}
+    instead = f", which has {', '.join(there)}" if there else "; kurbel check says what is, and why"
     for name in columns:
         if name not in known:
             raise UsageError(f"--columns: '{name}' is no column of kurbel {command} (it has {', '.join(known)})")
         if name not in shown:
-            raise UsageError(f"--columns: '{name}' is left out for this machine; kurbel check says what is, and why")
+            raise UsageError(f"--columns: '{name}' is left out for this machine{instead}")

@@ -16,8 +16,11 @@ if TYPE_CHECKING:
     from kurbel.solver.pressure.trace import TracePressure
 
 _JUMP = 0.05  # of the range of a trace, between the ends of the cycle
-_MOTORED_LEAD = 2.0  # deg; heat loss and leakage put a motored peak up to about 1° before the dead centre
+_MOTORED_LEAD = 1.5  # deg; heat loss and leakage put a motored peak up to about 1° before the dead centre
 _MOTORED_SEARCH = 10.0, 30.0  # deg before and after the dead centre; what peaks elsewhere is a compressor or pump
+_MOTORED_SIDES = 10.0, 20.0, 30.0, 45.0, 60.0, 75.0, 90.0  # deg from the peak at which both its sides are compared
+_MOTORED_RATIO = 0.6, 1.1  # of the pressures after and before the peak: what heat loss and leakage take, and noise
+_MOTORED_RISE = 3.0  # least pressure of the peak over that at its feet; what is flat has no peak
 _NEAR_AMBIENT = 0.7, 1.3
 
 
@@ -78,8 +81,23 @@ def _of_peak(pressure: TracePressure) -> Iterable[str]:
     step = float(np.diff(samples.angles)[max(0, top - 1) : top + 1].max())
     before_limit, after_limit = _MOTORED_SEARCH
     off = -before_limit <= after < -_MOTORED_LEAD - step or step < after <= after_limit
-    if pressure.area < 0 and off:
+    if off and _motored(pressure, top):
         yield (
-            f"no work is done, and the peak stands {abs(after):.3g} deg {'after' if after > 0 else 'before'} "
+            f"no combustion shows, and the peak stands {abs(after):.3g} deg {'after' if after > 0 else 'before'} "
             "the dead centre; that of a motored engine stands at it or just before: check angle_zero"
         )
+
+
+def _motored(pressure: TracePressure, top: int) -> bool:
+    """Judge by the shape whether nothing burns: the two sides of the peak are alike.
+
+    The sign of the work tells nothing, since a motored trace that stands too late does work.
+    """
+    samples, lift, sides = pressure.trace.samples, pressure.place.lift, np.array(_MOTORED_SIDES)
+    before, after = (
+        lift + np.interp(samples.angles[top] + side, samples.angles, samples.pressures, period=samples.period)
+        for side in (-sides, sides)
+    )
+    low, high = _MOTORED_RATIO
+    alike = bool(np.all((low * before <= after) & (after <= high * before)))
+    return alike and bool(lift + samples.pressures[top] > _MOTORED_RISE * max(before[-1], after[-1]))

@@ -11,7 +11,7 @@ from kurbel.machine import Machine
 from kurbel.mechanisms import Extreme
 from kurbel.quantities import SHAFT_PARTS, STRESSES
 from kurbel.report.left_out import left_out, strength_left_out, warnings
-from kurbel.report.motion import refuse_absent
+from kurbel.report.motion import given, refuse_absent
 from kurbel.report.shown import shown_column, shown_key_value
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
@@ -63,7 +63,7 @@ def stress_report(
             (*warnings(cylinder), *(() if cool else verdict)),
             tuple(_place_tables(strength, system)),
         )
-    notes = (*_NOTES, *(verdict if cool else ()))
+    notes = (*_NOTES, *((_TURNING_ROD,) if strength.rod_pull else ()), *(verdict if cool else ()))
     refuse_absent((whole,), () if places_only else columns or (), "stress", STRESS_COLUMNS)
     title = f"{machine.name}. Festigkeit der Kurbelwelle"
     return Report(title, "stress", machine.name, "cylinders", (), whole, notes=notes)
@@ -74,6 +74,11 @@ _NOTES = (
     "D toward the shaft, T in the sense of rotation.",
     "The dead centre is loaded as in starting (R p. 608); columns, largest stresses and pressures are those of the "
     "running machine.",
+)
+
+_TURNING_ROD = (
+    "The part of the connecting rod that turns with the crank pin pulls it outward with C_rod: pin and bearings carry "
+    "D less C_rod."
 )
 
 
@@ -105,6 +110,7 @@ def _place_columns(strained: tuple[Strained, ...], system: str) -> Iterable[Colu
 def key_values(strength: CrankshaftStrength) -> Iterable[tuple[str, Any]]:
     """Yield (id, value in SI) of every key value that the crankshaft has; the value may be an Extreme."""
     yield "P_dc", strength.full_force
+    yield from given("C_rod", strength.rod_pull or None)
     for part in strength.parts:
         yield f"sigma_{part}_dc", strength.sigma_dc(part).value
     for part in strength.parts:
@@ -112,7 +118,7 @@ def key_values(strength: CrankshaftStrength) -> Iterable[tuple[str, Any]]:
     for part in strength.parts:
         yield f"mises_{part}_max", strength.mises_max(part)
     for part in strength.parts:
-        yield from _given(f"safety_{part}_min", strength.safety(part))
+        yield from given(f"safety_{part}_min", strength.safety(part))
     yield from _bearing_values(strength)
     yield "equilibrium_residual", strength.equilibrium_residual
 
@@ -122,14 +128,9 @@ def _bearing_values(strength: CrankshaftStrength) -> Iterable[tuple[str, Any]]:
     yield "B_max", strength.load_max("B")
     yield "p_pin_dc", strength.pin_pressure_dc
     for part, bearing in _PRESSED.items():
-        yield from _given(f"p_{part}_max", strength.pressure_max(bearing))
-        yield from _given(f"p_{part}_mean", strength.pressure_mean(bearing))
-        yield from _given(f"k_{part}", strength.pressure_velocity(bearing))
-
-
-def _given(name: str, value: Any) -> Iterable[tuple[str, Any]]:
-    if value is not None:
-        yield name, value
+        yield from given(f"p_{part}_max", strength.pressure_max(bearing))
+        yield from given(f"p_{part}_mean", strength.pressure_mean(bearing))
+        yield from given(f"k_{part}", strength.pressure_velocity(bearing))
 
 
 def _shell_verdict(strength: CrankshaftStrength) -> tuple[bool, tuple[str, ...]]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arithmetic import running_sums
 from kurbel.crank_angle import CrankAngle
 from kurbel.solver.pressure.card import ProcessPressure
 from kurbel.solver.torques import exact_product
@@ -25,20 +25,14 @@ class CardWork:
     def __init__(self, pressure: ProcessPressure) -> None:
         self._pressure = pressure
         self._place = pressure.place
-        rows = np.array([(piece.z, piece.p, piece.next_z, piece.next_p, piece.exponent) for piece in pressure.pieces])
-        self._z, self._p, next_z, next_p, self._exponents = rows.T
-        self._gradients = (next_p - self._p) / (next_z - self._z)
+        self._z, self._p, self._gradients, self._exponents = pressure.lines
 
     @cached_property
     def _up_to(self) -> tuple[Array, Array]:
         """Area up to the start of each piece, and over the whole cycle at the end, each as a float and its rest."""
         process, base = self._pressure.process, self._place.base
-        terms: list[float] = []
-        sums, rests = [0.0], [0.0]
-        for piece in self._pressure.pieces:
-            terms += (*process.terms_of(piece), -base * piece.next_z, base * piece.z)
-            sums.append(math.fsum(terms))
-            rests.append(math.fsum((*terms, -sums[-1])))
+        pieces = ((*process.terms_of(one), -base * one.next_z, base * one.z) for one in self._pressure.pieces)
+        sums, rests = zip((0.0, 0.0), *running_sums(pieces))
         return np.array(sums), np.array(rests)
 
     def between(self, low: CrankAngle, high: CrankAngle) -> Array:

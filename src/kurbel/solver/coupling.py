@@ -16,6 +16,7 @@ import numpy as np
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
 from kurbel.mechanisms import Extreme
+from kurbel.solver.excess import mean_torque
 from kurbel.solver.grid import Extremes, Grid, Sampled, extremes
 from kurbel.solver.torques import Mean, Sum, Torque
 
@@ -27,7 +28,9 @@ RIGID_ABOVE = 100.0
 _NEAR = 0.1
 """A harmonic whose order lies so near the natural one, relatively, is worth a warning."""
 _WORTH = 1e-3
-"""… if its amplitude is at least so much of the largest harmonic."""
+"""… if its amplitude is at least so much of the largest harmonic, …"""
+_AMPLIFIED = 1.5
+"""… and it is amplified at least so many times: one that is damped is no resonance."""
 
 
 def natural_frequency(coupling: Coupling, inertia: float) -> float:
@@ -124,8 +127,6 @@ class ElasticCoupling:
     @cached_property
     def mean(self) -> float:
         """Mean torque in N m."""
-        from kurbel.solver.excess import mean_torque
-
         return mean_torque(self._effort, self.cycle)
 
     def torque(self, degrees: Array) -> Array:
@@ -204,6 +205,21 @@ class ElasticCoupling:
         return (swing.largest.value - swing.smallest.value) / self.shaft.omega
 
     @cached_property
+    def growth(self) -> float:
+        """Logarithm of what is left of a small disturbance after a cycle: 2π n/ω_n times the largest real part.
+
+        Of the eigenvalues of J₁ ω̇₁ = −T, J₂ ω̇₂ = T − c ω₂, T = k ∫(ω₁ − ω₂) dt + d (ω₁ − ω₂), about uniform rotation.
+        """
+        coupling, natural = self.coupling, self.natural_frequency
+        own = np.array([coupling.stiffness / natural, coupling.damping, -coupling.damping]) / self.shaft.inertia
+        driven = own * (self.shaft.inertia / coupling.inertia)
+        driven[2] -= self.shaft.load_slope / coupling.inertia
+        # with the twist as a speed, times the natural frequency, all entries are of one size
+        matrix = np.stack((np.array([0.0, natural, -natural]), -own, driven))
+        largest = float(np.linalg.eigvals(matrix).real.max())
+        return largest * math.radians(self.cycle) / self.shaft.omega
+
+    @cached_property
     def amplification(self) -> float | None:
         """Swing of the torque in the coupling over that in a rigid one, J₂ (M − L)/(J₁ + J₂) + L, if it swings."""
         own, driven = self.shaft.inertia, self.coupling.inertia
@@ -225,8 +241,8 @@ class ElasticCoupling:
         effort = np.abs(self._spectra[0]) + np.abs(self._spectra[1])
         distance = self._orders / self.natural_order - 1
         own, driven = self.shaft.inertia, self.coupling.inertia
-        near = (np.abs(distance) < _NEAR) & (effort > _WORTH * effort.max())
         gain = np.abs(1 / self._balance[2]) * (own + driven) / driven
+        near = (np.abs(distance) < _NEAR) & (effort > _WORTH * effort.max()) & (gain >= _AMPLIFIED)
         return tuple(
             Harmonic(*(float(of[i]) for of in (self._orders, distance, effort, gain))) for i in np.nonzero(near)[0]
         )

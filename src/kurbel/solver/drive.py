@@ -14,7 +14,8 @@ from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.mechanisms import fan
 from kurbel.solver.grid import cycle_breaks
 from kurbel.solver.jet import jet_angle
-from kurbel.solver.state import GRAVITY, State
+from kurbel.solver.state import State
+from kurbel.units import GRAVITY
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -46,7 +47,7 @@ class Drive:
     def mass(self) -> float:
         """Reciprocating mass in kg, 0 without masses."""
         masses = self.cylinder.masses
-        return masses.at_crosshead(getattr(self.mechanism, "rod", math.inf)) if masses else 0.0
+        return masses.at_crosshead(self.mechanism.rod_length) if masses else 0.0
 
     @cached_property
     def rod(self) -> ExactRod | None:
@@ -56,8 +57,16 @@ class Drive:
             return None
         from kurbel.solver.rod import ExactRod
 
-        length = getattr(self.mechanism, "rod", math.inf)
+        length = self.mechanism.rod_length
         return ExactRod(masses.connecting_rod, length, self.mechanism.crank, self.omega, self._incline)
+
+    @cached_property
+    def pin_inertia(self) -> float:
+        """Moment of inertia m R² in kg m² of the part of the connecting rod that turns with the crank pin."""
+        masses = self.cylinder.masses
+        if not (masses and masses.connecting_rod and self.mechanism.has_rod):
+            return 0.0
+        return masses.connecting_rod.at_pin(self.mechanism.rod_length) * self.mechanism.crank**2
 
     @property
     def _incline(self) -> CrankAngle | None:
@@ -85,12 +94,15 @@ class Drive:
     @cached_property
     def gas(self) -> tuple[PistonGas, ...]:
         """Pressures on the pistons that have an indicator."""
-        indicated = [piston for piston in self.cylinder.pistons if piston.indicator]
-        if not indicated:
-            return ()
+        indicated = [number for number, piston in enumerate(self.cylinder.pistons) if piston.indicator]
+        return tuple(self._gas_on(number) for number in indicated)
+
+    def _gas_on(self, number: int) -> PistonGas:
         from kurbel.solver.gas import PistonGas
 
-        return tuple(PistonGas(piston, self.mechanism, self.cycle, self.machine.ambient) for piston in indicated)
+        turns = CYCLES[self.machine.cycle_of_piston(self.cylinder, number)]
+        piston, ambient = self.cylinder.pistons[number], self.machine.ambient
+        return PistonGas(piston, self.mechanism, 360.0 * turns, ambient, self.revolutions // turns)
 
     @property
     def own_gas(self) -> PistonGas | None:
@@ -158,6 +170,6 @@ class Drive:
             sin_psi, cos_psi = self.mechanism.rod_angle(CrankAngle.of(centre)) or (0.0, 1.0)
             left = cos_psi - self.crosshead_friction * abs(sin_psi)
             if left > 0 and sin_psi:
-                bend = (abs(sin_psi) / cos_psi + self.crosshead_friction) * getattr(self.mechanism, "lam", 1.0)
+                bend = (abs(sin_psi) / cos_psi + self.crosshead_friction) * self.mechanism.lam
                 near = np.array(fan(centre, math.degrees(math.sqrt(2 * left / bend))))
                 yield from (near + turn for turn in np.arange(0.0, self.cycle, 360.0))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arithmetic import running_sums
 from kurbel.crank_angle import CrankAngle
 from kurbel.solver.card_work import CardWork
 from kurbel.solver.drive import Drive
@@ -29,7 +30,8 @@ class _Shifted:
 
     def __init__(self, forces: CylinderForces, cycle: float) -> None:
         self.drive: Drive = forces.drive
-        self.position = forces.drive.cylinder.crank_position
+        # whole cycles off, which is exact: beside a large position an angle would lose its digits
+        self.position = math.fmod(forces.drive.cylinder.crank_position, self.drive.cycle)
         own = forces.grid.breaks[:-1] + self.position
         repeated = np.concatenate([own + turn for turn in np.arange(0.0, cycle, self.drive.cycle)])
         self.breaks: Array = np.concatenate(([0.0], np.sort(np.mod(repeated, cycle)), [cycle]))
@@ -85,9 +87,9 @@ class InertiaEffort(_Shifted):
         return np.asarray(rod.swing_slope(rod_angle, angle))
 
     def reduced_inertia(self, degrees: Array, within: Array) -> Jet:
-        """Return J in kg m²: what the moving masses add to the moment of inertia of the shaft."""
+        """Return J in kg m²: what the moving masses, connecting rods included, add to the inertia of the shaft."""
         state = self.state(degrees, within)
-        inertia: Jet = state.slope * state.slope * self.drive.mass
+        inertia: Jet = state.slope * state.slope * self.drive.mass + self.drive.pin_inertia
         rod, rod_angle = self.drive.rod, self.drive.mechanism.rod_angle(state.angle)
         if rod is not None and rod_angle is not None:
             inertia = inertia + rod.reduced_inertia(rod_angle, state.angle)
@@ -182,17 +184,6 @@ class CylinderEffort(_Shifted):
         return np.asarray(state.M - closed * state.slope - inertia)
 
 
-def _running_sums(terms: list[float]) -> Iterator[float]:
-    """Yield the sum of the first one, two, … terms, with what rounding takes kept beside it (Neumaier)."""
-    total = rest = 0.0
-    for term in terms:
-        raised = total + term
-        large, small = (total, term) if abs(total) >= abs(term) else (term, total)
-        rest += (large - raised) + small
-        total = raised
-        yield total + rest
-
-
 class _GaussWork:
     """∫ M dφ of a torque in N m that is smooth on the pieces of a grid over one cycle.
 
@@ -211,7 +202,7 @@ class _GaussWork:
         at_nodes = legendre(grid.nodes[used], self._count - 1) * grid.weights[used][:, None]
         self._coefficients = torque[:, used] @ (at_nodes / squares)
         whole = (2 * self._coefficients[:, 0] * self._half_widths).tolist()
-        self._up_to = np.array([0.0, *_running_sums(whole)])
+        self._up_to = np.array([0.0, *(total for total, _ in running_sums((one,) for one in whole))])
 
     @property
     def _half_widths(self) -> Array:

@@ -16,12 +16,16 @@ from kurbel.solver.effort import CylinderEffort, InertiaEffort
 from kurbel.solver.excess import Excess, mean_torque
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.torques import Diagram, Mean, Sum, Torque, Uniform, total_work
+from kurbel.units import show
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
 
 _BALANCED = 1e-9
 """Means of effort and resistance that differ by less, relatively, are equal."""
+
+_SLOWEST = 1e-100
+"""Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
 
 
 class MachineTurning:
@@ -34,6 +38,9 @@ class MachineTurning:
         idle = [forces.drive.name for forces in cylinders if not forces.drive.has_force]
         if len(idle) == len(cylinders) and machine.effort is None:
             raise UsageError(f"{machine.name}: no force acts, so that nothing turns the shaft; kurbel check says why")
+        if machine.speed and not _SLOWEST < machine.speed < 1 / _SLOWEST:
+            size = "large" if machine.speed > 1 else "small"
+            raise UsageError(f"{machine.name}: a speed of {show(machine.speed, 'speed')} is too {size} to compute with")
         self.machine = machine
         self.cycle = 360.0 * machine.revolutions
         self._driving = tuple(forces for forces in cylinders if forces.drive.has_force)
@@ -51,8 +58,9 @@ class MachineTurning:
 
     @cached_property
     def masses(self) -> tuple[InertiaEffort, ...]:
-        """The reciprocating masses of the cylinders."""
-        return tuple(InertiaEffort(f, self.cycle) for f in self._driving if f.drive.has_inertia and f.drive.mass)
+        """The moving masses of the cylinders."""
+        driving = [forces for forces in self._driving if forces.drive.has_inertia]
+        return tuple(InertiaEffort(f, self.cycle) for f in driving if f.drive.mass or f.drive.pin_inertia)
 
     @property
     def omega(self) -> float | None:

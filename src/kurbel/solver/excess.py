@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kurbel.solver.grid import Brackets, Extremes, Grid, Sampled, extremes, roots, sign_changes
-from kurbel.solver.torques import Sum, Torque, total_work
+from kurbel.solver.torques import Sum, Torque, total_work, total_works
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
@@ -84,16 +84,17 @@ class Excess:
         if not self.crossings:
             return ()
         ends = (*self.crossings[1:], self.crossings[0] + self.cycle)
-        return tuple(total_work(self.torque, low, high) for low, high in zip(self.crossings, ends, strict=True))
+        return tuple(total_works(self.torque, self.crossings, ends))
 
     @cached_property
     def _summits(self) -> tuple[float, float]:
         """Crank angles in degrees of the largest and the smallest E, the first ones where several are equal."""
-        heights = [total_work(self.torque, 0.0, angle) for angle in self.crossings]
+        heights = total_works(self.torque, (0.0,) * len(self.crossings), self.crossings)
         size = max(map(abs, heights), default=0.0) + max(map(abs, self.lobes), default=0.0)
         level = 16 * np.finfo(float).eps * size
-        largest = next(a for a, e in zip(self.crossings, heights, strict=True) if e >= max(heights) - level)
-        smallest = next(a for a, e in zip(self.crossings, heights, strict=True) if e <= min(heights) + level)
+        top, bottom = max(heights) - level, min(heights) + level
+        largest = next(a for a, e in zip(self.crossings, heights, strict=True) if e >= top)
+        smallest = next(a for a, e in zip(self.crossings, heights, strict=True) if e <= bottom)
         return largest, smallest
 
     @property
@@ -115,8 +116,16 @@ class Excess:
         return total_work(self.torque, smallest, largest)
 
     def at(self, degrees: Array) -> Array:
-        """Return E in J at crank angles (n,) in degrees, counted from φ = 0."""
-        return np.asarray(self.torque.work(np.zeros_like(degrees), degrees).sum(axis=0))
+        """Return E in J at crank angles (n,) in degrees, counted from φ = 0; an angle's E hangs on no other one."""
+        if not self.crossings:
+            return np.zeros_like(degrees)
+        total = rest = np.zeros_like(degrees)
+        for term in self.torque.work(total, degrees):
+            # Neumaier's sum, so that the order in which numpy would add does not show
+            raised = total + term
+            rest = rest + np.where(np.abs(total) >= np.abs(term), (total - raised) + term, (term - raised) + total)
+            total = raised
+        return np.where(degrees == 0, 0.0, total + rest)
 
 
 def _ends(

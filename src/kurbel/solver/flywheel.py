@@ -15,12 +15,25 @@ from kurbel.solver.effort_machine import MachineTurning
 from kurbel.solver.excess import Excess
 from kurbel.solver.grid import Grid
 from kurbel.solver.radau import Standstill, Unsettled
-from kurbel.solver.speed import ConstantLoad, Inertia, PowerLaw, SlipLaw, SpeedDependentLoad, SpeedLaw, SpeedLine
+from kurbel.solver.roots import falling_root
+from kurbel.solver.speed import (
+    ConstantLoad,
+    Inertia,
+    PowerLaw,
+    SlipLaw,
+    SpeedDependentLoad,
+    SpeedLaw,
+    SpeedLine,
+    floquet,
+)
 from kurbel.solver.torques import Sum
 from kurbel.units import show
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+
+_MISSED = 1e-3
+"""By what δ may miss the wanted one, relatively, before it is told."""
 
 
 class MachineSpeed(MachineTurning):
@@ -35,7 +48,7 @@ class MachineSpeed(MachineTurning):
         wanted = self.machine.flywheel.fluctuation if self.machine.flywheel else None
         if wanted is None or not self.omega:
             return None
-        return max(self.dE / (wanted * self.omega**2) - self._driven_rigidly, 0.0)
+        return max(self._needed_in_all - self._driven_rigidly, 0.0)
 
     @property
     def GD2_needed(self) -> float | None:
@@ -56,8 +69,8 @@ class MachineSpeed(MachineTurning):
     @property
     def delta_book(self) -> float | None:
         """δ ≈ ΔE/(J ω²) of the books: constant J, and a load that does not mind the speed."""
-        inertia = (self.J or 0.0) + self._driven_rigidly
-        return None if not self.omega or not inertia else self.dE / (inertia * self.omega**2)
+        energy = ((self.J or 0.0) + self._driven_rigidly) * (self.omega or 0.0) ** 2
+        return self.dE / energy if energy else None
 
     # coupling
 
@@ -65,10 +78,18 @@ class MachineSpeed(MachineTurning):
     def elastic(self) -> ElasticCoupling | None:
         """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with."""
         coupling = self.machine.coupling
-        if coupling is None or self.J is None or not self.omega or self.rigid:
+        if coupling is None or self.J is None or not self.omega or self.rigid or self._needs_no_inertia:
             return None
-        shaft = Shaft(self._own_inertia, self.omega, self._load_slope)
-        return ElasticCoupling(coupling, shaft, self._true_excess.effort, self.load)
+        return self._coupled_to(self.J)
+
+    def _coupled_to(self, flywheel: float) -> ElasticCoupling:
+        assert self.machine.coupling
+        assert self.omega
+        own = flywheel + self._mean_of_masses
+        if not own:
+            raise UsageError("nothing before the coupling has any inertia: give 'flywheel' an inertia")
+        shaft = Shaft(own, self.omega, self._load_slope)
+        return ElasticCoupling(self.machine.coupling, shaft, self._true_excess.effort, self.load)
 
     @cached_property
     def natural_order(self) -> float | None:
@@ -95,13 +116,9 @@ class MachineSpeed(MachineTurning):
     def _driven_rigidly(self) -> float:
         return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
 
-    @property
-    def _own_inertia(self) -> float:
-        return (self.J or 0.0) + self._mean_of_masses
-
     @cached_property
     def _mean_of_masses(self) -> float:
-        """Mean of Σ m x′² over the turn in kg m²."""
+        """Mean of what the moving masses add to the inertia over the turn, in kg m²."""
         if not self.masses:
             return 0.0
         grid = Grid(Sum([(1.0, mass) for mass in self.masses]).breaks)
@@ -150,13 +167,26 @@ class MachineSpeed(MachineTurning):
         if self.J is None or not self.omega:
             return None
         if self.elastic:
+            self._refuse_standstill(self.elastic.omega_min)
             return self.elastic
         try:
-            return self._speed_with(self.J)
+            return self._speed_with(1.0 if self._needs_no_inertia else self.J)
         except Standstill as stop:
-            raise NoSolutionError(self._stall(stop.degrees)) from None
-        except Unsettled:
-            raise NoSolutionError("the speed line does not settle; give the flywheel more inertia") from None
+            raise NoSolutionError(self._stall(stop)) from None
+        except Unsettled as stop:
+            raise NoSolutionError(self._unsettled(stop)) from None
+
+    @property
+    def _needs_no_inertia(self) -> bool:
+        """Whether the wanted δ is met by no flywheel at all, the effort being uniform; any inertia then turns alike."""
+        return self.J == self.J_needed == 0 and not self.dE and not self.masses
+
+    def _refuse_standstill(self, slowest: Extreme) -> None:
+        if slowest.value <= 0:
+            raise NoSolutionError(
+                f"the machine stops near φ = {slowest.degrees:.4g}°: with the elastic coupling, J = "
+                f"{show(self.J or 0.0, 'inertia')} does not carry it over; give the flywheel more inertia"
+            )
 
     def _speed_with(self, flywheel: float) -> SpeedLine:
         assert self.omega
@@ -173,17 +203,32 @@ class MachineSpeed(MachineTurning):
             angle = float(grid.degrees.ravel()[np.argmin(values)])
             raise UsageError(f"nothing that turns has any inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
 
-    def _stall(self, degrees: float) -> str:
+    def _stall(self, stop: Standstill) -> str:
         assert self.J is not None
-        enough = self._enough()
+        enough = _rounded_up(self._enough() if stop.inertia is None else self._with_more(stop.inertia))
         return (
-            f"the machine stops near φ = {degrees:.4g}°: with J = {show(self.J, 'inertia')} its kinetic energy does "
-            f"not carry it over; it turns with a flywheel from J = {show(enough, 'inertia')} "
+            f"the machine stops near φ = {stop.degrees:.4g}°: with J = {show(self.J, 'inertia')} its kinetic energy "
+            f"does not carry it over; it turns with a flywheel from J = {show(enough, 'inertia')} "
             f"(GD2 = {show(4 * enough, 'gd2')}) on"
         )
 
+    def _unsettled(self, stop: Unsettled) -> str:
+        assert self.J is not None
+        message = f"with J = {show(self.J, 'inertia')} no speed line is found that repeats under this load"
+        if stop.inertia is None:
+            return f"{message}; give the flywheel more inertia"
+        return (
+            f"{message}; from about J = {show(_rounded_up(self._with_more(stop.inertia)), 'inertia')} on there is one"
+        )
+
+    def _with_more(self, energy: float) -> float:
+        """Return the flywheel in kg m² with so much more kinetic energy in J at the nominal speed."""
+        assert self.J is not None
+        assert self.omega
+        return self.J + 2 * energy / self.omega**2
+
     def _enough(self) -> float:
-        """Return the smallest flywheel in kg m², within a hundredth and rounded up, with which the machine turns."""
+        """Return the smallest flywheel in kg m², within a hundredth, with which the machine turns."""
         assert self.J is not None
         assert self.omega
         enough = max(self.J, self.dE / self.omega**2)
@@ -193,8 +238,7 @@ class MachineSpeed(MachineTurning):
         while enough > 1.01 * least:
             middle = math.sqrt(least * enough)
             least, enough = (least, middle) if self._turns(middle) else (middle, enough)
-        digit = 10.0 ** (math.floor(math.log10(enough)) - 2)
-        return math.ceil(enough / digit) * digit
+        return enough
 
     def _turns(self, flywheel: float) -> bool:
         try:
@@ -206,6 +250,49 @@ class MachineSpeed(MachineTurning):
     def delta(self) -> float | None:
         """δ = (ω_max − ω_min)/ω_mean of the speed line."""
         return None if self.speed is None else self.speed.delta
+
+    # the wanted δ, held against the speed line
+
+    @cached_property
+    def delta_needed(self) -> float | None:
+        """δ of the speed line with the flywheel of the books for the wanted δ; None where it stalls."""
+        if self.J_needed is None or self._needs_no_inertia:
+            return None
+        if self.J_needed == self.J:
+            return self.delta
+        delta = self._delta_with(self.J_needed)
+        return delta if math.isfinite(delta) else None
+
+    @property
+    def misses_the_wish(self) -> bool:
+        """Whether that differs from the wanted δ by what one would notice."""
+        wanted = self.machine.flywheel.fluctuation if self.machine.flywheel else None
+        return bool(wanted and self.delta_needed and abs(self.delta_needed / wanted - 1) > _MISSED)
+
+    @cached_property
+    def J_exact(self) -> float | None:
+        """Flywheel in kg m² with which δ of the speed line is the wanted one, where that of the books misses it."""
+        if not self.misses_the_wish or not self.J_needed:
+            return None
+        assert self.machine.flywheel
+        assert self.machine.flywheel.fluctuation
+        wanted = math.log(self.machine.flywheel.fluctuation)
+
+        def surplus(flywheel: float) -> float:
+            delta = self._delta_with(flywheel)
+            return math.log(delta) - wanted if delta else -math.inf
+
+        return falling_root(surplus, self.J_needed)
+
+    def _delta_with(self, flywheel: float) -> float:
+        """Return δ of the speed line with another flywheel in kg m²; inf where it stalls."""
+        try:
+            if self.elastic:
+                line = self._coupled_to(flywheel)
+                return line.delta if line.omega_min.value > 0 else math.inf
+            return self._speed_with(flywheel).delta
+        except (Standstill, Unsettled, NoSolutionError):
+            return math.inf
 
     @property
     def omega_max(self) -> Extreme | None:
@@ -225,6 +312,8 @@ class MachineSpeed(MachineTurning):
     @property
     def multiplier(self) -> float | None:
         """Floquet multiplier per cycle; None where the load does not depend on the speed."""
+        if self.elastic:
+            return None if self._law is None else floquet(self.elastic.growth)
         return self.speed.multiplier if isinstance(self.speed, SpeedDependentLoad) else None
 
     def omega_line(self, degrees: Array) -> Array | None:
@@ -234,3 +323,9 @@ class MachineSpeed(MachineTurning):
     def M_coupling(self, degrees: Array) -> Array | None:
         """Return the torque in the elastic coupling in N m."""
         return None if self.elastic is None else self.elastic.torque(degrees)
+
+
+def _rounded_up(value: float) -> float:
+    """Return the next larger number of three digits."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return math.ceil(value / digit) * digit

@@ -89,7 +89,9 @@ class CylinderForces:
         if not self.drive.has_inertia or highest is None or lowest is None:
             return None
         mass = self.drive.mass
-        return Extremes(Extreme(-mass * lowest.value, lowest.degrees), Extreme(-mass * highest.value, highest.degrees))
+        found = (Extreme(-mass * lowest.value, lowest.degrees), Extreme(-mass * highest.value, highest.degrees))
+        # the mass in Python may be what a rod beyond its crosshead pin leaves, and negative
+        return Extremes(max(found), min(found))
 
     @cached_property
     def phi_reversal(self) -> tuple[float, ...] | None:
@@ -215,12 +217,11 @@ class CylinderForces:
     @cached_property
     def loss_crosshead_redtenbacher(self) -> float | None:
         """½ λ f, D 7."""
-        lam = getattr(self.drive.mechanism, "lam", None)
-        if not self._has_crosshead or lam is None:
+        if not self._has_crosshead:
             return None
         from kurbel.solver.friction import redtenbacher_loss
 
-        return redtenbacher_loss(lam, self.drive.crosshead_friction)
+        return redtenbacher_loss(self.drive.mechanism.lam, self.drive.crosshead_friction)
 
     @cached_property
     def loss_rings(self) -> float | None:

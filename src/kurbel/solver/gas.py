@@ -18,16 +18,19 @@ if TYPE_CHECKING:
 class PistonGas:
     """The pressures on both sides of one piston that has an indicator.
 
-    head, crank: the pressures of the two ends, None for an end that is open to the ambient.
+    head, crank: the pressures of the two ends, None for an end that is open to the ambient. cycle: degrees of its own
+    cycle, which is run through `repeats` times in that of the cylinder.
     """
 
-    def __init__(self, piston: Piston, mechanism: Mechanism, cycle: float, ambient: float) -> None:
+    def __init__(self, piston: Piston, mechanism: Mechanism, cycle: float, ambient: float, repeats: int = 1) -> None:
         indicator = piston.indicator
         assert indicator is not None
         head, crank = indicator.head_end, indicator.crank_end
         at_head = Place(mechanism, cycle, True, ambient, indicator.absolute)
         at_crank = at_head._replace(head_end=False, mirrored=crank is head)
         self.piston = piston
+        self.repeats = repeats
+        self._cycle = cycle
         self.head = None if head is None else pressure_in(head, at_head)
         self.crank = None if crank is None else pressure_in(crank, at_crank)
         self._stroke = mechanism.stroke
@@ -35,7 +38,13 @@ class PistonGas:
     @property
     def starts(self) -> list[Array]:
         """The crank angles in degrees at which a pressure bends or jumps, and where quadratures should split."""
-        return [angles for end in (self.head, self.crank) if end for angles in (end.starts, end.bends)]
+        return [
+            angles + turn * self._cycle
+            for end in (self.head, self.crank)
+            if end
+            for angles in (end.starts, end.bends)
+            for turn in range(self.repeats)
+        ]
 
     def force(self, x: Any, angle: CrankAngle, within: Array) -> Any:
         """Return P = p_H A_H − p_C A_C in N, R 296, with gauge pressures."""
@@ -48,10 +57,11 @@ class PistonGas:
 
     @cached_property
     def works(self) -> tuple[float, float]:
-        """Indicated work in J per cycle of head end and crank end: A s ∮ p dz."""
+        """Indicated work in J per cycle of the cylinder of head end and crank end: A s ∮ p dz."""
+        way = self._stroke * self.repeats
         return (
-            self.piston.head_area * self._stroke * self.head.area if self.head else 0.0,
-            self.piston.crank_area * self._stroke * self.crank.area if self.crank else 0.0,
+            self.piston.head_area * way * self.head.area if self.head else 0.0,
+            self.piston.crank_area * way * self.crank.area if self.crank else 0.0,
         )
 
     @property
@@ -66,7 +76,8 @@ class PistonGas:
         found = [
             (area * end.area, area * end.area_by_angle) for end, area in ends if end and hasattr(end, "area_by_angle")
         ]
-        return (self._stroke * sum(w for w, _ in found), self._stroke * sum(d for _, d in found)) if found else None
+        way = self._stroke * self.repeats
+        return (way * sum(w for w, _ in found), way * sum(d for _, d in found)) if found else None
 
     @property
     def swept_volume(self) -> float:

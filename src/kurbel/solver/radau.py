@@ -6,12 +6,12 @@ The whole cycle is solved at once, so that it does not matter how many turns a m
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from kurbel.errors import NoSolutionError
 from kurbel.solver.legendre import legendre, legendre_slopes
 
 if TYPE_CHECKING:
@@ -39,6 +39,10 @@ class Equation(Protocol):
 
     def floor(self, prepared: Array) -> Array:
         """Return what z must stay above."""
+        ...
+
+    def heavier(self, inertia: float) -> Equation:
+        """Return the equation with more inertia, whose floor is lower by so much: the more, the tamer it is."""
         ...
 
 
@@ -102,15 +106,17 @@ class Elements(NamedTuple):
 
 
 class Periodic(NamedTuple):
-    """A periodic solution: Legendre coefficients (k, s + 1) on elements, and its Floquet multiplier over the cycle.
+    """A periodic solution: Legendre coefficients (k, s + 1) on elements.
 
-    values: (k, s) at the nodes of the elements.
+    start, values: z at the starts (k,) and at the nodes (k, s) of the elements; growth: ∮ ∂f/∂z dφ, the logarithm of
+    what is left of a small disturbance after the cycle (Floquet).
     """
 
     elements: Elements
     coefficients: Array
+    start: Array
     values: Array
-    multiplier: float
+    growth: float
 
     def at(self, degrees: Array, within: Array) -> Array:
         """Return z at crank angles (n,) in degrees, from the elements that hold `within`."""
@@ -123,20 +129,101 @@ class Periodic(NamedTuple):
 def periodic(equation: Equation, breaks: Array) -> Periodic:
     """Return the solution of z′ = f(φ, z) with the period of the breaks (n + 1,) in degrees.
 
-    Raises NoSolutionError, whose text is an angle in degrees, where z would fall to its floor.
+    Newton's method starts from z = 0; where that leads nowhere, from a solution with more inertia, which is taken off.
+    Raises Standstill where z falls to its floor on that way, and Unsettled where the way ends before it does.
     """
     low, high = breaks[:-1], breaks[1:]
     elements = Elements(low, np.zeros_like(low), high - low, (low + high) / 2)
+    guess = _Guess(elements, np.zeros_like(low), np.zeros_like(elements.degrees))
+    with np.errstate(all="ignore"):  # a step too far may overflow; it is taken back
+        try:
+            return _settled(equation, guess)
+        except Unsettled:
+            return _lightened(equation, guess)
+
+
+class Unsettled(Exception):
+    """No solution is found; inertia: what more would be enough, in the unit of z, or None where that is not known."""
+
+    def __init__(self, inertia: float | None = None) -> None:
+        super().__init__("no periodic solution found")
+        self.inertia = inertia
+
+
+class Standstill(Unsettled):
+    """z falls to its floor near a crank angle in degrees; inertia: see `Unsettled`."""
+
+    def __init__(self, degrees: float, inertia: float | None = None) -> None:
+        super().__init__(inertia)
+        self.degrees = degrees
+
+
+class _Guess(NamedTuple):
+    """Elements, with z at their starts (k,) and at their nodes (k, s)."""
+
+    elements: Elements
+    start: Array
+    values: Array
+
+
+_HEAVIEST = 12
+"""Hundredfolds of the inertia that are tried for a first solution."""
+_STEP = 0.1
+_SHORTEST = 0.998
+"""Largest and smallest cut of the inertia, on the way down."""
+_STANDING = 0.05
+"""z − floor, over that of z = 0, that is taken for standing still where the way down ends."""
+
+
+def _lightened(equation: Equation, guess: _Guess) -> Periodic:
+    """Follow the solution from much inertia down to that of the equation."""
+    own = -float(equation.floor(guess.elements.prepared(equation)).max())
+    found, inertia = _heavy(equation, guess, own)
+    factor = _STEP
+    while inertia > own:
+        lighter = max(inertia * factor, own)
+        try:
+            found = _settled(equation.heavier(lighter - own), _Guess(found.elements, found.start, found.values))
+            inertia, factor = lighter, max(factor**1.5, _STEP)
+        except Unsettled:
+            factor = math.sqrt(factor)
+            if factor > _SHORTEST:
+                raise _end_of(equation.heavier(inertia - own), found, inertia - own) from None
+    return found
+
+
+def _heavy(equation: Equation, guess: _Guess, own: float) -> tuple[Periodic, float]:
+    for more in range(1, _HEAVIEST + 1):
+        inertia = own * 100.0**more
+        try:
+            return _settled(equation.heavier(inertia - own), guess), inertia
+        except Unsettled:
+            continue
+    raise Unsettled
+
+
+def _end_of(equation: Equation, found: Periodic, more: float) -> Unsettled:
+    """Return why the way down ends at this solution: because z is all but at its floor, or not."""
+    floor = equation.floor(found.elements.prepared(equation))
+    share = 1 - found.values / floor
+    if share.min() > _STANDING:
+        return Unsettled(more)
+    return Standstill(float(found.elements.degrees.ravel()[np.argmin(share)]), more)
+
+
+def _settled(equation: Equation, guess: _Guess) -> Periodic:
+    """Solve and refine until every element is smooth; raises Unsettled."""
+    elements, start, values = guess
     prepared = elements.prepared(equation)
-    start, values = np.zeros_like(low), np.zeros_like(elements.degrees)
     for _ in range(_ROUNDS):
-        start, values, multiplier = _newton(equation, elements, prepared, start, values)
+        start, values = _newton(equation, elements, prepared, start, values)
         whole = np.concatenate((start[:, None], values), axis=1)
         coefficients = whole @ rule().to_legendre.T
         rough = np.abs(coefficients[:, -2:]).sum(axis=1) > _tolerance(whole) + equation.noise
-        rough &= elements.width > 1e-16 * breaks[-1]
+        rough &= elements.width > 1e-16 * float(elements.low[-1] + elements.width[-1])
         if not rough.any():
-            return Periodic(elements, coefficients, values, multiplier)
+            growth = np.radians(elements.width)[:, None] * equation.rate(prepared, values)[1]
+            return Periodic(elements, coefficients, start, values, float((growth @ rule().matrix[-1]).sum()))
         elements, start, values, prepared = _refined(equation, elements, prepared, whole, coefficients, rough)
         if len(elements.width) > _MOST_ELEMENTS:
             break
@@ -147,65 +234,85 @@ def _tolerance(values: Array) -> float:
     return float(_TOLERANCE * np.ptp(values) + 4e-15 * np.abs(values).max())
 
 
-class Unsettled(Exception):
-    """The refinement does not come to an end."""
+class _State(NamedTuple):
+    """Where Newton's method stands: z, its slope of the rate times the width, and what the equations still lack."""
 
+    start: Array
+    values: Array
+    stiffness: Array
+    residual: Array
+    jump: Array
 
-class Standstill(NoSolutionError):
-    """z falls to its floor near a crank angle."""
-
-    def __init__(self, degrees: float) -> None:
-        super().__init__(f"standstill near {degrees:.4g} deg")
-        self.degrees = degrees
+    @property
+    def lack(self) -> float:
+        """Size of what is lacking; not a number where the rate overflows."""
+        return math.sqrt(float(np.square(self.residual).sum() + np.square(self.jump).sum()))
 
 
 def _newton(
     equation: Equation, elements: Elements, prepared: Array, start: Array, values: Array
-) -> tuple[Array, Array, float]:
-    """Solve the collocation equations of all elements by Newton's method; returns starts, values and the multiplier."""
+) -> tuple[Array, Array]:
+    """Solve the collocation equations of all elements by Newton's method, with steps that make what is lacking less."""
     height = np.radians(elements.width)[:, None]
     floor = equation.floor(prepared)
     least = -floor.max()
-    previous = np.inf
-    for _ in range(60):
+
+    def state(start: Array, values: Array) -> _State:
         rate, slope = equation.rate(prepared, values)
         residual = start[:, None] + height * (rate @ rule().matrix.T) - values
-        step_start, step, multiplier = _linear_step(height * slope, residual, start, values)
-        share = _allowed(values - floor, step)
-        start, values = start + share * step_start, values + share * step
-        size = np.abs(step).max()
+        return _State(start, values, height * slope, residual, np.roll(values[:, -1], 1) - start)
+
+    at, previous = state(start, values), np.inf
+    for _ in range(100):
+        if not math.isfinite(at.lack):
+            break
+        step_start, step = _linear_step(at)
+        size = float(np.abs(step).max())
         # with a heavy flywheel rounding moves the mean level, though by nothing beside the whole energy
-        near = max(1e-9 * np.ptp(values), 1e-14 * least)
+        near = max(1e-9 * np.ptp(at.values + step), 1e-14 * least)
+        share = _allowed(at.values - floor, step)
+        after = state(at.start + share * step_start, at.values + share * step)
+        while size > near and not after.lack <= (1 - share / 8) * at.lack and share > 1e-6:
+            share /= 2
+            after = state(at.start + share * step_start, at.values + share * step)
+        at = after
         if share == 1 and (size <= 1e-6 * near or (size <= near and size >= previous / 4)):
-            return start, values, multiplier
-        if share < 1e-9:
+            return at.start, at.values
+        if share <= 1e-6 or not math.isfinite(size):
             break
         previous = size if share == 1 else np.inf
-    gap = (values - floor) / -floor
-    raise Standstill(float(elements.degrees.ravel()[np.argmin(gap)]))
+    raise Unsettled
 
 
-def _linear_step(stiffness: Array, residual: Array, start: Array, values: Array) -> tuple[Array, Array, float]:
+def _linear_step(at: _State) -> tuple[Array, Array]:
     """Return the Newton step of starts and values, with the periodic chain of elements eliminated element by element.
 
     In one element δ = response + gain δ_start; its last node is the start of the next one.
     """
-    systems = np.eye(_STAGES) - rule().matrix * stiffness[:, None, :]
-    sides = np.stack((residual, np.ones_like(residual)), axis=-1)
-    response, gain = np.moveaxis(np.linalg.solve(systems, sides), -1, 0)
-    jump = np.roll(values[:, -1], 1) - start  # what periodicity and continuity still lack
-    ends, gains, jumps = response[:, -1].tolist(), gain[:, -1].tolist(), jump.tolist()
-    # δ_start of element k + 1 is ends[k] + gains[k] δ_start(k) + jump(k + 1)
-    offset, multiplier = 0.0, 1.0
-    for k in range(len(ends)):
-        offset = ends[k] + gains[k] * offset + jumps[(k + 1) % len(ends)]
-        multiplier *= gains[k]
-    first = offset / (1 - multiplier) if multiplier != 1 else 0.0
-    steps = [first]
-    for k in range(len(ends) - 1):
-        steps.append(ends[k] + gains[k] * steps[-1] + jumps[k + 1])
-    step_start = np.array(steps)
-    return step_start, response + gain * step_start[:, None], multiplier
+    systems = np.eye(_STAGES) - rule().matrix * at.stiffness[:, None, :]
+    sides = np.stack((at.residual, np.ones_like(at.residual)), axis=-1)
+    try:
+        response, gain = np.moveaxis(np.linalg.solve(systems, sides), -1, 0)
+    except np.linalg.LinAlgError:
+        raise Unsettled from None
+    # δ_start of element k + 1 is more[k] + gains[k] δ_start(k)
+    more = response[:, -1] + np.roll(at.jump, -1)
+    step_start = np.array(_chain(more.tolist(), gain[:, -1].tolist()))
+    return step_start, response + gain * step_start[:, None]
+
+
+def _chain(more: list[float], gains: list[float]) -> list[float]:
+    """Return the periodic solution of d(k + 1) = more(k) + gains(k) d(k), run in the direction in which errors die."""
+    offset, whole = 0.0, 1.0
+    for add, gain in zip(more, gains):
+        offset, whole = add + gain * offset, whole * gain
+    if not abs(whole) > 1 or 0.0 in gains:
+        steps = [offset / (1 - whole) if whole != 1 else 0.0]
+        for add, gain in zip(more[:-1], gains):
+            steps.append(add + gain * steps[-1])
+        return steps
+    back = _chain([-add / gain for add, gain in zip(more[::-1], gains[::-1])], [1 / gain for gain in gains[::-1]])
+    return [back[0], *back[:0:-1]]
 
 
 def _allowed(room: Array, step: Array) -> float:

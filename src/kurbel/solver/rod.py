@@ -13,7 +13,7 @@ from typing import Any
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.masses import ConnectingRod
-from kurbel.solver.state import GRAVITY
+from kurbel.units import GRAVITY
 
 RodAngle = tuple[Any, Any]
 
@@ -39,7 +39,8 @@ class ExactRod:
     @cached_property
     def pull(self) -> float:
         """Centrifugal force m R ω² of the mass at the pin in N, away from the shaft."""
-        return self.pin_mass * self.crank * self.omega**2
+        # a float squared by ** raises where the product is infinite
+        return self.pin_mass * self.crank * self.omega * self.omega
 
     def swing_slope(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
         """Return dψ/dφ = λ cos φ/cos ψ."""
@@ -50,7 +51,7 @@ class ExactRod:
         sin_psi, cos_psi = rod_angle
         slope = self.swing_slope(rod_angle, angle)
         curvature = slope * slope * (sin_psi / cos_psi) - self.crank / self.length * angle.sin / cos_psi
-        return curvature * (self.excess_inertia * self.omega**2)
+        return curvature * (self.excess_inertia * self.omega * self.omega)
 
     def side_force(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
         """Return the force in N, square to the stroke line, by which the couple relieves the guide."""
@@ -71,6 +72,6 @@ class ExactRod:
         return share + (angle.cos * self.weight[0] + angle.sin * self.weight[1])
 
     def reduced_inertia(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
-        """Return what the rod, but for its mass at the crosshead pin, adds to the shaft's inertia, in kg m²."""
+        """Return what the rod, but for the masses at its ends, adds to the shaft's inertia, in kg m²."""
         slope = self.swing_slope(rod_angle, angle)
-        return slope * slope * self.excess_inertia + self.pin_mass * self.crank**2
+        return slope * slope * self.excess_inertia

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -45,3 +46,26 @@ def _next_part(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array) ->
         quadratic = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)
         step = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
     return np.where(quadratic & np.isfinite(step), np.clip(step, 0.0, 1.0), 0.5)
+
+
+_DOUBLINGS = 30
+
+
+def falling_root(function: Callable[[float], float], start: float) -> float | None:
+    """Return the positive argument at which a function that falls passes zero; None where it does not, far and wide.
+
+    start: where to look first, positive. The function may be infinite.
+    """
+    inner, f_inner = start, function(start)
+    step = 2.0 if f_inner > 0 else 0.5
+    for _ in range(_DOUBLINGS):
+        outer = inner * step
+        f_outer = function(outer)
+        if (f_outer > 0) != (f_inner > 0):
+            break
+        inner, f_inner = outer, f_outer
+    else:
+        return None
+    ends = (np.array([math.log(inner)]), np.array([math.log(outer)]), np.array([f_inner]), np.array([f_outer]))
+    root = bracketed_roots(lambda x: np.array([function(math.exp(one)) for one in x]), *ends)
+    return math.exp(float(root[0]))

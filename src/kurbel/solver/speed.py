@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Inertia:
-    """The reduced moment of inertia J(φ) = J + Σ m x′² in kg m², at a nominal angular velocity ω_n in rad/s."""
+    """The reduced moment of inertia J(φ) = J + Σ m x′² + … in kg m², at a nominal angular velocity ω_n in rad/s."""
 
     def __init__(self, flywheel: float, masses: Sequence[InertiaEffort], omega: float) -> None:
         self.flywheel = flywheel
@@ -90,7 +90,7 @@ class SpeedLine:
 
     def z(self, degrees: Array, within: Array) -> Array:
         """Return z in J at crank angles (n,) within the cycle."""
-        raise AssertionError
+        raise NotImplementedError
 
     def _rise(self, ratio: Array) -> Array:
         """Return what the load takes beyond its torque at the nominal speed, in N m; ratio: (ω/ω_n)² − 1."""
@@ -200,22 +200,26 @@ def _split_at_dips(excess: Excess) -> Grid:
     return excess.grid.split_at(np.mod(angles, excess.cycle))
 
 
-class _Prepared(NamedTuple):
-    """What the equation of speed needs at its nodes: excess at the nominal speed in N m and ½ J(φ) ω_n² in J."""
-
-    excess: Array
-    energy: Array
+def floquet(growth: float) -> float:
+    """Return the multiplier e^growth; what is beyond the range of a float is the end of it."""
+    return math.exp(min(growth, 709.7))
 
 
 class SpeedEquation:
     """z′ = M − M_load(ω), ω from z; see `radau.Equation`."""
 
-    def __init__(self, excess: Torque, law: SpeedLaw, inertia: Inertia, noise: float) -> None:
+    def __init__(self, excess: Torque, law: SpeedLaw, inertia: Inertia, noise: float, more: float = 0.0) -> None:
         self.excess, self.law, self.inertia, self.noise = excess, law, inertia, noise
+        self.more = more
 
     def prepared(self, degrees: Array, within: Array) -> Array:
         """See `radau.Equation`."""
-        return np.stack((self.excess.torque(degrees, within).value, self.inertia.energy(degrees, within).value))
+        energy = self.inertia.energy(degrees, within).value + self.more
+        return np.stack((self.excess.torque(degrees, within).value, energy))
+
+    def heavier(self, inertia: float) -> SpeedEquation:
+        """See `radau.Equation`; inertia as ½ J ω_n² in J."""
+        return SpeedEquation(self.excess, self.law, self.inertia, self.noise, inertia)
 
     def rate(self, prepared: Array, z: Array) -> tuple[Array, Array]:
         """See `radau.Equation`."""
@@ -250,5 +254,8 @@ class SpeedDependentLoad(SpeedLine):
 
     @property
     def multiplier(self) -> float:
-        """Floquet multiplier: what is left of a small disturbance of the energy after one cycle; stable below 1."""
-        return self.solution.multiplier
+        """Floquet multiplier: what is left of a small disturbance of the energy after one cycle; stable below 1.
+
+        μ = exp(−∮ ∂M_load/∂ω/(J ω) dφ).
+        """
+        return floquet(self.solution.growth)

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.drive import Drive
 
-GRAVITY = 9.80665
-
 
 class State(Members):
     """A cylinder at crank angles (n,); its attributes are named by the ids of the columns, in SI, each of shape (n,).

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from kurbel.arithmetic import exact_sum, running_sums
 from kurbel.machine.turning import Effort
 from kurbel.solver.grid import ascending
 from kurbel.solver.jet import Jet
@@ -32,19 +33,19 @@ class Torque(Protocol):
     def work(self, low: Array, high: Array) -> Array:
         """Return ∫ M dφ in J from `low` to `high` (n,) in degrees, as terms (k, n) that add up to it.
 
-        The terms are differences taken before anything is summed, so that `math.fsum` over them loses nothing.
+        The terms are differences taken before anything is summed, so that an exact sum of them loses nothing.
         """
         ...
 
 
 def total_work(torque: Torque, low: float, high: float) -> float:
     """Return ∫ M dφ in J between two angles in degrees, its terms added exactly."""
-    return math.fsum(_terms(torque, low, high))
+    return total_works(torque, (low,), (high,))[0]
 
 
-def _terms(torque: Torque, low: float, high: float) -> list[float]:
-    terms: list[float] = torque.work(np.array([low]), np.array([high]))[:, 0].tolist()
-    return terms
+def total_works(torque: Torque, low: Sequence[float], high: Sequence[float]) -> list[float]:
+    """Return ∫ M dφ in J between every two angles in degrees, each by terms added exactly."""
+    return [exact_sum(terms) for terms in torque.work(np.array(low), np.array(high)).T.tolist()]
 
 
 def exact_product(a: Array, b: Array | float) -> Array:
@@ -105,11 +106,11 @@ class Mean(Uniform):
     """
 
     def __init__(self, torque: Torque, cycle: float) -> None:
-        terms = _terms(torque, 0.0, cycle)
-        whole = math.fsum(terms)
+        terms: list[float] = torque.work(np.array([0.0]), np.array([cycle]))[:, 0].tolist()
+        whole = exact_sum(terms)
         self._per_degree = whole / cycle
         there = exact_product(np.array([[self._per_degree]]), cycle)[:, 0].tolist()
-        self._rest = math.fsum((*terms, *(-part for part in there))) / cycle
+        self._rest = exact_sum((*terms, *(-part for part in there))) / cycle
         super().__init__(whole / math.radians(cycle), cycle)
 
     def work(self, low: Array, high: Array) -> Array:
@@ -155,7 +156,7 @@ class Diagram:
     def _areas(self) -> Array:
         """Work in N m deg up to the start of each piece, and over the whole period at the end."""
         pieces = self._widths * (self._torques + self._rises * self._widths / 2)
-        return np.array([math.fsum(pieces[:k].tolist()) for k in range(len(pieces) + 1)])
+        return np.array([0.0, *(total for total, _ in running_sums((one,) for one in pieces.tolist()))])
 
     def work(self, low: Array, high: Array) -> Array:
         """Return the closed work; see `Torque`."""

@@ -1,7 +1,7 @@
 """Pressures in the chambers over the crank angle: one interface, be it for a card, a trace or a few numbers.
 
-A kind of chamber is a class of `kurbel.machine` and one line in `_KINDS`; its module is imported only when a machine
-has one.
+A kind of chamber is a class of `kurbel.machine`, named in `_CHAMBER` of `kurbel.machine.indicator` for the machine file
+and in `_KINDS` here; its module is imported only when a machine has one.
 """
 
 from __future__ import annotations
@@ -72,18 +72,19 @@ class Pressure(Protocol):
 _CARDS = "kurbel.solver.pressure.card:CardPressure"
 _IDEAL = "kurbel.solver.pressure.ideal:ideal_pressure"
 _KINDS = {
-    "Card": _CARDS,
-    "Trace": "kurbel.solver.pressure.trace:TracePressure",
-    "Steam": _IDEAL,
-    "Compressor": _IDEAL,
-    "Otto": _IDEAL,
-    "Diesel": _IDEAL,
+    "kurbel.machine.indicator:Card": _CARDS,
+    "kurbel.machine.trace:Trace": "kurbel.solver.pressure.trace:TracePressure",
+    "kurbel.machine.ideal_cards:Steam": _IDEAL,
+    "kurbel.machine.ideal_cards:Compressor": _IDEAL,
+    "kurbel.machine.ideal_cards:Otto": _IDEAL,
+    "kurbel.machine.ideal_cards:Diesel": _IDEAL,
 }
 """Class of the chamber -> what makes its pressure, from the chamber and its place."""
 
 
 def pressure_in(chamber: Chamber, place: Place) -> Pressure:
     """Return the pressure in a chamber."""
-    module, name = _KINDS[type(chamber).__name__].split(":")
+    paths = (f"{kind.__module__}:{kind.__qualname__}" for kind in type(chamber).__mro__)
+    module, name = next(_KINDS[path] for path in paths if path in _KINDS).split(":")
     pressure: Pressure = getattr(import_module(module), name)(chamber, place)
     return pressure

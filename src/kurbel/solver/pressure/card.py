@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,21 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
 
 
+class Lines(NamedTuple):
+    """The lines of pieces (n,): fraction and pressure in Pa where each begins, its gradient in Pa, its exponent."""
+
+    z: Array
+    p: Array
+    gradients: Array
+    exponents: Array
+
+    @classmethod
+    def of(cls, pieces: Sequence[Piece]) -> Lines:
+        """Return the lines of pieces that have a width."""
+        z, p, next_z, next_p, exponents = np.array(pieces).T
+        return cls(z, p, (next_p - p) / (next_z - z), exponents)
+
+
 class ProcessPressure:
     """Gauge pressure in one chamber from a process over the stroke.
 
@@ -32,28 +48,28 @@ class ProcessPressure:
         self.place = place
         self._stroke = place.mechanism.stroke
         begun = sorted(
-            (float(start), piece)
-            for index, stroke in enumerate(process.strokes)
-            for start, piece in zip(_starts(stroke, index, place), stroke, strict=True)
+            (begun for index, stroke in enumerate(process.strokes) for begun in _begun(stroke, index, place)),
+            key=lambda begun: begun[0],
         )
         self.starts = np.array([start for start, _ in begun])
         self.pieces = tuple(piece for _, piece in begun)
-        self._z, self._p, next_z, next_p, self._exponents = np.array(self.pieces).T
-        self._gradients = (next_p - self._p) / (next_z - self._z)
+        self.lines = Lines.of(self.pieces)
 
     def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
         """Return the gauge pressure in Pa at displacements x (n,) in m, on the pieces that hold the angles `within`."""
         piece = np.searchsorted(self.starts, np.mod(once_each(within), self.place.cycle), side="right") - 1
         share = x / self._stroke if self.place.head_end else 1 - x / self._stroke
-        straight = (self._p[piece] - self.place.base) + self._gradients[piece] * (share - self._z[piece])
+        lines = self.lines
+        straight = (lines.p[piece] - self.place.base) + lines.gradients[piece] * (share - lines.z[piece])
         return self._curved(straight, share, piece) if self.process.polytropic else straight
 
     def _curved(self, straight: Any, share: Any, piece: Indices) -> Any:
         """Return P (V/V′)^n less the ambient on polytropic pieces, and the straight value elsewhere."""
-        clearance, exponents = self.process.clearance, self._exponents[piece]
+        lines, clearance = self.lines, self.process.clearance
+        exponents = lines.exponents[piece]
         # beside a dead centre rounding may put x a hair outside the stroke; the clearance keeps the volume positive
-        swelling = (share + clearance) / (self._z[piece] + clearance)
-        power = (self._p[piece] + self.process.lift) * swelling**-exponents - self.place.ambient
+        swelling = (share + clearance) / (lines.z[piece] + clearance)
+        power = (lines.p[piece] + self.process.lift) * swelling**-exponents - self.place.ambient
         if hasattr(power, "where"):
             return power.where(exponents != 0, power, straight)
         return np.where(exponents != 0, power, straight)
@@ -76,18 +92,34 @@ class ProcessPressure:
         return self.process.area
 
 
-def _starts(stroke: Stroke, index: int, place: Place) -> Array:
-    """Return the crank angles in degrees in [0, cycle) at which the pieces of one stroke begin."""
+_NO_WIDTH = 1e-10
+"""Degrees of crank angle; over less a line cannot be followed, and its piece is a jump."""
+
+
+def _begun(stroke: Stroke, index: int, place: Place) -> Iterator[tuple[float, Piece]]:
+    """Yield the crank angles in degrees in [0, cycle) at which the pieces of one stroke begin, jumps left out."""
+    edges = _edges(stroke, index, place)
+    # beside the other end of the stroke rounding may turn two angles round
+    widths = np.mod(np.diff(edges) + 1, 360.0) - 1
+    wide = [(start, piece) for start, piece, width in zip(edges, stroke, widths, strict=False) if width > _NO_WIDTH]
+    for number, (start, piece) in enumerate(wide):
+        yield float((start if number else edges[0]) % place.cycle), piece
+
+
+def _edges(stroke: Stroke, index: int, place: Place) -> Array:
+    """Return the crank angles in degrees at which the pieces of one stroke begin, and that at which it ends."""
     # the crank end begins its process at the outer dead centre, one stroke later
     number = index + (0 if place.head_end else 1)
-    inner, outer = place.mechanism.dead_centres()
-    turn = 360.0 * (number // 2)
-    begin = turn + (inner, outer)[number % 2]
+    begin, end = (_dead_centre(place, each) for each in (number, number + 1))
     fractions = np.array([piece.z for piece in stroke[1:]])
     along = fractions if place.head_end else 1 - fractions
-    way = along * place.mechanism.stroke
-    angles = turn + place.mechanism.crank_angles_at(way, number % 2 == 0) if len(stroke) > 1 else []
-    return np.asarray(np.mod(np.concatenate(([begin], angles)), place.cycle))
+    angles = place.mechanism.crank_angles_at(along * place.mechanism.stroke, number % 2 == 0) if len(stroke) > 1 else []
+    return np.concatenate(([begin], 360.0 * (number // 2) + np.asarray(angles), [end]))
+
+
+def _dead_centre(place: Place, number: int) -> float:
+    """Return the crank angle in degrees at which this stroke begins; strokes count from 0 on."""
+    return 360.0 * (number // 2) + place.mechanism.dead_centres()[number % 2]
 
 
 class CardPressure(ProcessPressure):

@@ -22,14 +22,15 @@ def ideal_pressure(card: IdealCard, place: Place) -> ProcessPressure:
 
 def ideal_process(card: IdealCard, lift: float = 0.0, revolutions: int = 1) -> Process:
     """Return the process of an ideal card; lift makes its pressures absolute (Pa); revolutions per cycle."""
-    drawing = _Drawing(lift, card.clearance)
-    return Process(_DRAWN[type(card)](drawing, card, revolutions == 2), lift, card.clearance)
+    drawing = _Drawing(lift, card.clearance, revolutions == 2)
+    return Process(_DRAWN[type(card)](drawing, card), lift, card.clearance)
 
 
 class _Drawing:
-    """Draws pieces of a card with one clearance; lift makes its pressures absolute."""
+    """Draws pieces of a card with one clearance; lift makes its pressures absolute; four_stroke: with gas exchange."""
 
-    def __init__(self, lift: float, clearance: float) -> None:
+    def __init__(self, lift: float, clearance: float, four_stroke: bool) -> None:
+        self.four_stroke = four_stroke
         self.lift = lift
         self.clearance = clearance
 
@@ -44,7 +45,7 @@ class _Drawing:
         ratio = (p + self.lift) / (next_p + self.lift)
         return z + volume * math.expm1(math.log(ratio) / exponent)
 
-    def steam(self, card: Steam, four_stroke: bool) -> tuple[Stroke, ...]:
+    def steam(self, card: Steam) -> tuple[Stroke, ...]:
         """Admission, expansion, exhaust; exhaust, compression."""
         expansion = self.polytrope(card.cut_off, card.admission, card.release, card.exponent)
         compression = self.polytrope(card.compression, card.exhaust, 0.0, card.exponent)
@@ -57,7 +58,7 @@ class _Drawing:
             _wide(_isobar(1.0, card.exhaust, card.compression), compression),
         )
 
-    def compressor(self, card: Compressor, four_stroke: bool) -> tuple[Stroke, ...]:
+    def compressor(self, card: Compressor) -> tuple[Stroke, ...]:
         """Expansion of the clearance gas, suction; compression, delivery."""
         fills = self.fraction_after(0.0, card.delivery, card.suction, card.exponent)
         empties = self.fraction_after(1.0, card.suction, card.delivery, card.exponent)
@@ -72,30 +73,30 @@ class _Drawing:
             ),
         )
 
-    def otto(self, card: Otto, four_stroke: bool) -> tuple[Stroke, ...]:
+    def otto(self, card: Otto) -> tuple[Stroke, ...]:
         """Expansion from the peak; then as every engine."""
-        return self._engine(card, (self.polytrope(0.0, card.peak, 1.0, card.expansion_exponent),), four_stroke)
+        return self._engine(card, (self.polytrope(0.0, card.peak, 1.0, card.expansion_exponent),))
 
-    def diesel(self, card: Diesel, four_stroke: bool) -> tuple[Stroke, ...]:
+    def diesel(self, card: Diesel) -> tuple[Stroke, ...]:
         """Injection at constant pressure, expansion; then as every engine."""
         burning = self._compression(card).next_p if card.peak is None else card.peak
         power = (
             _isobar(0.0, burning, card.cut_off),
             self.polytrope(card.cut_off, burning, 1.0, card.expansion_exponent),
         )
-        return self._engine(card, power, four_stroke)
+        return self._engine(card, power)
 
     def _compression(self, card: Otto | Diesel) -> Piece:
         return self.polytrope(1.0, card.intake, 0.0, card.exponent)
 
-    def _engine(self, card: Otto | Diesel, power: Stroke, four_stroke: bool) -> tuple[Stroke, ...]:
+    def _engine(self, card: Otto | Diesel, power: Stroke) -> tuple[Stroke, ...]:
         compression = (self._compression(card),)
-        if not four_stroke:
+        if not self.four_stroke:
             return power, compression
         return power, (_isobar(1.0, card.leaving, 0.0),), (_isobar(0.0, card.intake, 1.0),), compression
 
 
-_DRAWN: dict[type, Callable[[_Drawing, Any, bool], tuple[Stroke, ...]]] = {
+_DRAWN: dict[type, Callable[[_Drawing, Any], tuple[Stroke, ...]]] = {
     Steam: _Drawing.steam,
     Compressor: _Drawing.compressor,
     Otto: _Drawing.otto,

@@ -14,13 +14,17 @@ from kurbel.machine import Machine
 from kurbel.machine.crankshaft import Crankshaft, strength_obstacle
 from kurbel.mechanisms import Extreme
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.grid import Brackets, Grid, Sampled, ascending, extremes, roots, sign_changes
-from kurbel.solver.state import GRAVITY, State
-from kurbel.solver.strength.places import PARTS, Place, Stresses, places
+from kurbel.solver.grid import Brackets, Extremes, Grid, Sampled, ascending, extremes, roots, sign_changes
+from kurbel.solver.state import State
+from kurbel.solver.strength.columns import StrengthColumns, strength_columns
+from kurbel.solver.strength.places import Place, Stresses, places
 from kurbel.solver.strength.sections import norm
 from kurbel.solver.strength.statics import FreeBody, Vector, equilibrium_residual, weight_in_throw
+from kurbel.units import GRAVITY
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from kurbel.arrays import Array
 
 
@@ -32,27 +36,6 @@ class Strained(NamedTuple):
     stresses: Stresses
     combined: float
     von_mises: float
-
-
-class StrengthColumns:
-    """Everything that is told over the crank angle; attributes by the ids of the columns, in SI, each (n,).
-
-    D, T: force on the pin; A_D, A_T, B_D, B_T: forces on the bearings in the frame of the throw; sigma_ and mises_ with
-    the name of a part: its largest combined stress. A part that is not examined is None.
-    """
-
-    def __init__(self, state: State, body: FreeBody, looked_at: tuple[Place, ...]) -> None:
-        self.phi = state.phi
-        self.D, self.T = body.pin
-        (self.A_D, self.A_T), (self.B_D, self.B_T) = body.A, body.B
-        for part in PARTS:
-            own = [place for place in looked_at if place.part == part]
-            setattr(self, f"sigma_{part}", _largest([place.combined(body) for place in own]))
-            setattr(self, f"mises_{part}", _largest([place.von_mises(body) for place in own]))
-
-
-def _largest(values: list[Any]) -> Any:
-    return np.max(values, axis=0) if values else None
 
 
 class CrankshaftStrength:
@@ -86,13 +69,27 @@ class CrankshaftStrength:
             turned = weight_in_throw(self.weight, angle, inclination)
         return FreeBody(self.shaft, self.forces.drive.mechanism.crank, pin, turned)
 
+    @cached_property
+    def rod_pull(self) -> float:
+        """Centrifugal force m R ω² in N of the connecting rod's part that turns with the pin, away from the shaft.
+
+        Of a rod given by its `share` only: the D of an exact rod contains it already, that of R 302 does not.
+        """
+        drive = self.forces.drive
+        masses, omega = drive.cylinder.masses, drive.omega
+        rod = masses.connecting_rod if masses else None
+        if rod is None or rod.exact or omega is None:
+            return 0.0
+        # a float squared by ** raises where the product is infinite
+        return rod.mass * (1 - rod.share) * drive.mechanism.crank * omega * omega
+
     def _running(self, state: State) -> FreeBody:
-        return self._body(Vector(state.D, state.T), state.angle)
+        return self._body(Vector(state.D - self.rod_pull, state.T), state.angle)
 
     def at(self, degrees: Any) -> StrengthColumns:
         """Return forces on the bearings and stresses at crank angles (n,) in degrees, just after a jump."""
         state = self.forces.at(degrees)
-        return StrengthColumns(state, self._running(state), self.places)
+        return strength_columns(state, self._running(state), self.places)
 
     # the cycle
 
@@ -107,7 +104,9 @@ class CrankshaftStrength:
             state = State(drive, CrankAngle.of(degrees, beyond), within)
             return np.stack(np.broadcast_arrays(*_with_kinks(self._running(state))))
 
-        brackets = [sign_changes(grid, values) for values in signed(grid.degrees, grid.within, grid.beyond)]
+        sampled = signed(grid.degrees, grid.within, grid.beyond)
+        self._refuse_infinite(sampled)
+        brackets = [sign_changes(grid, values) for values in sampled]
         owner = np.repeat(np.arange(len(brackets)), [len(bracket.low) for bracket in brackets])
         stacked = Brackets(*(np.concatenate(parts) for parts in zip(*brackets)))
         turns = roots(lambda phi, within: signed(phi, within)[owner, np.arange(len(owner))], stacked)
@@ -133,12 +132,15 @@ class CrankshaftStrength:
     def _samples(self) -> dict[str, Sampled]:
         grid = self._grid
         samples = self._quantities(self.forces.drive.jets_at(grid.degrees, grid.within, grid.beyond))
-        if not all(np.isfinite(sampled.value).all() for sampled in samples.values()):
+        self._refuse_infinite(sampled.value for sampled in samples.values())
+        return samples
+
+    def _refuse_infinite(self, found: Iterable[Array]) -> None:
+        if not all(np.isfinite(values).all() for values in found):
             raise UsageError(
                 f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
                 "check the numbers and units of the machine file"
             )
-        return samples
 
     @cached_property
     def _extremes(self) -> dict[str, Extreme]:
@@ -166,8 +168,7 @@ class CrankshaftStrength:
 
         Starting and slow running (R p. 608): the inner dead centre, or the outer one where pulling is stronger.
         """
-        found = self.forces.extremes_of("P_start")
-        assert found is not None
+        found = self._force_extremes("P_start")
         if found.largest.value >= -found.smallest.value:
             return Extreme(found.largest.value, self.forces.motion.phi_idc)
         return Extreme(found.smallest.value, self.forces.motion.phi_odc)
@@ -175,9 +176,13 @@ class CrankshaftStrength:
     @cached_property
     def largest_torque(self) -> Extreme:
         """The largest T in N, or the smallest where the machine is driven harder than it drives, and its angle."""
-        found = self.forces.extremes_of("T")
+        return max(self._force_extremes("T"), key=lambda extreme: abs(extreme.value))
+
+    def _force_extremes(self, column: str) -> Extremes:
+        _ = self._samples  # forces that are too large are refused before they are searched
+        found = self.forces.extremes_of(column)
         assert found is not None
-        return max(found.largest, found.smallest, key=lambda extreme: abs(extreme.value))
+        return found
 
     @cached_property
     def at_dead_centre(self) -> tuple[Strained, ...]:
@@ -241,12 +246,22 @@ class CrankshaftStrength:
         return Extreme(load.value / size[0] / size[1], load.degrees) if size else None
 
     def pressure_mean(self, bearing: str) -> float | None:
-        """Return p_m in Pa: the mean over time, at uniform rotation, of the force over the projected area (G)."""
+        """Return p_m in Pa: the mean over time, at uniform rotation, of the force over the projected area.
+
+        On the pin that of the rod force alone, as G has it for its bounds on p_m v.
+        """
         size = self._size(bearing)
         if size is None:
             return None
         turn = math.radians(self.forces.drive.cycle)
-        return self._grid.integral(self._samples[bearing].value) / turn / size[0] / size[1]
+        force = self._rod_force if bearing == "pin" else self._samples[bearing].value
+        return self._grid.integral(force) / turn / size[0] / size[1]
+
+    @property
+    def _rod_force(self) -> Array:
+        grid = self._grid
+        state = State(self.forces.drive, CrankAngle.of(grid.degrees, grid.beyond), grid.within)
+        return np.asarray(np.hypot(state.T, state.D))
 
     def pressure_velocity(self, bearing: str) -> float | None:
         """Return k = p_m v in W/m² with the surface speed v = π d n (G); None without a speed of rotation."""

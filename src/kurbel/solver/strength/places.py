@@ -1,6 +1,7 @@
 """The places of a crankshaft at which stresses are looked at, part by part.
 
-    pin        middle          bent by A on the lever a, twisted by A_T r
+    pin        middle          bent by A on the lever a, twisted by A_T r (G)
+               at web A, B     bent by A, and by A and the force on the pin; twisted by A_T r as all of the pin
     web        wide face       compressed and bent in the plane of the throw, twisted: decisive for the shape (G)
                narrow face     compressed and bent out of that plane, twisted less
                corner          compressed and bent both ways, not twisted
@@ -8,6 +9,10 @@
     journal B  at web          bent by A and the pin, twisted by T r; the shaft as far as B counts as journal
                at flywheel     the same, where the flywheel stands before B
                in bearing      bent by the flywheel overhung beyond B, twisted by T r
+
+Along the pin and along each journal the moments run straight from load to load, under the same torsion: their vector
+sum is largest at a load or at an end, so that no section between these places is strained more. The force on the pin
+stands in its middle, the forces of the bearings in theirs.
 
 A web is bent out of the plane of the throw most at one end of its arm, at the axis of the pin or at that of the shaft.
 """
@@ -76,16 +81,25 @@ def places(shaft: Crankshaft) -> tuple[Place, ...]:
     """
     alpha = bach_factor(shaft.allowable_bending, shaft.allowable_torsion)
     return (
-        Place("pin", "middle", 1.0, _pin),
+        *(Place("pin", name, 1.0, stresses) for name, stresses in _pin_places(shaft).items()),
         *_web_places("web_A", alpha, _loads_of_web_A),
         *_web_places("web_B", alpha, _loads_of_web_B),
         *(_journal_places(shaft) if shaft.journal_diameter else ()),
     )
 
 
-def _pin(body: FreeBody) -> Stresses:
-    """Stresses in the middle of the pin: M_b = a √(A_T² + A_D²), M_d = A_T r (G)."""
-    return _round(body.moments_before_pin(body.shaft.a), body.A.T * body.crank, body.shaft.pin_diameter)
+def _pin_places(shaft: Crankshaft) -> dict[str, Callable[[FreeBody], Stresses]]:
+    """Return the places of the pin; in its middle M_b = a √(A_T² + A_D²) and M_d = A_T r (G)."""
+    end = shaft.web_distance - shaft.web_thickness / 2  # inner face of a web, from the middle of the pin
+
+    def bent(moments: Vector, body: FreeBody) -> Stresses:
+        return _round(moments, body.A.T * body.crank, shaft.pin_diameter)
+
+    return {
+        "middle": lambda body: bent(body.moments_before_pin(shaft.a), body),
+        "at web A": lambda body: bent(body.moments_before_pin(shaft.a - end), body),
+        "at web B": lambda body: bent(body.moments_beyond_pin(end), body),
+    }
 
 
 def _round(moments: Vector, torque: Any, diameter: float) -> Stresses:
@@ -151,7 +165,6 @@ def _journal_places(shaft: Crankshaft) -> tuple[Place, ...]:
     def in_bearing(body: FreeBody) -> Stresses:
         return _round(body.overhung_moments, body.torque, diameter)
 
-    # along the shaft the moments run straight from load to load, so that one of these places is always the worst
     flywheel = shaft.b + shaft.flywheel_position
     outer = {"in bearing": in_bearing} if flywheel >= shaft.b else {"at flywheel": beyond(flywheel)}
     return (

@@ -55,7 +55,7 @@ def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Vec
 class FreeBody:
     """The crankshaft under the force on its pin and the weight of its flywheel.
 
-    shaft: lengths in m; crank: r in m; pin: force on the pin in N; weight: of the flywheel in N, in the same frame.
+    shaft: lengths in m; crank: r in m; pin: whole force on the pin in N; weight: of the flywheel in N, in one frame.
     The torque T r leaves the shaft at the flywheel; nothing is taken off at A.
     """
 
@@ -78,26 +78,6 @@ class FreeBody:
         shaft = self.shaft
         span, f = shaft.a + shaft.b, shaft.flywheel_position
         return Vector(*((F * shaft.a + G * (span + f)) / span for F, G in zip(self.pin, self.weight)))
-
-    @property
-    def A_D(self) -> Any:
-        """Force on bearing A along D in N."""
-        return self.A.D
-
-    @property
-    def A_T(self) -> Any:
-        """Force on bearing A along T in N."""
-        return self.A.T
-
-    @property
-    def B_D(self) -> Any:
-        """Force on bearing B along D in N."""
-        return self.B.D
-
-    @property
-    def B_T(self) -> Any:
-        """Force on bearing B along T in N."""
-        return self.B.T
 
     @cached_property
     def torque(self) -> Any:

@@ -1,0 +1,125 @@
+"""Loads and places of the crank pin, and the lengths round it that contradict one another."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurbel.errors import RuleError
+from kurbel.machine.masses import ConnectingRod, Masses
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from kurbel.solver.strength.places import PARTS, places
+from machines import constant_pressure
+from shafts import body, shaft, strength
+
+forces = st.floats(-1e6, 1e6)
+
+
+def test_heavy_overhung_flywheel_strains_the_pin_most_at_web_B() -> None:
+    """A flywheel of 20 t lifts A: its bending A_T z grows along the whole shaft, and the pin force takes little off."""
+    solved = strength(shaft(flywheel_mass=20e3, flywheel_position=0.6), card=constant_pressure(3e5), inclination=0.0)
+    at = solved.at(np.linspace(0, 360, 7201))
+    section, u = math.pi * 0.18**3 / 32, 0.17 - 0.06
+    torsion = at.A_T * 0.3 / section / 2
+
+    def largest(*moments: np.ndarray[Any, Any]) -> float:
+        sigma = np.hypot(*moments) / section
+        return float((0.35 * sigma + 0.65 * np.hypot(sigma, 2 * torsion)).max())
+
+    middle = largest(at.A_D * 0.4, at.A_T * 0.4)
+    end = largest(at.A_D * (0.4 + u) - at.D * u, at.A_T * (0.4 + u) - at.T * u)
+    assert end > 1.1 * middle
+    assert solved.sigma_max("pin").value == pytest.approx(end, rel=1e-6)
+    by_name = {one.place.name: one.combined for one in solved.at_worst if one.place.part == "pin"}
+    assert by_name["middle"] == pytest.approx(middle, rel=1e-6)
+    assert by_name["at web A"] < by_name["middle"]
+
+
+@given(forces, forces, forces, forces, st.floats(-0.15, 2.0), st.floats(0, 1))
+def test_no_section_of_the_pin_is_strained_more_than_its_places(
+    D: float, T: float, G_D: float, G_T: float, f: float, along: float
+) -> None:
+    found = body(D, T, (G_D, G_T), flywheel_position=f)
+    u = 0.11 * along
+    before, beyond = (
+        float(np.hypot(*moments)[0]) for moments in (found.moments_before_pin(0.4 - u), found.moments_beyond_pin(u))
+    )
+    worst = max(place.stresses(found).normal[0] for place in places(found.shaft) if place.part == "pin")
+    assert max(before, beyond) <= worst * math.pi * 0.18**3 / 32 * (1 + 1e-12) + 1e-9
+
+
+class TestTurningPartOfTheRod:
+    """Of 260 kg, 60 % turn with the pin of a crank of 0.3 m at 300 rpm: 156 · 0.3 · (10 π)² N, radial only."""
+
+    PULL = 156 * 0.3 * (10 * math.pi) ** 2
+
+    def solved(self, rod: ConnectingRod, **changed: Any) -> CrankshaftStrength:
+        return strength(shaft(**changed), SliderCrank(0.3, 1.5), rpm=300, masses=Masses(200.0, rod))
+
+    def test_free_body(self) -> None:
+        solved = self.solved(ConnectingRod(260.0, share=0.4))
+        phi = np.linspace(0, 360, 37)
+        at = solved.at(phi)
+        assert pytest.approx(solved.forces.at(phi).D, rel=1e-15) == at.D
+        size = float(np.abs(at.D).max())
+        assert pytest.approx(at.D - self.PULL, abs=1e-14 * size) == at.A_D + at.B_D
+        assert pytest.approx(at.B_D * 0.42, abs=1e-14 * size) == at.A_D * 0.4
+        assert pytest.approx(at.T, abs=1e-14 * size) == at.A_T + at.B_T
+        # the dead centre of the book is taken at rest
+        assert solved.sigma_dc("pin") == strength(shaft(), SliderCrank(0.3, 1.5)).sigma_dc("pin")
+        assert solved.equilibrium_residual <= 1e-14
+
+    def test_exact_rod_of_the_same_masses(self) -> None:
+        """Centre of gravity at 0.6 L and I = m a (L − a): the same two masses, and no couple."""
+        shared = self.solved(ConnectingRod(260.0, share=0.4))
+        exact = self.solved(ConnectingRod(260.0, center_of_gravity=0.9, inertia=260 * 0.9 * 0.6))
+        for part in PARTS:
+            assert shared.sigma_max(part).value == pytest.approx(exact.sigma_max(part).value, rel=1e-12)
+            assert shared.mises_max(part).value == pytest.approx(exact.mises_max(part).value, rel=1e-12)
+        for bearing in ("pin", "A", "B"):
+            assert shared.load_max(bearing).value == pytest.approx(exact.load_max(bearing).value, rel=1e-12)
+        for bearing in ("A", "B"):
+            assert shared.pressure_mean(bearing) == pytest.approx(exact.pressure_mean(bearing), rel=1e-12)
+        assert shared.rod_pull == pytest.approx(self.PULL, rel=1e-14)
+        assert exact.rod_pull == 0
+
+    def test_mean_pressure_is_that_of_the_rod_force_alone(self) -> None:
+        """G's k = p_m v has p_m from the force in the rod, over time."""
+        solved = self.solved(ConnectingRod(260.0, share=0.4))
+        force = abs(solved.forces.at(np.arange(0.0, 720.0, 0.01)).S)
+        mean = force.mean() / solved.shaft.pin_diameter / solved.shaft.pin_length
+        assert solved.pressure_mean("pin") == pytest.approx(mean, rel=1e-5)
+
+    def test_needs_a_speed(self) -> None:
+        at_rest = strength(shaft(), SliderCrank(0.3, 1.5), masses=Masses(200.0, ConnectingRod(260.0)))
+        assert at_rest.rod_pull == 0
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"a": 0.2}, "200 mm puts the bearing inside the web .230 mm from the pin."),
+        ({"flywheel_position": -0.3, "flywheel_mass": 1.0}, "-300 mm is not between web and bearing B"),
+        ({"flywheel_position": -1.0, "flywheel_mass": 1.0}, "-1000 mm lies beyond bearing A"),
+        ({"pin_length": 0.24}, "240 mm does not fit between the webs, which leave 220 mm"),
+        ({"journal_length": 0.36}, "half of 360 mm does not fit .* bearing A and web A, which leave 170 mm"),
+        ({"journal_length": 0.36, "a": 0.6, "b": 0.4}, "half of 360 mm .* bearing B and web B, which leave 170 mm"),
+        ({"flywheel_position": 0.1, "flywheel_mass": 1.0}, "half of 300 mm .* bearing B and flywheel, which leave 100"),
+        ({"flywheel_position": -0.1, "flywheel_mass": 1.0}, "half of 300 mm .* B and flywheel, which leave 100 mm"),
+    ],
+)
+def test_lengths_that_contradict(changed: dict[str, Any], message: str) -> None:
+    with pytest.raises(RuleError, match=message):
+        shaft(**changed)
+
+
+def test_lengths_that_are_rounded_are_no_contradiction() -> None:
+    """Printed examples round: up to 5 % too long is taken; and a flywheel in bearing B itself loads it alone."""
+    assert shaft(pin_length=0.23, journal_length=0.35).pin_length == 0.23
+    assert shaft(flywheel_mass=1.0, flywheel_position=0.0).flywheel_mass == 1.0
