@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Callable
 from functools import cache
+from typing import Any
 
 from kurbel.errors import UnitError
 
@@ -315,8 +316,8 @@ def unit_names(kind: str) -> tuple[str, ...]:
     return tuple(_units_of(kind))
 
 
-def convert(value: float, kind: str, system: str = "si") -> float:
-    """Return a base value in the unit in which the system shows this kind."""
+def convert(value: Any, kind: str, system: str = "si") -> Any:
+    """Return base values, a number or an array, in the unit in which the system shows this kind."""
     unit = SYSTEMS[system][kind]
     if not unit or system == "si":
         return value

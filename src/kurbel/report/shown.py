@@ -11,13 +11,13 @@ from kurbel.errors import UsageError
 from kurbel.mechanisms import Extreme
 from kurbel.quantities import COLUMNS, KEY_VALUES, Quantity
 from kurbel.report.tables import Column, KeyValue
-from kurbel.units import SYSTEMS, unit_factor
+from kurbel.units import SYSTEMS, convert
 
 
 def shown_column(name: str, values: Any, system: str) -> Column:
     """Return the column of this id; values: array (n,) in SI. Raises UsageError where one is not finite."""
     quantity = COLUMNS[name]
-    shown = _in_unit(np.asarray(values), quantity, system)
+    shown = convert(np.asarray(values), quantity.kind, system)
     if not np.isfinite(shown).all():
         raise _too_large(quantity)
     unit = SYSTEMS[system][quantity.kind]
@@ -29,20 +29,12 @@ def shown_key_value(name: str, value: Any, system: str) -> KeyValue:
     quantity = KEY_VALUES[name]
     at, raw = (value.degrees, value.value) if isinstance(value, Extreme) else (None, value)
     each: tuple[float, ...] = raw if isinstance(raw, tuple) else (raw,)
-    shown = [float(_in_unit(one, quantity, system)) + 0.0 for one in each]
+    shown = [float(convert(one, quantity.kind, system)) + 0.0 for one in each]
     if not all(math.isfinite(one) for one in shown):
         raise _too_large(quantity)
     unit = SYSTEMS[system][quantity.kind]
     number = tuple(shown) if isinstance(raw, tuple) else shown[0]
     return KeyValue(name, quantity.symbol, quantity.ascii_symbol, unit, number, quantity.text, at)
-
-
-def _in_unit(value: Any, quantity: Quantity, system: str) -> Any:
-    unit = SYSTEMS[system][quantity.kind]
-    if not unit or system == "si":
-        return value
-    up, down = unit_factor(unit, quantity.kind)
-    return value / up * down
 
 
 def _too_large(quantity: Quantity) -> UsageError:

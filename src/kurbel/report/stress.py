@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from kurbel.machine import Machine
-from kurbel.mechanisms import Extreme
 from kurbel.quantities import SHAFT_PARTS, STRESSES
 from kurbel.report.left_out import left_out, strength_left_out, warnings
-from kurbel.report.motion import given, refuse_absent
+from kurbel.report.motion import given, plain_values, refuse_absent
 from kurbel.report.shown import shown_column, shown_key_value
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
@@ -146,7 +145,4 @@ def _shell_verdict(strength: CrankshaftStrength) -> tuple[bool, tuple[str, ...]]
 def limited_values(machine: Machine) -> list[tuple[str, str, float]]:
     """Return ("crankshaft", id, value in SI) of all key values that a limit can be put on."""
     with np.errstate(all="ignore"):
-        return [
-            ("crankshaft", name, value.value if isinstance(value, Extreme) else value)
-            for name, value in key_values(Case(machine).strength)
-        ]
+        return [("crankshaft", *one) for one in plain_values(key_values(Case(machine).strength))]

@@ -8,6 +8,7 @@ speed. Nothing cancels, whether the flywheel is heavy or the load stiff.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
@@ -79,7 +80,7 @@ class SlipLaw:
         return self.steepness * ratio / (1 + root), self.steepness / (2 * root)
 
 
-class SpeedLine:
+class SpeedLine(ABC):
     """ω over the turn. `z(degrees, within)` is the kinetic energy beyond that of uniform rotation, in J."""
 
     def __init__(self, excess: Torque, inertia: Inertia, grid: Grid) -> None:
@@ -88,9 +89,9 @@ class SpeedLine:
         self.grid = grid
         self.cycle = float(grid.breaks[-1])
 
+    @abstractmethod
     def z(self, degrees: Array, within: Array) -> Array:
         """Return z in J at crank angles (n,) within the cycle."""
-        raise NotImplementedError
 
     def _rise(self, ratio: Array) -> Array:
         """Return what the load takes beyond its torque at the nominal speed, in N m; ratio: (ω/ω_n)² − 1."""
