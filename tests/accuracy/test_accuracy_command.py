@@ -94,6 +94,7 @@ def test_a_mechanism_without_a_reference_says_so() -> None:
     assert "no independent calculation of the four-bar" in result.stdout
 
 
+@pytest.mark.slow
 def test_picture_is_drawn_the_same_every_time(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     from kurbel.machine_file import loads

@@ -24,7 +24,13 @@ def test_there_are_many_cases() -> None:
     assert len(CASES) >= 60
 
 
-@pytest.mark.parametrize("case", CASES, ids=[f"{case.name}: {case.asked}" for case in CASES])
+def marked(case: Probe) -> object:
+    """The decimal reference of a speed line or of very many samples takes a second or two."""
+    marks = [pytest.mark.slow] if case.asked.startswith("flywheel omega@") or case.name == "1e5 noisy samples" else []
+    return pytest.param(case, id=f"{case.name}: {case.asked}", marks=marks)
+
+
+@pytest.mark.parametrize("case", [marked(case) for case in CASES])
 def test_case(case: Probe) -> None:
     verdict = judged(case, ask, loads)
     assert verdict.passed, f"expected {verdict.expected}, observed {verdict.observed} ({verdict.ulp} ulp)"

@@ -177,6 +177,7 @@ def test_speed_under_a_fan_in_closed_form(inertia: str) -> None:
             assert close(found[k], mp.sqrt(energy / half), 18)
 
 
+@pytest.mark.slow
 def test_speed_does_not_hang_on_the_order_of_the_rule() -> None:
     machine = loads(ENGINE + "flywheel: {inertia: 100 kg m2}\nload: {slip: 0.2}\n")
     with precise(40):

@@ -37,10 +37,10 @@ def test_two_masses_in_time_settle_to_the_harmonic_balance(order: float) -> None
 
     def rates(time: float, state: np.ndarray) -> list[float]:
         twist, one, two = state
-        angle = np.array([math.degrees(OMEGA * time) % 360])
         torque = coupling.stiffness * twist + coupling.damping * (one - two)
-        return [one - two, (machine.M(angle)[0] - mean - torque) / 60.0, torque / coupling.inertia]
+        return [one - two, (np.interp(360 * (time % 1), *effort) - mean - torque) / 60.0, torque / coupling.inertia]
 
+    effort = np.transpose(POINTS)
     state = np.array([0.0, 0.0, 0.0])
     turns = 25
     solved = solve_ivp(

@@ -97,6 +97,7 @@ def test_relaxation_from_1e_11_to_1e3_revolutions(relaxation: float) -> None:
     assert machine.multiplier == pytest.approx(math.exp(-1 / relaxation), rel=1e-9, abs=1e-60)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("inertia", "slip"), [(300.0, 1.0), (300.0, 0.1), (20000.0, 0.1)])
 def test_scipy_marches_to_the_same_state(slip: float, inertia: float) -> None:
     """J(φ) varies tenfold with the light flywheel; scipy's LSODA from the periodic state comes back to it."""

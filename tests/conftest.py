@@ -1,0 +1,6 @@
+"""No test measures time: random examples have no deadline either."""
+
+from hypothesis import settings
+
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
