@@ -208,14 +208,14 @@ def test_output_file_is_utf8_and_the_same_every_time(tmp_path: Path) -> None:
 
 
 def test_example_lists_every_machine_with_its_first_line() -> None:
-    folder = Path(__file__).parent.parent / "src" / "kurbel" / "configs"
+    folder = Path(__file__).parent.parent / "configs"
     lines = CliRunner().invoke(kurbel, ["example"]).stdout.splitlines()
     assert [line.split()[0] for line in lines] == sorted(path.stem for path in folder.glob("*.yaml"))
     assert all(len(line.split()) > 3 for line in lines)
 
 
 def test_example_prints_the_file_unchanged_in_any_encoding() -> None:
-    shipped = (Path(__file__).parent.parent / "src" / "kurbel" / "configs" / "waterworks.yaml").read_bytes()
+    shipped = (Path(__file__).parent.parent / "configs" / "waterworks.yaml").read_bytes()
     assert process("example", "waterworks").stdout == shipped
     assert process("example", "waterworks.yaml", PYTHONIOENCODING="ascii", PYTHONUTF8="0").stdout == shipped
 

@@ -15,7 +15,7 @@ from kurbel.cli import COMMANDS, kurbel
 from kurbel.machine import Machine
 from kurbel.machine_file import load
 
-CONFIGS = sorted((Path(__file__).parent.parent / "src" / "kurbel" / "configs").glob("*.yaml"))
+CONFIGS = sorted((Path(__file__).parent.parent / "configs").glob("*.yaml"))
 FITS: dict[str, Callable[[Machine], bool]] = {
     "check": lambda machine: True,
     "motion": lambda machine: bool(machine.cylinders),

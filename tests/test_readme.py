@@ -47,7 +47,7 @@ def workshop(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert demo
     (folder / "demo.yaml").write_text(demo.group(1), encoding="utf-8")
     (folder / "broken.yaml").write_text(BROKEN, encoding="utf-8")
-    shutil.copytree(ROOT / "src" / "kurbel" / "configs", folder / "configs")
+    shutil.copytree(ROOT / "configs", folder / "configs")
     script = folder / "bin" / "kurbel"
     script.parent.mkdir()
     script.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m kurbel "$@"\n')

@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 
-ENGINE = (Path(__file__).parents[1] / "src/kurbel/configs/gas-engine.yaml").read_text("utf-8")
+ENGINE = (Path(__file__).parents[1] / "configs" / "gas-engine.yaml").read_text("utf-8")
 EXACT_ROD = ENGINE.replace("share: 0.4", "center_of_gravity: 900 mm, inertia: 60 kg m2")
 PLACES = [
     *(("pin", place) for place in ("middle", "at_web_A", "at_web_B")),

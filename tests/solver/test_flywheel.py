@@ -16,7 +16,7 @@ from kurbel.report.check import checked
 from kurbel.solver.case import Case
 from kurbel.units import parse_quantity
 
-CONFIGS = Path(__file__).parents[2] / "src" / "kurbel" / "configs"
+CONFIGS = Path(__file__).parents[2] / "configs"
 ENGINE = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8")
 PUNCH = (CONFIGS / "punch.yaml").read_text(encoding="utf-8")
 

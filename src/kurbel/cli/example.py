@@ -6,7 +6,9 @@ import os
 
 import click
 
-_FOLDER = os.path.join(os.path.dirname(os.path.dirname(__file__)), "configs")
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+# a wheel carries the machines inside the package; in a checkout they lie beside src, where people look for them
+_PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, os.pardir, "configs"))
 _SUFFIX = ".yaml"
 
 
@@ -30,8 +32,12 @@ def example(name: str | None, file_name: str | None) -> None:
         write_stdout("".join(stdout_charset().text(line) + "\n" for line in _listing()))
 
 
+def _folder() -> str:
+    return next(filter(os.path.isdir, _PLACES))
+
+
 def _names() -> tuple[str, ...]:
-    return tuple(sorted(file[: -len(_SUFFIX)] for file in os.listdir(_FOLDER) if file.endswith(_SUFFIX)))
+    return tuple(sorted(file[: -len(_SUFFIX)] for file in os.listdir(_folder()) if file.endswith(_SUFFIX)))
 
 
 def _known(name: str) -> str:
@@ -45,7 +51,7 @@ def _known(name: str) -> str:
 
 
 def _read(name: str) -> str:
-    with open(os.path.join(_FOLDER, name + _SUFFIX), encoding="utf-8") as file:
+    with open(os.path.join(_folder(), name + _SUFFIX), encoding="utf-8") as file:
         return file.read()
 
 
