@@ -19,8 +19,6 @@ from kurbel.report.symbols import symbols_page
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
 BLOCK = re.compile(r"```console\n(\$ [^\n]*)\n(.*?)```", re.DOTALL)
-# a residual near 1e-16 is rounding, and differs from one processor to the next
-ROUNDING = re.compile(r"ΔA/A +\S+ +")
 BROKEN = """\
 name: Engine with five mistakes
 speed: 50
@@ -69,11 +67,6 @@ def output_of(command: str, folder: Path) -> str:
     return done.stdout.decode()
 
 
-def steady(text: str) -> str:
-    """Return the text without its rounding, and without the widths of the columns in which that stands."""
-    return re.sub(" +", " ", ROUNDING.sub("ΔA/A ", text))
-
-
 BLOCKS = BLOCK.findall(README.read_text(encoding="utf-8"))
 
 
@@ -84,7 +77,7 @@ def test_commands_of_the_readme(command: str, printed: str, workshop: Path) -> N
         text = README.read_text(encoding="utf-8")
         README.write_text(text.replace(f"{command}\n{printed}```", f"{command}\n{real}```"), encoding="utf-8")
         return
-    assert steady(real) == steady(printed)
+    assert real == printed
 
 
 def test_the_readme_has_commands() -> None:

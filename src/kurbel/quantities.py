@@ -9,7 +9,8 @@ class Quantity(NamedTuple):
     """One printed quantity.
 
     `id` stands in JSON and CSV, `symbol` over the printed table (`plain` where the output has no Greek letters),
-    `kind` decides the unit (see `kurbel.units`), and `text` says in one sentence what it is.
+    `kind` decides the unit (see `kurbel.units`), and `text` says in one sentence what it is. A `residual` would be zero
+    without rounding: people are not shown what of it is only that.
     """
 
     id: str
@@ -17,16 +18,24 @@ class Quantity(NamedTuple):
     kind: str
     text: str
     plain: str = ""
+    residual: bool = False
 
     @property
     def ascii_symbol(self) -> str:
         """The symbol for an output that cannot show Greek letters."""
         return self.plain or self.symbol
 
+    def is_noise(self, value: float) -> bool:
+        """Whether this value is a residual of rounding alone."""
+        return self.residual and abs(value) < 10.0**NOISE_POWER
+
 
 def _index(*quantities: Quantity) -> dict[str, Quantity]:
     return {quantity.id: quantity for quantity in quantities}
 
+
+NOISE_POWER = -14
+"""A residual below this power of ten is rounding, another on every processor."""
 
 LISTS = ("phi_b_zero", "phi_reversal", "phi_crossing", "lobes")
 """Key values that are lists: no bound can be put on them."""
@@ -169,6 +178,7 @@ _STRENGTH = (
         "ratio",
         "What is left of the sums of forces and moments on the crankshaft",
         "sum F, M",
+        residual=True,
     ),
 )
 _MOTION = (
@@ -253,7 +263,14 @@ KEY_VALUES = _index(
         "lam f/2",
     ),
     Quantity("loss_rings", "e_R", "ratio", "Work lost at the piston rings over that of the driving pistons"),
-    Quantity("energy_residual", "ΔA/A", "ratio", "Energy in minus energy out by an independent quadrature", "dA/A"),
+    Quantity(
+        "energy_residual",
+        "ΔA/A",
+        "ratio",
+        "Energy in minus energy out by an independent quadrature",
+        "dA/A",
+        residual=True,
+    ),
     *_FLYWHEEL,
     *_STRENGTH,
 )

@@ -59,6 +59,15 @@ class Charset(NamedTuple):
         printed = "·" + self._power(exponent)
         return printed if self.has(printed) else f"e{exponent}"
 
+    def below(self, exponent: int) -> str:
+        """Return what stands for a value that is only known to be less than a power of ten.
+
+        >>> Charset().below(-14), Charset("ascii").below(-14)
+        ('< 10⁻¹⁴', '< 1e-14')
+        """
+        printed = "< " + self._power(exponent)
+        return printed if not printed.isascii() else f"< 1e{exponent}"
+
     def _power(self, exponent: int) -> str:
         printed = "10" + str(exponent).translate(_SUPERSCRIPT)
         return printed if self.has(printed) else f"10^{exponent}"

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
+from kurbel.quantities import NOISE_POWER
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import Line, Piece, line
 from kurbel.render.numbers import DIGITS, angle, single
@@ -88,6 +89,8 @@ def _number(one: KeyValue, look: Look) -> tuple[str, str]:
     if isinstance(one.value, tuple):
         return list_text(one, look), ""
     text, exponent = value_text(one, look)
+    if one.noise:  # it has no decimal point to stand under the others
+        return text, ""
     whole, point, fraction = text.partition("," if look.comma else ".")
     # a whole number is split too, at its end, so that its units stand under those of the others
     return whole, (point + fraction + (look.charset.times_power(exponent) if exponent else "")) or " "
@@ -109,6 +112,8 @@ def _in_list(value: float, unit: str, look: Look) -> str:
 def value_text(one: KeyValue, look: Look) -> tuple[str, int]:
     """Return a single key value and its power of ten; angles have two decimals where no digits are asked for."""
     assert isinstance(one.value, (float, int))
+    if one.noise:
+        return look.charset.below(NOISE_POWER), 0
     if one.unit == "deg" and look.digits is None:
         return angle(one.value, look.comma), 0
     return single(one.value, look.digits or DIGITS, look.comma)

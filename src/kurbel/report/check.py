@@ -11,7 +11,7 @@ from kurbel.keys import Key, Physical
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.fit import may_lock
 from kurbel.mechanisms import Mechanism
-from kurbel.quantities import KEY_VALUES
+from kurbel.quantities import KEY_VALUES, NOISE_POWER
 from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages, warnings
 from kurbel.units import SI, show
 
@@ -183,12 +183,13 @@ _ROUNDING = 1e-9
 
 def _compared(name: str, bound: float, where: str, value: float) -> Entry:
     """Compare a value with its bound: a `_min` may not fall below it, everything else may not exceed it."""
-    kind = KEY_VALUES[name].kind
+    quantity = KEY_VALUES[name]
     lower = name.endswith("_min")
     excess = bound - value if lower else value - bound
     broken = excess > _ROUNDING * abs(bound)
     relation = ("<" if broken else "≥") if lower else (">" if broken else "≤")
-    text = f"{_shown(value, kind)} {relation} {_shown(bound, kind)}"
+    shown = f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else _shown(value, quantity.kind)
+    text = f"{shown} {relation} {_shown(bound, quantity.kind)}"
     return Entry(name, f"{text}  {'BROKEN' if broken else 'kept'}  ({where})", broken)
 
 

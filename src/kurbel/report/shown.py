@@ -34,7 +34,8 @@ def shown_key_value(name: str, value: Any, system: str) -> KeyValue:
         raise _too_large(quantity)
     unit = SYSTEMS[system][quantity.kind]
     number = tuple(shown) if isinstance(raw, tuple) else shown[0]
-    return KeyValue(name, quantity.symbol, quantity.ascii_symbol, unit, number, quantity.text, at)
+    noise = any(map(quantity.is_noise, shown))
+    return KeyValue(name, quantity.symbol, quantity.ascii_symbol, unit, number, quantity.text, at, noise)
 
 
 def _too_large(quantity: Quantity) -> UsageError:

@@ -27,7 +27,10 @@ class Column(NamedTuple):
 
 
 class KeyValue(NamedTuple):
-    """One key value, already in its unit; a tuple for a list of angles; `at_deg` is where an extreme stands."""
+    """One key value, already in its unit; a tuple for a list of angles; `at_deg` is where an extreme stands.
+
+    noise: the value is a residual of rounding alone, which has digits in json only.
+    """
 
     id: str
     symbol: str
@@ -36,6 +39,7 @@ class KeyValue(NamedTuple):
     value: Value | tuple[float, ...]
     text: str
     at_deg: float | None = None
+    noise: bool = False
 
 
 class LeftOut(NamedTuple):
