@@ -194,12 +194,9 @@ def test_extreme_lengths(crank: float, rod: float, offset: float, rod_key: str, 
     read(f"{crank_key}: {crank!r} m\n{rod_key}: {rod!r}{unit}\noffset: {offset!r} m\n".encode())
 
 
+@pytest.mark.slow
 @SETTINGS
-@given(
-    st.recursive(
-        st.text(max_size=8), lambda inner: st.lists(inner) | st.dictionaries(st.text(max_size=8), inner), max_leaves=8
-    )
-)
+@given(st.recursive(st.text(max_size=8), lambda inner: st.lists(inner) | st.dictionaries(st.text(max_size=8), inner)))
 def test_any_tree(tree: Any) -> None:
     read(yaml.safe_dump(tree, allow_unicode=True).encode())
 
