@@ -219,7 +219,7 @@ def test_numbers_too_large_are_refused_by_name() -> None:
     text = "speed: 1e200 rpm\ncrank: 1e200 m\nrod_ratio: 5\nmasses: {piston: 1e200 kg}\n"
     result = run("forces", "-", text=text)
     assert result.exit_code == 2
-    assert "too large to compute with" in result.stderr
+    assert result.stderr.count("is too large; a") == 3
     assert "nan" not in result.output.lower()
 
 

@@ -7,7 +7,8 @@ import math
 import pytest
 
 from kurbel.errors import UnitError
-from kurbel.units import SI, TECHNICAL, convert, parse_number, parse_quantity, show, unit_names
+from kurbel.numerals import parse_number
+from kurbel.units import SI, TECHNICAL, convert, parse_quantity, show, unit_names
 
 G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
 

@@ -14,6 +14,7 @@ from functools import cache
 from typing import Any
 
 from kurbel.errors import UnitError
+from kurbel.numerals import NUMBER, plain
 
 Factor = tuple[float, float]
 """A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""
@@ -176,8 +177,6 @@ _IN_MESSAGES = TECHNICAL | {
     "power": "W",
     "area": "mm^2",
 }
-NUMBER = re.compile(r"[-+]?(?:(?:0|[1-9]\d*)(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?")
-"""A number as YAML 1.2 writes it: no leading zero, no underscore, no base 60, no inf."""
 
 
 @cache
@@ -187,9 +186,9 @@ def _units_of(kind: str) -> dict[str, Factor]:
 
 def _normal(unit: str) -> str:
     """Write `kg·m²`, `kg*m^2` and `kg  m2` alike."""
-    unit = (
-        unit.replace("²", "2").replace("^", "").replace("·", " ").replace("*", " ").replace("µ", "u").replace("μ", "u")
-    )
+    unit = plain(unit)
+    for sign, ours in (("²", "2"), ("^", ""), ("·", " "), ("*", " "), ("µ", "u"), ("μ", "u")):
+        unit = unit.replace(sign, ours)
     return re.sub(r"\s*/\s*", "/", " ".join(unit.split()))
 
 
@@ -229,41 +228,6 @@ def _unit_hint(unit: str, kind: str) -> str:
     return f"; {unit.strip()} is a unit of {kinds[0]}" if kinds else ""
 
 
-def parse_number(text: str) -> float:
-    """Return the finite number that `text` is. Raises UnitError that says what to write instead."""
-    stripped = text.strip()
-    if NUMBER.fullmatch(stripped):
-        value = float(stripped)
-        if math.isfinite(value):
-            return value
-        raise UnitError(f"{stripped} is too large to compute with")
-    raise UnitError(f"expected a number, got '{text}'{_number_hint(stripped)}")
-
-
-def _number_hint(text: str) -> str:
-    if re.fullmatch(r"[-+]?\d+,\d+", text):
-        return "; write the decimal point: " + text.replace(",", ".")
-    if re.fullmatch(r"[-+]?[\d.]+(,[\d.]+)+", text):
-        return "; write it without commas between thousands"
-    if re.fullmatch(r"[-+]?\d+(\.\d+)?\s*%", text):
-        return f"; write it as a fraction: {float(text[:-1]) / 100:.12g}"
-    if re.fullmatch(r"[-+]?[\d_]+(\.\d+)?", text) and "_" in text:
-        return "; leave out the underscores"
-    if re.fullmatch(r"[-+]?0\d+(\.\d*)?", text):
-        return "; leave out the leading zero"
-    if re.fullmatch(r"\d+(:\d+(\.\d+)?)+", text):
-        return "; a ratio is written as one number, such as 5 for 5:1"
-    if re.fullmatch(r"[-+]?\d+(\.\d+)?/\d+(\.\d+)?", text):
-        over, under = (float(part) for part in text.split("/"))
-        return f"; write it as one number: {over / under:.12g}" if under else ""
-    if text.lower().strip("+-.") in ("nan", "inf", "infinity"):
-        return "; it must be finite"
-    number = NUMBER.match(text)
-    if number and re.match(r"\s*[A-Za-z°]", text[number.end() :]) and not re.match("0[box]", text):
-        return f"; it has no unit, write {number.group()}"
-    return ""
-
-
 def parse_quantity(text: str, kind: str) -> float:
     """Return the value of `text`, a number with a unit, in the base of `kind`.
 
@@ -272,18 +236,20 @@ def parse_quantity(text: str, kind: str) -> float:
 
     Raises UnitError when there is no number, no unit, or a unit of another kind.
     """
-    stripped = text.strip()
+    stripped = plain(text)
     number = NUMBER.match(stripped)
     if not number:
         raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
     unit = stripped[number.end() :].strip()
     if not unit:
         raise UnitError(f"{stripped} has no unit; write it with one, such as '{stripped} {_unit_example(kind)}'")
-    if re.match(r",\d+(?![\d.,])", unit):
+    if re.match(r",[0-9]+(?![0-9.,])", unit):
         raise UnitError(f"'{stripped}' has a decimal comma; write {stripped.replace(',', '.', 1)}")
-    if re.match(r",\d", unit):
+    if re.match(r",[0-9]", unit):
         raise UnitError(f"'{stripped}' has commas between thousands; leave them out")
-    if re.match(r"[\d._:]", unit) and not unit.startswith("1/"):
+    if re.match(r"[0-9]{3}(?![0-9])", unit):
+        raise UnitError(f"'{stripped}' has spaces between thousands; leave them out")
+    if re.match(r"[0-9._:]", unit) and not unit.startswith("1/"):
         raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
     up, down = unit_factor(unit, kind)
     value = float(number.group()) * up / down

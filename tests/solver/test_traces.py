@@ -243,10 +243,10 @@ def broken(line: int, text: str) -> str:
         (broken(5, "inf,3"), "line 5: the angle is inf, not a number"),
         (broken(5, "40,1e400"), "line 5: the pressure is inf"),
         (broken(6, "20,3"), "line 6: 20 deg after 40 deg; put the points in order of the angle"),
-        (broken(6, "50,x3"), "line 6: 'x3' is no number"),
+        (broken(6, "50,x3"), "line 6: column 2 holds no number"),
         (broken(6, "50"), "line 6 has no column 2: 50"),
         (broken(6, "50;3"), "line 6 has no column 2: 50;3; write 'delimiter: semicolon'"),
-        (broken(1, "angle,bar"), "line 1: 'angle' is no number; write 'skip_rows: 1' if it is a heading"),
+        (broken(1, "angle,bar"), "line 1: column 1 holds no number; write 'skip_rows: 1' if it is a heading"),
         ("0;1,5\n180;2\n360;1\n", "line 1: '0;1' is no number; write 'delimiter: semicolon'"),
         ("", "p.csv has no figures"),
         ("# nothing\n\n", "p.csv has no figures"),
@@ -347,13 +347,16 @@ def test_faults_of_a_turned_trace_name_their_own_lines(tmp_path: Path) -> None:
 @pytest.mark.parametrize("broken", ["\r", "\r\n", "\n"])
 def test_lines_are_counted_as_they_are_read(tmp_path: Path, broken: str) -> None:
     text = broken.join(["# a form feed \x0c, and a separator \x1c \u2028", "0,1", "90,x", "360,1"])
-    with pytest.raises(MachineFileError, match="line 3: 'x' is no number"):
+    with pytest.raises(MachineFileError, match="line 3: column 2 holds no number"):
         machine_of(tmp_path, text.encode())
 
 
 @pytest.mark.parametrize(
     ("text", "more", "advice"),
-    [("0,x\n", "", "line 1: 'x' is no number; write 'skip_rows: 1'"), ("0 1\n1\n", ", delimiter: space", "line 2")],
+    [
+        ("0,x\n", "", "line 1: column 2 holds no number; write 'skip_rows: 1'"),
+        ("0 1\n1\n", ", delimiter: space", "line 2"),
+    ],
 )
 def test_nothing_is_advised_that_is_already_set(tmp_path: Path, text: str, more: str, advice: str) -> None:
     with pytest.raises(MachineFileError) as caught:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
+import warnings
 from typing import Any, NoReturn
 
 import click
@@ -51,6 +52,7 @@ class _Kurbel(click.Group):
 
     def main(self, *args: Any, **extra: Any) -> NoReturn:
         _survive_missing_characters()
+        warnings.simplefilter("error", RuntimeWarning)  # what numpy warns of is no result
         try:
             status = super().main(*args, **(extra | {"standalone_mode": False}))
         except click.ClickException as error:
@@ -62,6 +64,9 @@ class _Kurbel(click.Group):
             status = _failed(error.pretty(), error.exit_status)
         except KurbelError as error:
             status = _failed(f"Error: {error}", error.exit_status)
+        except (OverflowError, FloatingPointError, RuntimeWarning) as error:
+            beyond = f"these numbers lead beyond what can be computed with ({error})"
+            status = _failed(f"Error: {beyond}; check the sizes of what the file gives", KurbelError.exit_status)
         except OSError as error:
             status = _output_failed(error)
         except Exception as error:

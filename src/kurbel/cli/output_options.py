@@ -38,7 +38,7 @@ class Number(_NumberType):
         if value in self.words:
             return self.words[value]
         from kurbel.errors import UnitError
-        from kurbel.units import parse_number
+        from kurbel.numerals import parse_number
 
         try:
             return parse_number(value)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from kurbel.bounds import Point
 from kurbel.errors import Fault, Path
 from kurbel.machine import CYCLES
-
-Point = tuple[float, float]
 
 
 def angle_faults(points: list[Point], path: Path) -> list[Fault]:

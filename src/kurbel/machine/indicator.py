@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Protocol
 
+from kurbel.bounds import Point, size_faults
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.keys import Choice, Key, Keyed, Keys, Number, OneOf, Physical, Points, Record, UnitName
 from kurbel.units import Factor, show
 
-Point = tuple[float, float]
 CLEARANCE = Number(least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
 
@@ -87,6 +87,8 @@ class Card:
         faults += [fault for name, points, _ in drawn for fault in cls.faults_of_key(name, points)]
         if interpolate == "polytropic" and clearance is None:
             faults.append(Fault(("interpolate",), "'polytropic' needs the 'clearance' volume over the stroke volume"))
+        for name, points, _ in drawn:
+            faults += size_faults(points, unit, "pressure", (name,))
         if faults:
             raise RuleError(*faults)
         lines = tuple(_line(name, points, unit, start) for name, points, start in drawn)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+from kurbel.bounds import Point
 from kurbel.errors import Fault, RuleError
 from kurbel.keys import Choice, Count, FilePath, Key, Keys, Physical, Points, UnitName
 from kurbel.machine import CYCLES
@@ -13,7 +14,6 @@ from kurbel.units import Factor
 if TYPE_CHECKING:
     from kurbel.machine.trace_samples import Samples
 
-Point = tuple[float, float]
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
 """Word in the machine file -> what stands between two columns."""
 _DECIMALS = {"point": ".", "comma": ","}

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-import io
+import itertools
 import os
+import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kurbel.bounds import MOST_POINTS, out_of_size
 from kurbel.errors import Fault, RuleError
+from kurbel.numerals import familiar
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
 
 PERIODS = (360.0, 720.0)
 LARGEST_FILE = 64 * 2**20
-"""Bytes; a million samples have about 20 million."""
-MOST_SAMPLES = 500_000
+"""Bytes; half a million samples have about ten million."""
+_LONGEST_LINE = 10_000
+_FIGURES = re.compile(r"[-+.,;:%0-9eE \t]*[0-9][-+.,;:%0-9eE \t]*")
 _EVEN = 1e-3  # of a step: what rounded angles may miss
 
 
@@ -58,23 +62,54 @@ class Samples(NamedTuple):
 
 def read_columns(file: str, columns: Columns) -> tuple[Array, Array, Callable[[int], str]]:
     """Return the two columns of a file, and what names the line of a sample; raises RuleError with the line."""
-    text = _text(file)
-    lines = text.replace(columns.decimal, ".") if columns.decimal != "." else text
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # an empty file, of which the message below speaks
-            table = np.loadtxt(
-                io.StringIO(lines),
-                delimiter=columns.between,
-                skiprows=columns.skip_rows,
-                usecols=(columns.angle - 1, columns.pressure - 1),
-                ndmin=2,
-            )
+        table = _table(file, columns)
     except ValueError:
-        raise RuleError(_first_fault(text, columns)) from None
+        raise RuleError(_first_fault(file, columns)) from None
+    except OSError as error:
+        raise RuleError(Fault(("file",), f"cannot be read: {error.strerror or error}")) from None
+    if len(table) > MOST_POINTS:
+        raise RuleError(Fault(("file",), f"has more than {MOST_POINTS} samples; thin them out"))
     if not len(table):
         raise RuleError(Fault(("file",), f"{os.path.basename(file)} has no figures{_below(columns)}"))
-    return table[:, 0], table[:, 1], lambda index: f"line {_line_numbers(text, columns)[index]}"
+    return table[:, 0], table[:, 1], lambda index: f"line {_line_number(file, columns, index)}"
+
+
+def _table(file: str, columns: Columns) -> Array:
+    """Return both columns (n, 2); no more rows than show that there are too many of them are ever held in memory."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # an empty file, of which a message of ours speaks
+        return np.loadtxt(
+            (familiar(line).replace(columns.decimal, ".") for line in _lines(file)),
+            delimiter=columns.between,
+            skiprows=columns.skip_rows,
+            usecols=(columns.angle - 1, columns.pressure - 1),
+            ndmin=2,
+            max_rows=MOST_POINTS + 1,
+        )
+
+
+def _lines(file: str) -> Iterator[str]:
+    """Yield the lines of a file; headings may be in any encoding, figures are ASCII."""
+    if os.path.getsize(file) > LARGEST_FILE:
+        raise RuleError(Fault(("file",), f"is larger than {LARGEST_FILE // 2**20} MiB; thin out the samples"))
+    with open(file, encoding="utf-8-sig", errors="replace") as stream:
+        while line := stream.readline(_LONGEST_LINE + 1):
+            if len(line) > _LONGEST_LINE:
+                raise RuleError(Fault(("file",), f"has a line of more than {_LONGEST_LINE} characters"))
+            yield line
+
+
+def _figure_lines(file: str, columns: Columns) -> Iterator[tuple[int, str]]:
+    """Yield number and text of every line below the headings that has more than a comment, as numpy.loadtxt sees it."""
+    for number, line in enumerate(_lines(file), 1):
+        figures = familiar(line).partition("#")[0].strip()
+        if number > columns.skip_rows and figures:
+            yield number, figures
+
+
+def _line_number(file: str, columns: Columns, index: int) -> int:
+    return next(number for number, _ in itertools.islice(_figure_lines(file, columns), index, None))
 
 
 def _below(columns: Columns) -> str:
@@ -83,56 +118,31 @@ def _below(columns: Columns) -> str:
     return f" below its first {columns.skip_rows} lines" if columns.skip_rows > 1 else " below its first line"
 
 
-def _text(file: str) -> str:
-    try:
-        if os.path.getsize(file) > LARGEST_FILE:
-            raise RuleError(Fault(("file",), f"is larger than {LARGEST_FILE // 2**20} MiB; thin out the samples"))
-        with open(file, "rb") as stream:
-            # headings may be in any encoding, figures are ASCII
-            text = stream.read().decode("utf-8-sig", "replace")
-            return text.replace("\r\n", "\n").replace("\r", "\n")
-    except OSError as error:
-        raise RuleError(Fault(("file",), f"cannot be read: {error.strerror or error}")) from None
-
-
-def _figures(line: str) -> str:
-    """Return a line without a comment, as numpy.loadtxt sees it."""
-    return line.partition("#")[0].strip()
-
-
-def _line_numbers(text: str, columns: Columns) -> list[int]:
-    lines = text.split("\n")[columns.skip_rows :]
-    return [columns.skip_rows + i for i, line in enumerate(lines, 1) if _figures(line)]
-
-
-def _first_fault(text: str, columns: Columns) -> Fault:
+def _first_fault(file: str, columns: Columns) -> Fault:
     """Return the fault of the first line that is no row of figures."""
-    lines = text.split("\n")
-    for number in _line_numbers(text, columns):
-        cells = _figures(lines[number - 1]).split(columns.between)
-        last = max(columns.angle, columns.pressure)
+    last = max(columns.angle, columns.pressure)
+    for number, line in _figure_lines(file, columns):
+        cells = line.split(columns.between)
         if len(cells) < last:
-            return Fault(
-                ("file",),
-                f"line {number} has no column {last}: {_cut(lines[number - 1])}{_hint(lines, number, columns)}",
-            )
+            shown = f": {_quoted(line)}".rstrip(": ")
+            return Fault(("file",), f"line {number} has no column {last}{shown}{_hint(line, number, columns)}")
         for column in (columns.angle, columns.pressure):
             cell = cells[column - 1].strip()
             if not _is_number(cell.replace(columns.decimal, ".")):
-                return Fault(
-                    ("file",), f"line {number}: '{_cut(cell)}' is no number{_hint(lines, number, columns, cell)}"
-                )
+                wrong = f"'{shown}' is no number" if (shown := _quoted(cell)) else f"column {column} holds no number"
+                return Fault(("file",), f"line {number}: {wrong}{_hint(line, number, columns, cell)}")
     return Fault(("file",), "its rows cannot be read as numbers")
 
 
-def _cut(text: str) -> str:
-    clear = "".join(c if c.isprintable() else " " for c in text.strip())
-    return clear if len(clear) <= 40 else clear[:40] + "…"
+def _quoted(text: str) -> str:
+    """Return a piece of a file for a message, if figures could look like it: any other file may hold secrets."""
+    if not _FIGURES.fullmatch(text):
+        return ""
+    return " ".join(text.split()) if len(text) <= 40 else f"{' '.join(text[:40].split())}…"
 
 
-def _hint(lines: list[str], number: int, columns: Columns, cell: str = "") -> str:
+def _hint(line: str, number: int, columns: Columns, cell: str = "") -> str:
     """Return what to write so that a line could be read."""
-    line = lines[number - 1]
     if _is_number(cell.replace(",", ".")) and columns.decimal == ".":
         return "; write 'decimal: comma'"
     signs = (("semicolon", ";"), ("tab", "\t"), ("comma", ","), ("space", " "))
@@ -143,11 +153,12 @@ def _hint(lines: list[str], number: int, columns: Columns, cell: str = "") -> st
 
 
 def _is_number(text: str) -> bool:
+    """Return whether numpy.loadtxt takes a text for a number."""
     try:
         float(text)
     except ValueError:
         return False
-    return True
+    return text.isascii() and "_" not in text
 
 
 def whole_cycle(angles: Array, pressures: Array, named: Callable[[int], Fault]) -> Samples:
@@ -155,8 +166,6 @@ def whole_cycle(angles: Array, pressures: Array, named: Callable[[int], Fault]) 
 
     angles (n,) in degrees, pressures (n,) in Pa; named: the place of a sample as a fault that lacks a message.
     """
-    if len(angles) > MOST_SAMPLES:
-        raise RuleError(_say(named(0), f"{len(angles)} samples; more than {MOST_SAMPLES} are not taken, thin them out"))
     first = _wrap(angles)
     angles, pressures = np.roll(angles, -first), np.roll(pressures, -first)
     place = _rolled(named, first, len(angles))
@@ -197,6 +206,10 @@ def _number_fault(angles: Array, pressures: Array, named: Callable[[int], Fault]
         if len(bad):
             more = f" ({len(bad)} such samples)" if len(bad) > 1 else ""
             return _say(named(int(bad[0])), f"the {what} is {values[bad[0]]}, not a number{more}; leave such rows out")
+        top = int(np.abs(values).argmax())
+        wrong = out_of_size(abs(float(values[top])), what)
+        if "large" in wrong:
+            return _say(named(top), f"the {what} {values[top]:g} {wrong}")
     return None
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from kurbel.bounds import Point, size_faults
 from kurbel.errors import Fault, RuleError
 from kurbel.keys import Key, Keys, Number, Physical, Points, UnitName
-from kurbel.machine.angle_points import Point, angle_faults, beyond_cycle
+from kurbel.machine.angle_points import angle_faults, beyond_cycle
 from kurbel.units import Factor
 
 _TORQUE_KEYS: Keys = {
@@ -62,7 +63,7 @@ class Effort:
     @classmethod
     def from_keys(cls, unit: Factor, points: list[Point]) -> Effort:
         """Return the diagram that these keys of a machine file describe; raises RuleError."""
-        faults = angle_faults(points, ("points",))
+        faults = angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))
         if faults:
             raise RuleError(*faults)
         up, down = unit

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from kurbel.errors import Path, Step
+from kurbel.machine_file.runs import Run, without_runs
 from kurbel.machine_file.source import Place, shown
 
 DEPTH_LIMIT = 32
@@ -51,8 +52,13 @@ def parse(text: str) -> tuple[Any, list[Mistake]]:
     The tree is made of dict, list, `Plain` and str, with REFUSED in place of what was reported; it is REFUSED as a
     whole when the text could not be read to its end.
     """
-    builder = Builder()
-    if not run(text, builder):
+    short, runs = without_runs(text, Plain)
+    builder = Builder(runs)
+    whole = run(short, builder)
+    if short != text and (not whole or builder.mistakes or runs):  # whatever is amiss is told of the text as it stands
+        builder = Builder({})
+        whole = run(text, builder)
+    if not whole:
         return REFUSED, builder.mistakes
     root = builder.root
     # outer ones first: what lies inside a refused value may have been overwritten by a key given twice
@@ -118,13 +124,15 @@ class Builder:
     A mapping or list is put into its parent when it begins, so that the way down from the root is known at every event.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, runs: dict[int, Run]) -> None:
         self.root: Any = Plain("")
+        self._runs = runs  # those taken are taken out
         self.mistakes: list[Mistake] = []
         self._open: list[dict[str, Any] | list[Any]] = []
         self._steps: list[
             Step
         ] = []  # under which each open mapping or list stands; that of the root counts for nothing
+        self._brackets: list[bool] = []  # whether each open list stands in brackets
         self._key: str | None = None  # of the innermost mapping, while its value is due
         self._documents = 0
 
@@ -149,10 +157,15 @@ class Builder:
     def sequence(self, event: Any) -> None:
         """Begin a list."""
         self._begin([], event)
+        run = self._runs.get(event.start_mark.index)
+        if run and self._brackets[:-1][-1:] == [run.in_brackets] and isinstance(parent := self._open[-2], list):
+            parent.extend(run.pairs)
+            del self._runs[event.start_mark.index]
 
     def end(self, event: Any) -> None:
         """End the innermost mapping or list."""
         self._open.pop()
+        self._brackets.pop()
         if isinstance(self._steps.pop(), _OddKey):
             self._key = _ODD_KEY
 
@@ -177,6 +190,7 @@ class Builder:
                 self._key = _ODD_KEY
         self._place(container, event)
         self._open.append(container)
+        self._brackets.append(bool(event.flow_style))
         self._steps.append(step)
 
     def _place(self, value: Any, event: Any) -> None:

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import math
 import re
 from typing import Any
 
+from kurbel.bounds import MOST_POINTS
 from kurbel.errors import Path, UnitError
 from kurbel.keys import Points
 from kurbel.machine_file.events import REFUSED, Plain
 from kurbel.machine_file.reading import Reading
-from kurbel.machine_file.source import shown
+from kurbel.machine_file.source import LONGEST_VALUE, shown
 from kurbel.machine_file.words import expected, kind_of
-from kurbel.units import NUMBER, parse_number
+from kurbel.numerals import parse_number
 
 _FAULTS_SHOWN = 3  # of one list: the others are of the same sort, as when every pair has a decimal comma
-_LARGEST = 1e250  # so that no unit can lead to infinity
 
 
 def points(reading: Reading, form: Points, value: Any, path: Path) -> Any:
@@ -24,23 +23,29 @@ def points(reading: Reading, form: Points, value: Any, path: Path) -> Any:
         missing = isinstance(value, Plain) and not value
         got = "" if missing else f", got {kind_of(value)}"
         return reading.fault(path, f"{'a value is missing; write' if missing else 'expected'} {expected(form)}{got}")
-    pairs, bad = [], []
-    match = NUMBER.fullmatch
-    for index, item in enumerate(value):
-        if type(item) is list and len(item) == 2:
-            x, y = item
-            if type(x) is Plain and type(y) is Plain and match(x) and match(y):
-                pair = (float(x), float(y))
-                if abs(pair[0]) < _LARGEST and abs(pair[1]) < _LARGEST:
-                    pairs.append(pair)
-                    continue
-        bad.append(index)
+    if len(value) > MOST_POINTS:
+        return reading.fault(path, f"{len(value)} points; more than {MOST_POINTS} are not taken, thin them out")
+    pairs = [_pair(item) for item in value]
+    bad = [index for index, pair in enumerate(pairs) if pair is None]
     if bad:
         return _report(reading, form, value, path, bad)
     if len(pairs) < form.least:
         only = f"only {len(pairs)} point" if pairs else "no points"
         return reading.fault(path, f"{only}; at least {form.least} are needed, [[{form.x}, {form.y}], …]")
     return pairs
+
+
+def _pair(item: Any) -> tuple[float, float] | None:
+    """Return the numbers of a point, None where it is none."""
+    if type(item) is not list or len(item) != 2:
+        return None
+    x, y = item
+    if type(x) is not Plain or type(y) is not Plain or len(x) > LONGEST_VALUE or len(y) > LONGEST_VALUE:
+        return None
+    try:
+        return parse_number(x), parse_number(y)
+    except UnitError:
+        return None
 
 
 def _report(reading: Reading, form: Points, value: list[Any], path: Path, bad: list[int]) -> Any:
@@ -73,7 +78,7 @@ def _explain(reading: Reading, form: Points, item: Any, path: Path) -> None:
 def _wrong_length(item: list[Any], pair: str) -> str:
     written = shown(", ".join(str(entry) for entry in item[:6]))
     if len(item) == 1 and re.fullmatch(r"\S+\s+\S+", str(item[0])):
-        return f"a comma is missing between the two numbers; write [{', '.join(str(item[0]).split())}]"
+        return f"a comma is missing between the two numbers; write [{shown(', '.join(str(item[0]).split()))}]"
     if len(item) in (3, 4) and all(re.fullmatch(r"[-+]?\d+", str(entry)) for entry in item):
         return f"a pair {pair} has two numbers, [{written}] has {len(item)}; write decimal points, such as 1.5 for 1,5"
     return f"a pair {pair} has two numbers, [{written}] has {len(item) or 'none'}"
@@ -82,17 +87,13 @@ def _wrong_length(item: list[Any], pair: str) -> str:
 def _explain_number(reading: Reading, name: str, entry: Any, path: Path) -> None:
     if entry is REFUSED:
         return
-    text = shown(entry)
     if isinstance(entry, Plain) and entry in ("", "~", "null"):
         reading.fault(path, f"a value is missing; write the {name} as a number")
         return
     if not isinstance(entry, Plain):
-        reading.fault(path, f'expected a number, got the text "{text}"; leave out the quotation marks')
+        reading.fault(path, f'expected a number, got the text "{shown(entry)}"; leave out the quotation marks')
         return
     try:
-        number = parse_number(text)
+        parse_number(shown(entry, LONGEST_VALUE))
     except UnitError as error:
         reading.fault(path, str(error))
-        return
-    if not math.isfinite(number) or abs(number) >= _LARGEST:
-        reading.fault(path, f"{text} is too large to compute with")

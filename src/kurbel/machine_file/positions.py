@@ -24,7 +24,7 @@ class _Locator(Builder):
     """Builds the tree once more and notes where the nodes on the way to the wanted paths begin."""
 
     def __init__(self, wanted: set[Path]) -> None:
-        super().__init__()
+        super().__init__({})
         self._wanted = wanted
         self._keys: dict[Path, Place] = {}
         self._values: dict[Path, Place] = {}

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-import math
 import os
 import re
 from typing import Any
 
 from kurbel import keys as forms
+from kurbel.bounds import out_of_size
 from kurbel.errors import Path, UnitError
 from kurbel.keys import out_of_bounds
 from kurbel.machine_file.events import REFUSED, Plain
 from kurbel.machine_file.reading import Reading
-from kurbel.machine_file.source import shown
+from kurbel.machine_file.source import LONGEST_VALUE, shown
 from kurbel.machine_file.words import expected, kind_of, listed
 from kurbel.near_words import did_you_mean
-from kurbel.units import parse_number, parse_quantity, unit_factor
+from kurbel.numerals import parse_number, plain
+from kurbel.units import parse_quantity, unit_factor
 
-_LONGEST = 200  # characters of a value; what is longer is no number, and would flood the message
-_GLUED = re.compile(r"[A-Za-z_]\w*:\S")
+_GLUED = re.compile(r"\b[A-Za-z_]\w*:\S")
 _NOTHING = ("", "~", "null", "Null", "NULL")
 
 
@@ -28,7 +28,7 @@ def _fits(reading: Reading, form: Any, value: Any, path: Path) -> bool:
         reading.fault(path, f"a value is missing; write {expected(form)}")
     elif not isinstance(value, str):
         reading.fault(path, f"expected {expected(form)}, got {kind_of(value)}")
-    elif len(value) > _LONGEST or not value.isprintable():
+    elif len(value) > LONGEST_VALUE or not value.isprintable():
         reading.fault(path, f"expected {expected(form)}, got '{shown(value)}'")
     elif not value.strip():
         reading.fault(path, f"expected {expected(form)}, got an empty text")
@@ -50,7 +50,7 @@ def physical(reading: Reading, form: forms.Physical, value: Any, path: Path) -> 
         number = parse_quantity(value, form.kind)
     except UnitError as error:
         return reading.fault(path, f"{error}{glued_hint(value)}")
-    wrong = out_of_bounds(number, form)
+    wrong = out_of_bounds(number, form) or out_of_size(number, form.kind)
     return reading.fault(path, f"{value} {wrong}") if wrong else number
 
 
@@ -69,7 +69,7 @@ def number(reading: Reading, form: forms.Number, value: Any, path: Path) -> Any:
         bare = parse_number(value)
     except UnitError as error:
         return reading.fault(path, f"{error}{glued_hint(value)}")
-    wrong = out_of_bounds(bare, form)
+    wrong = out_of_bounds(bare, form) or out_of_size(bare, "ratio")
     return reading.fault(path, f"{value} {wrong}") if wrong else bare
 
 
@@ -163,7 +163,7 @@ def _limit(reading: Reading, kind: str, value: Any, path: Path) -> Any:
         return REFUSED
     if kind != "ratio":
         return physical(reading, forms.Physical(kind), value, path)
-    parts = value.split("/") if isinstance(value, Plain) and len(value) < _LONGEST else []
+    parts = plain(value).split("/") if isinstance(value, Plain) and len(value) < LONGEST_VALUE else []
     if len(parts) != 2:
         return number(reading, forms.Number(), value, path)
     try:
@@ -171,4 +171,5 @@ def _limit(reading: Reading, kind: str, value: Any, path: Path) -> Any:
         ratio = over / under
     except (UnitError, ZeroDivisionError):
         return reading.fault(path, f"expected a number or a quotient such as 1/200, got '{shown(value)}'")
-    return ratio if math.isfinite(ratio) else reading.fault(path, f"{shown(value)} is too large to compute with")
+    wrong = out_of_size(ratio, "ratio")
+    return reading.fault(path, f"{shown(value)} {wrong}") if wrong else ratio

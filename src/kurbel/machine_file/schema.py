@@ -10,7 +10,9 @@ import re
 from typing import Any
 
 from kurbel import keys as forms
-from kurbel.units import NUMBER, example, unit_names
+from kurbel.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
+from kurbel.numerals import NUMBER
+from kurbel.units import example, unit_names
 
 Schema = dict[str, Any]
 _ROOT = forms.Record("kurbel.machine:Machine")
@@ -110,7 +112,7 @@ def _form(form: Any, definitions: dict[str, Schema]) -> Schema:
         return _limits(definitions)
     if isinstance(form, forms.Points):
         pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
-        return {"type": "array", "items": pair, "minItems": form.least}
+        return {"type": "array", "items": pair, "minItems": form.least, "maxItems": MOST_POINTS}
     return _scalar(form, definitions)
 
 
@@ -121,7 +123,7 @@ def _structure(form: Any, definitions: dict[str, Schema]) -> Schema:
             definitions[name] = _object(forms.load(form), definitions)
         return _reference(name)
     if isinstance(form, forms.Listing):
-        return {"type": "array", "items": _form(form.item, definitions), "minItems": 1}
+        return {"type": "array", "items": _form(form.item, definitions), "minItems": 1, "maxItems": MOST_ITEMS}
     if isinstance(form, forms.OneOf):
         return {"anyOf": [_form(each, definitions) for each in form.forms]}
     cases = [
@@ -140,11 +142,12 @@ def _scalar(form: Any, definitions: dict[str, Schema]) -> Schema:
     if isinstance(form, forms.Physical):
         return _or_words(_quantity(form.kind, definitions), form.words)
     if isinstance(form, forms.Number):
+        largest = SIZES["ratio"][1]
         bounds = {
             "exclusiveMinimum": form.above,
-            "minimum": form.least,
+            "minimum": -largest if form.least is None else form.least,
             "exclusiveMaximum": form.below,
-            "maximum": form.most,
+            "maximum": largest if form.most is None else form.most,
         }
         number = {"type": "number", **{name: bound for name, bound in bounds.items() if bound is not None}}
         return _or_words(number, form.words)
@@ -168,7 +171,8 @@ def _quantity(kind: str, definitions: dict[str, Schema]) -> Schema:
     name = f"quantity_{kind}"
     if name not in definitions:
         pattern = f"^\\s*{NUMBER.pattern}\\s*{_units(kind)}\\s*$"
-        definitions[name] = {"type": "string", "pattern": pattern, "examples": [example(kind)]}
+        about = {"description": f"in size {range_of(kind)}", "examples": [example(kind)]}
+        definitions[name] = {"type": "string", "pattern": pattern, **about}
     return _reference(name)
 
 

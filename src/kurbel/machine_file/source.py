@@ -7,10 +7,12 @@ import re
 from typing import NamedTuple
 
 from kurbel.errors import LocatedFault, MachineFileError, Path, UnreadableFileError
+from kurbel.numerals import SPACES
 
 SIZE_LIMIT = 16 * 1024 * 1024
 """Largest machine file in bytes; a longer measurement belongs into a file of its own."""
 _LINE_END = re.compile(r"\r\n|[\n\r\x85\u2028\u2029]")  # what YAML takes for the end of a line, no more
+_SPACE = re.compile(f"[{SPACES}]")  # YAML takes them for letters
 _UNPRINTABLE = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")  # as YAML has it
 
 
@@ -92,7 +94,7 @@ def decode(name: str, content: bytes, folder: str = "") -> Source:
         message = "the file is UTF-16; save it as UTF-8"
         raise Source(name, "").error([(Place(0, 0), (), message)])
     try:
-        source = Source(name, content.decode("utf-8-sig"), folder)
+        source = Source(name, _SPACE.sub(" ", content.decode("utf-8-sig")), folder)
     except UnicodeDecodeError as error:
         raise _encoding_error(name, content, error.start) from None
     found = _UNPRINTABLE.search(source.text)
@@ -121,7 +123,11 @@ def _shown_path(path: Path) -> Path:
     return tuple(shown(step) if isinstance(step, str) else step for step in path)
 
 
-def shown(text: str) -> str:
+LONGEST_VALUE = 200
+"""Characters of a value; what is longer is no number, and would flood the message."""
+
+
+def shown(text: str, most: int = 60) -> str:
     """Write a text from the file so that it fits into one line of a message and cannot steer a terminal."""
-    flat = "".join(c if c.isprintable() else " " if c.isspace() else f"\\u{ord(c):04x}" for c in text[:200])
-    return flat if len(flat) <= 60 else flat[:57] + "…"
+    flat = "".join(c if c.isprintable() else " " if c in "\t\r\n" else f"\\u{ord(c):04x}" for c in text[: most + 1])
+    return flat if len(flat) <= most else flat[: most - 3] + "…"

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from kurbel import keys as forms
+from kurbel.bounds import MOST_ITEMS
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.machine_file import points, scalars
 from kurbel.machine_file.events import REFUSED, Plain
@@ -200,6 +201,8 @@ def listing(reading: Reading, form: forms.Listing, value: Any, path: Path) -> An
         return reading.fault(path, f"expected a list, each item after '- ', got {kind_of(value)}")
     if not value:
         return reading.fault(path, "the list is empty; give at least one item or leave the key out")
+    if len(value) > MOST_ITEMS:
+        return reading.fault(path, f"{len(value)} items; no machine has more than {MOST_ITEMS} of them")
     items = tuple(read(reading, form.item, item, (*path, index)) for index, item in enumerate(value))
     return REFUSED if any(item is REFUSED for item in items) else items
 

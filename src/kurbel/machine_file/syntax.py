@@ -47,7 +47,7 @@ def _glued(lines: list[str], first: int, last: int) -> Mistake | None:
         found = _GLUED.match(lines[number])
         if found:
             key, value = found.groups()
-            message = f"a space is missing after the colon; write '{key}: {shown(value.strip())}'"
+            message = f"a space is missing after the colon; write '{shown(key)}: {shown(value.strip())}'"
             return Mistake(Place(number, found.start(2)), (), message)
     return None
 

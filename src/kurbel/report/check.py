@@ -13,6 +13,7 @@ from kurbel.machine.fit import may_lock
 from kurbel.mechanisms import Mechanism
 from kurbel.quantities import KEY_VALUES, NOISE_POWER
 from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages, warnings
+from kurbel.report.sizes import speed_notes
 from kurbel.units import SI, show
 
 
@@ -62,6 +63,7 @@ def _machine_entries(machine: Machine) -> Iterable[Entry]:
     yield Entry("cylinders", str(len(machine.cylinders)) if machine.cylinders else "none, a given turning effort")
     yield Entry("cycle", f"{machine.cycle}, {360 * machine.revolutions} deg")
     yield Entry("speed", "not given" if machine.speed is None else show(machine.speed, "speed"))
+    yield from (Entry("note", note) for note in speed_notes(machine))
 
 
 def _cylinder_section(machine: Machine, cylinder: Cylinder) -> Section:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from kurbel.machine import Cylinder, Machine
+from kurbel.report.sizes import size_notes
 from kurbel.report.tables import LeftOut
 
 
@@ -91,14 +92,15 @@ def _no_gas(cylinder: Cylinder) -> str:
 
 
 def warnings(cylinder: Cylinder) -> tuple[str, ...]:
-    """Return what the reader tidied up in the indicator cards of a cylinder."""
-    return tuple(
+    """Return what the reader tidied up in the indicator cards of a cylinder, and what is larger than ever built."""
+    tidied = tuple(
         f"{piston.name}, {end}: {note}"
         for piston in cylinder.pistons
         if piston.indicator
         for end, chamber in (("head end", piston.indicator.head_end), ("crank end", piston.indicator.crank_end))
         for note in getattr(chamber, "notes", ())
     )
+    return (*tidied, *size_notes(cylinder))
 
 
 def flywheel_left_out(machine: Machine) -> tuple[LeftOut, ...]:

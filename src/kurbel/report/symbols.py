@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from kurbel.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
 from kurbel.keys import (
     Choice,
     Count,
@@ -37,6 +38,7 @@ def symbols_page() -> str:
         _quantities("Key values", KEY_VALUES),
         _quantities("Stresses at one place of a crankshaft", STRESSES),
         _quantities("Rows of Zusammenstellung 112", FACTORS),
+        _sizes(),
         "## Keys of the machine file\n",
         *_records(),
     ]
@@ -50,6 +52,13 @@ def _quantities(title: str, declared: dict[str, Quantity]) -> str:
     ]
     head = ["| id | symbol | SI | technical | meaning |", "|---|---|---|---|---|"]
     return "\n".join([f"## {title}\n", *head, *rows, ""])
+
+
+def _sizes() -> str:
+    head = "## What a machine file may hold\n\nWhatever is smaller or larger is refused; the sign is free.\n"
+    rows = [f"| {kind.replace('_', ' ')} | {_cell(range_of(kind))} |" for kind in SIZES]
+    rows += [f"| points of one diagram or trace | up to {MOST_POINTS} |", f"| items of one list | up to {MOST_ITEMS} |"]
+    return "\n".join([head, "| kind | size |", "|---|---|", *rows, ""])
 
 
 def _records() -> Iterable[str]:

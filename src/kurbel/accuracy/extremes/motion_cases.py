@@ -11,7 +11,7 @@ from kurbel.accuracy.extremes import Absent, Oracle, Probe, Refusal
 
 _SHORT, _LONG = 0.1, 0.4
 _CRANK = "{speed: 60 rpm, crank: 400 mm, "
-_RATIOS = ("1e300", "1e100", "1e12", "1e6", "5", "1.01", "1.000001", "1.000000000001", "1.0000000000000002")
+_RATIOS = ("1e15", "1e14", "1e12", "1e6", "5", "1.01", "1.000001", "1.000000000001", "1.0000000000000002")
 _ASKED = (("x@0.001", 8.0), ("c@179.999", 8.0), ("b@100", 10.0), ("c_max", 8.0))
 
 
@@ -85,17 +85,17 @@ CASES = [
     Probe("offset at its limit", _offset("1600 mm"), "motion x@30", Refusal("longer than crank and offset together")),
     Probe("offset beyond its limit", _offset("-1700 mm"), "motion x@30", Refusal("longer than crank and offset")),
     *(
-        Probe(f"crank {crank}", _sized(crank, rod), f"motion {asked}", Oracle(60 if rod != "2e150 m" else 800))
-        for crank, rod in (("1e-300 m", "1.5e-300 m"), ("1e300 m", "1.5e300 m"), ("4e-150 m", "2e150 m"))
+        Probe(f"crank {crank}", _sized(crank, rod), f"motion {asked}", Oracle(60 if rod != "2e8 m" else 800))
+        for crank, rod in (("1e-9 m", "1.5e-9 m"), ("6e8 m", "9e8 m"), ("4e-9 m", "2e8 m"))
         for asked in ("x@60", "c@120")
-        if not (rod == "2e150 m" and asked == "c@120")
+        if not (rod == "2e8 m" and asked == "c@120")
     ),
-    Probe("stroke too large for a float", _sized("1e308 m", "1.5e308 m"), "motion x@180", Refusal("too large")),
+    Probe("crank too large", _sized("1e308 m", "1.5e308 m"), "motion x@180", Refusal("too large")),
     Probe("length too large for a float", _sized("1e400 m", "2 m"), "motion x@30", Refusal("too large")),
     Probe("crank of no length", _sized("0 mm", "2 m"), "motion x@30", Refusal("must be more than 0")),
     Probe("speed 0", "{speed: 0 rpm, crank: 400 mm, rod_ratio: 5}", "motion c@30", 0),
     Probe("no speed", "{crank: 400 mm, rod_ratio: 5}", "motion c@30", Absent()),
-    Probe("speed 1e-300 rpm", "{speed: 1e-300 rpm, crank: 400 mm, rod_ratio: 5}", "motion c@30", Oracle()),
+    Probe("speed 1e-6 rpm", "{speed: 1e-6 rpm, crank: 400 mm, rod_ratio: 5}", "motion c@30", Oracle()),
     Probe("speed 1e200 rpm", "{speed: 1e200 rpm, crank: 400 mm, rod_ratio: 5}", "motion b@30", Refusal("too large")),
     Probe("scotch yoke", "{mechanism: scotch-yoke, crank: 400 mm, speed: 60 rpm}", "motion b@60", Oracle(), 4),
     Probe("lever's pivot in the pin's circle", _slotted("100 mm"), "motion x@30", Refusal("would pass through")),

@@ -1,0 +1,74 @@
+"""Numbers as people write them, with the white space and the signs that word processors put in their place."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from kurbel.errors import UnitError
+
+NUMBER = re.compile(r"[-+]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+"""A number as YAML 1.2 writes it: no leading zero, no underscore, no base 60, no inf."""
+
+SPACES = "\xa0\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000"
+"""White space that no keyboard has; who wrote it meant a space."""
+_ALIKE: dict[int, int | str] = {
+    **{code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)},  # full-width forms
+    **dict.fromkeys(map(ord, SPACES), " "),
+    **dict.fromkeys((0x2010, 0x2011, 0x2012, 0x2013, 0x2212, 0xFE63), "-"),
+    **dict.fromkeys((0x2044, 0x2215), "/"),
+    **dict.fromkeys((0x2219, 0x22C5), "·"),
+    **dict.fromkeys((0x00BA, 0x02DA), "°"),
+}
+"""Signs that look like one of ours and can mean nothing else in a number or a unit."""
+
+
+def familiar(text: str) -> str:
+    """Return a text with look-alikes as a keyboard has them."""
+    return text if text.isascii() else text.translate(_ALIKE)
+
+
+def plain(text: str) -> str:
+    """Return a number or unit as a keyboard writes it, one space wherever there is white space, none at the ends.
+
+    >>> plain("\\u22125\\u202fmm ")
+    '-5 mm'
+    """
+    return " ".join(familiar(text).split())
+
+
+def parse_number(text: str) -> float:
+    """Return the finite number that `text` is. Raises UnitError that says what to write instead."""
+    number = NUMBER.fullmatch(text) or NUMBER.fullmatch(plain(text))
+    if not number:
+        raise UnitError(f"expected a number, got '{text}'{_hint(plain(text))}")
+    value = float(number.group())
+    if math.isfinite(value):
+        return value
+    raise UnitError(f"{number.group()} is too large to compute with")
+
+
+def _hint(text: str) -> str:
+    if re.fullmatch(r"[-+]?[0-9]+,[0-9]+", text):
+        return "; write the decimal point: " + text.replace(",", ".")
+    if re.fullmatch(r"[-+]?[0-9.]+(,[0-9.]+)+", text):
+        return "; write it without commas between thousands"
+    if re.fullmatch(r"[-+]?[0-9]+( [0-9]{3})+(\.[0-9]*)?", text):
+        return "; write it without spaces between thousands"
+    if re.fullmatch(r"[-+]?[0-9]+(\.[0-9]+)?\s*%", text):
+        return f"; write it as a fraction: {float(text[:-1]) / 100:.12g}"
+    if re.fullmatch(r"[-+]?[0-9_]+(\.[0-9]+)?", text) and "_" in text:
+        return "; leave out the underscores"
+    if re.fullmatch(r"[-+]?0[0-9]+(\.[0-9]*)?", text):
+        return "; leave out the leading zero"
+    if re.fullmatch(r"[0-9]+(:[0-9]+(\.[0-9]+)?)+", text):
+        return "; a ratio is written as one number, such as 5 for 5:1"
+    if re.fullmatch(r"[-+]?[0-9]+(\.[0-9]+)?/[0-9]+(\.[0-9]+)?", text):
+        over, under = (float(part) for part in text.split("/"))
+        return f"; write it as one number: {over / under:.12g}" if under else ""
+    if text.lower().strip("+-.") in ("nan", "inf", "infinity"):
+        return "; it must be finite"
+    number = NUMBER.match(text)
+    if number and re.match(r"\s*[A-Za-z°]", text[number.end() :]) and not re.match("0[box]", text):
+        return f"; it has no unit, write {number.group()}"
+    return ""
