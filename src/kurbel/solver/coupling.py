@@ -92,6 +92,7 @@ class ElasticCoupling:
                 self._passing - np.array([0.0, 0.0, shaft.load_slope * self._speeds[2]]),
             )
         )
+        self._largest = 0.0
         self.elements, self._coefficients = self._solution()
 
     @cached_property
@@ -109,57 +110,51 @@ class ElasticCoupling:
         parts = np.ceil(np.diff(breaks) * (self.natural_order / _SWING)).astype(int).clip(1, _MOST_ELEMENTS)
         cuts = [low + step * np.arange(n) / n for low, step, n in zip(breaks[:-1], np.diff(breaks), parts)]
         elements = Elements.over(np.append(np.concatenate(cuts), breaks[-1]))
-        torques = elements.prepared(self)
-        self._refuse_resonance(elements, torques)
+        self._refuse_resonance(elements)
+        answers = self._answers(elements)
         for _ in range(_ROUNDS):
-            coefficients = self._collocated(elements, torques)
-            ends = coefficients.sum(axis=2)
-            least = _TOLERANCE * np.ptp(ends, axis=0) + 1e-14 * np.abs(torques).max()
+            coefficients = _joined(answers)
+            least = _TOLERANCE * np.ptp(coefficients.sum(axis=2), axis=0) + 1e-14 * self._largest
             rough = (np.abs(coefficients[..., -2:]).sum(axis=2) > least).any(axis=1)
             if not rough.any() or len(rough) > _MOST_ELEMENTS:
                 break
             elements, old, _ = elements.cut(rough)
-            torques = torques[:, old]
-            torques[:, rough[old]] = Elements(*(of[rough[old]] for of in elements)).prepared(self)
+            answers = answers[old]
+            answers[rough[old]] = self._answers(Elements(*(of[rough[old]] for of in elements)))
         width = np.radians(elements.width)
         drift = width @ coefficients[:, 1, 0] / math.radians(self.cycle) * self._speeds[1]
         # a load that does not depend on the speed leaves the mean speed open: it is the nominal one
         coefficients[:, 1:, 0] -= drift / self._speeds[1:]
         return elements, coefficients
 
-    def _collocated(self, elements: Elements, torques: Array) -> Array:
-        """Return the Legendre coefficients (k, 3, s + 1) of the solution of the collocation equations."""
+    def _answers(self, elements: Elements) -> Array:
+        """Return the unknowns at the nodes of all elements (k, 3 s, 4): from 0 under its torques, from unit starts."""
         weights, unknowns = rule().matrix, 3 * len(rule().nodes)
-        width = np.radians(elements.width)
-        fed = np.stack((np.zeros_like(torques[0]), torques[0], -torques[1]), axis=-1)
-        sides = np.concatenate(
-            (
-                (width[:, None, None] * (weights @ fed)).reshape(-1, unknowns, 1),
-                np.broadcast_to(np.tile(np.eye(3), (len(weights), 1)), (len(width), unknowns, 3)),
-            ),
-            axis=2,
-        )
-        systems = np.eye(unknowns) - width[:, None, None] * np.kron(weights, self._matrix)
-        solved = np.linalg.solve(systems, sides)
-        last = solved[:, -3:]
-        starts = _around(-last[..., 1:], np.broadcast_to(np.eye(3), last[..., 1:].shape), last[..., 0])
-        values = solved[..., 0] + (solved[..., 1:] @ starts[..., None])[..., 0]
-        whole = np.concatenate((starts, values), axis=1).reshape(len(width), -1, 3)
-        return np.asarray(np.einsum("ns,ksm->kmn", rule().to_legendre, whole))
+        effort, load = elements.prepared(self)
+        self._largest = max(self._largest, float(np.abs(effort).max()), float(np.abs(load).max()))
+        width = np.radians(elements.width)[:, None, None]
+        fed = width * (weights @ np.stack((np.zeros_like(effort), effort, -load), axis=-1))
+        starts = np.broadcast_to(np.tile(np.eye(3), (len(weights), 1)), (len(width), unknowns, 3))
+        systems = np.eye(unknowns) - width * np.kron(weights, self._matrix)
+        return np.asarray(np.linalg.solve(systems, np.concatenate((fed.reshape(-1, unknowns, 1), starts), axis=2)))
 
-    def _near(self, torques: Array, elements: Elements) -> tuple[Array, ComplexArray, ComplexArray, float]:
-        """Return the orders near the natural one, amplitudes in N m of effort and load, and the size of both.
+    def _amplitudes(self, orders: Array, elements: Elements) -> tuple[ComplexArray, ComplexArray, float]:
+        """Return amplitudes in N m of effort and load at orders (n,), M = mean + Re Σ M̂ e^{inφ}, and the size of both.
 
-        M(φ) = mean + Re Σ M̂ e^{inφ}; the size is the amplitude of a single harmonic with the same mean square.
+        The size is the amplitude of a single harmonic with the same mean square.
         """
-        step = 360 / self.cycle
-        low, high = (math.ceil(self.natural_order * (1 - _NEAR) / step), self.natural_order * (1 + _NEAR) / step)
-        orders = step * np.arange(max(low, 1), math.floor(high) + 1, dtype=float)
+        torques = elements.prepared(self)
         weights = np.radians(elements.width)[:, None] * rule().matrix[-1] * (2 / math.radians(self.cycle))
         waves = np.exp(-1j * orders[:, None] * np.radians(elements.degrees.ravel()))
         effort, load = (np.asarray(waves @ (weights * part).ravel(), dtype=complex) for part in torques)
-        size = float(np.sqrt((weights * torques**2).sum(axis=(1, 2))).sum())
-        return orders, effort, load, size
+        return effort, load, float(np.sqrt((weights * torques**2).sum(axis=(1, 2))).sum())
+
+    @cached_property
+    def _orders(self) -> Array:
+        """Orders of the harmonics near the natural one."""
+        step = 360 / self.cycle
+        low, high = (self.natural_order * (1 + side * _NEAR) / step for side in (-1, 1))
+        return step * np.arange(max(math.ceil(low), 1), math.floor(high) + 1, dtype=float)
 
     def _denominators(self, orders: Array) -> tuple[ComplexArray, ComplexArray]:
         """Return c + iνJ₂ and 1 + iνJ₁ (1/(k/(iν) + d) + 1/(c + iνJ₂)) at orders (n,), ν = n ω_n.
@@ -171,15 +166,17 @@ class ElasticCoupling:
         spring = self.coupling.stiffness / nu + self.coupling.damping
         return np.asarray(driven), np.asarray(1 + nu * self.shaft.inertia * (1 / spring + 1 / driven), dtype=complex)
 
-    def _refuse_resonance(self, elements: Elements, torques: Array) -> None:
-        orders, effort, load, size = self._near(torques, elements)
-        driven, below = self._denominators(orders)
-        nu = 1j * orders * self.shaft.omega
-        excited = np.abs(effort + load * (nu * self.shaft.inertia / driven)) > 1e-9 * size
+    def _refuse_resonance(self, elements: Elements) -> None:
+        driven, below = self._denominators(self._orders)
+        nu = 1j * self._orders * self.shaft.omega
         spring = self.coupling.stiffness / nu + self.coupling.damping
-        stuck = excited & (np.abs(below) < 1e-9 * np.abs(nu * self.shaft.inertia / spring))
+        free = np.abs(below) < 1e-9 * np.abs(nu * self.shaft.inertia / spring)
+        if not free.any():
+            return
+        effort, load, size = self._amplitudes(self._orders, elements)
+        stuck = free & (np.abs(effort + load * (nu * self.shaft.inertia / driven)) > 1e-9 * size)
         if stuck.any():
-            order = orders[np.argmax(stuck)]
+            order = self._orders[np.argmax(stuck)]
             raise NoSolutionError(
                 f"the coupling is in resonance with harmonic {order:g} of the torque and nothing damps it: give "
                 "'coupling.damping', or change its stiffness or the speed"
@@ -272,7 +269,8 @@ class ElasticCoupling:
     @property
     def resonances(self) -> tuple[Harmonic, ...]:
         """Harmonics that are present in the torque and lie near the natural order."""
-        orders, effort, load, size = self._near(self.elements.prepared(self), self.elements)
+        orders = self._orders
+        effort, load, size = self._amplitudes(orders, self.elements)
         amplitudes = np.abs(effort) + np.abs(load)
         distance = orders / self.natural_order - 1
         own, driven = self.shaft.inertia, self.coupling.inertia
@@ -281,6 +279,15 @@ class ElasticCoupling:
         return tuple(
             Harmonic(*(float(of[i]) for of in (orders, distance, amplitudes, gain))) for i in np.nonzero(near)[0]
         )
+
+
+def _joined(answers: Array) -> Array:
+    """Return the Legendre coefficients (k, 3, s + 1) of the periodic solution from `_answers` (k, 3 s, 4)."""
+    last = answers[:, -3:]
+    starts = _around(-last[..., 1:], np.broadcast_to(np.eye(3), last[..., 1:].shape), last[..., 0])
+    values = answers[..., 0] + (answers[..., 1:] @ starts[..., None])[..., 0]
+    whole = np.concatenate((starts, values), axis=1).reshape(len(starts), -1, 3)
+    return np.asarray(np.einsum("ns,ksm->kmn", rule().to_legendre, whole))
 
 
 def _around(before: Array, after: Array, sides: Array) -> Array:

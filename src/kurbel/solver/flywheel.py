@@ -225,22 +225,22 @@ class MachineSpeed(MachineTurning):
         )
 
     def _enough(self, more: float | None) -> float | None:
-        """Return the smallest flywheel in kg m², within a hundredth, with which the machine turns; None without any.
+        """Return the smallest flywheel in kg m², within a fiftieth, with which the machine turns; None without any.
 
         more: kinetic energy in J that is known to be just enough.
         """
         assert self.J is not None
         assert self.omega
-        least = max(self.J, 1e-6 * self._mean_of_masses, self.dE / self.omega**2 / 1000)
-        enough = least + 2 * (500 * self.dE if more is None else more) / self.omega**2
+        least = max(self.J, 1e-6 * self._mean_of_masses)
+        enough = self.J + 2 * more / self.omega**2 if more else least + self.dE / self.omega**2
         for _ in range(_DOUBLINGS):
             if self._turns(_rounded_up(enough)):
                 break
             least, enough = enough, 2 * enough
         else:
             return None
-        while more is None and enough > 1.01 * least:
-            middle = math.sqrt(least * enough)
+        while not more and enough > 1.02 * max(least, enough / 1000):
+            middle = math.sqrt(max(least, enough / 4) * enough)
             least, enough = (least, middle) if self._turns(_rounded_up(middle)) else (middle, enough)
         return _rounded_up(enough)
 

@@ -235,10 +235,11 @@ def _linear_step(at: _State) -> tuple[Array, Array]:
 
 def _chain(more: list[float], gains: list[float]) -> list[float]:
     """Return the periodic solution of d(k + 1) = more(k) + gains(k) d(k), run in the direction in which errors die."""
-    offset, whole = 0.0, 1.0
-    for add, gain in zip(more, gains):
-        offset, whole = add + gain * offset, whole * gain
-    if not abs(whole) > 1 or 0.0 in gains:
+    # by the logarithms, as products may overflow whichever way round
+    if 0.0 in gains or not sum(math.log(abs(gain)) for gain in gains) > 1e-9:
+        offset, whole = 0.0, 1.0
+        for add, gain in zip(more, gains):
+            offset, whole = add + gain * offset, whole * gain
         steps = [offset / (1 - whole) if whole != 1 else 0.0]
         for add, gain in zip(more[:-1], gains):
             steps.append(add + gain * steps[-1])
