@@ -80,7 +80,7 @@ def test_khurmi_16_4() -> None:
 def test_khurmi_16_6_a_cycle_of_three_turns() -> None:
     """750 N m, rising to 3000 over half a turn, one turn at 3000, falling over half a turn, one turn at 750."""
     points = Effort((0.0, 180.0, 540.0, 720.0, 1080.0), (750.0, 3000.0, 3000.0, 750.0, 750.0))
-    diagram = Diagram(points, 1080.0, 1080.0)
+    diagram = Diagram(points, 1080.0)
     mean = mean_torque(diagram, 1080)
     excess, omega = Excess(diagram, Uniform(mean, 1080.0)), 250 * math.pi / 30
     assert mean == pytest.approx(1875, rel=EXACT)
@@ -163,7 +163,8 @@ def test_uicker_p18_1_seventy_two_ordinates() -> None:
     Here straight lines join the ordinates; their mean is the plain one, where the solution's 70.88 is Simpson's,
     and the swing from crossing to crossing is a little larger than the 1961.789 N m from ordinate to ordinate.
     """
-    turning = of_points([(10.0 * i, float(m)) for i, m in enumerate(UICKER)], 4600, delta=0.025)
+    points = [(10.0 * i, float(m)) for i, m in enumerate((*UICKER, UICKER[0]))]
+    turning = of_points(points, 4600, delta=0.025)
     assert turning.M_mean == pytest.approx(5164 / 72, rel=EXACT)
     steps = [math.radians(10) * ((a + b) / 2 - 5164 / 72) for a, b in zip(UICKER, (*UICKER[1:], 0))]
     heights = np.cumsum([0.0, *steps])

@@ -51,6 +51,22 @@ def test_the_efficiency_scales_the_turning_effort_only() -> None:
     assert pytest.approx(0.9 * Case(less.machine).cylinders[0].W, rel=1e-14) == less.W
 
 
+@pytest.mark.parametrize("eta", [1.0, 0.95])
+def test_a_driven_machine_needs_more_than_its_card_shows(eta: float) -> None:
+    """A chamber that draws in at ambient pressure and delivers at 4 bar above it takes p A s in a turn, over η."""
+    delivery = Card.from_keys(unit=(1e5, 1), expansion=[(0, 0), (1, 0)], compression=[(1, 4), (0, 4)])
+    pump = Cylinder(SliderCrank(0.2, 1.0), pistons=(Piston(0.3, indicator=Indicator(delivery)),), masses=Masses(80.0))
+    driven = turning(pump, rpm=120, efficiency=eta)
+    work = 4e5 * math.pi / 4 * 0.3**2 * 0.4 / eta
+    assert driven.power_shaft == pytest.approx(-work * 2, rel=1e-13)
+    assert driven.work_shaft == pytest.approx(-work, rel=1e-13)
+    assert pytest.approx(-work / (2 * math.pi), rel=1e-13) == driven.M_mean
+    assert pytest.approx(-work / (2 * math.pi * 0.2), rel=1e-13) == driven.W
+    lossless = turning(pump, rpm=120)
+    assert driven.lobes == pytest.approx(np.array(lossless.lobes) / eta, rel=1e-12)
+    assert driven.T_inertia(ANGLES) == pytest.approx(lossless.T_inertia(ANGLES) / eta, rel=1e-13, abs=1e-9)
+
+
 def test_forces_are_referred_to_crank_1() -> None:
     small = replace(ENGINE, mechanism=SliderCrank(0.2, 1.5))
     both = turning(ENGINE, small)

@@ -112,6 +112,15 @@ def test_friction_taken_off_twice_is_told() -> None:
     assert "friction is taken off twice" in warnings(ENGINE + "efficiency: 0.9\n")
 
 
+def test_the_efficiency_of_a_compressor_raises_what_it_needs() -> None:
+    text = (CONFIGS / "compressor.yaml").read_text(encoding="utf-8")
+    lossless, real = values(text), values(text + "efficiency: 0.95\n")
+    for name in ("W", "M_mean", "work_shaft", "power_shaft"):
+        assert lossless[name] < 0
+        assert real[name] == pytest.approx(lossless[name] / 0.95, rel=1e-12)
+    assert "over the efficiency 0.95" in run(text + "efficiency: 0.95\n").stdout
+
+
 def test_a_resonance_is_told() -> None:
     coupling = "{stiffness: 1e6 N m/rad, inertia: 3000 kg m2, damping: 100 N m s/rad}"
     text = f"{ENGINE}flywheel: {{inertia: 20 t m2}}\ncoupling: {coupling}\n"

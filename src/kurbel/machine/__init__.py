@@ -136,8 +136,8 @@ class Machine:
     """A whole machine.
 
     speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
-    pressure in Pa; efficiency η scales the turning effort of the whole machine; brake_power: measured, in W; limits:
-    key-value id -> bound in SI.
+    pressure in Pa; efficiency η multiplies the turning effort of the whole machine, or divides it where the machine is
+    driven; brake_power: measured, in W; limits: key-value id -> bound in SI.
     """
 
     cylinders: tuple[Cylinder, ...]
@@ -166,7 +166,8 @@ class Machine:
         "cycle": Key(Choice(tuple(CYCLES)), "Working cycle: 360° or 720°", absent="two-stroke"),
         "efficiency": Key(
             Number(above=0, most=1),
-            "Mechanical efficiency; scales the turning effort of the whole machine (R p. 611)",
+            "Mechanical efficiency of the whole machine: its turning effort is multiplied by it (R p. 611), or divided "
+            "by it where the machine is driven",
             "η",
             absent="1",
             commands=("flywheel",),

@@ -10,7 +10,7 @@ from kurbel.machine import CYCLES
 def angle_faults(points: list[Point], path: Path) -> list[Fault]:
     """Return what is wrong with the angles of a diagram over one cycle.
 
-    They lie within 0 … 720 deg and do not turn back; two points at one angle are a jump, three are one too many.
+    They run from 0 to 360 or 720 deg and do not turn back; two points at one angle are a jump, three are one too many.
     """
     for i, (angle, _) in enumerate(points):
         if not 0 <= angle <= 720:
@@ -21,14 +21,16 @@ def angle_faults(points: list[Point], path: Path) -> list[Fault]:
             ]
         if i >= 2 and angle == points[i - 2][0]:
             return [Fault((*path, i), f"three points at {angle:g} deg; a jump has two")]
-    if len(points) < 2 or points[0][0] == points[-1][0]:
-        return [Fault(path, "a diagram needs points at two angles or more")]
+    if not points or points[0][0] != 0 or points[-1][0] not in (360, 720):
+        runs = f"this one runs from {points[0][0]:g} to {points[-1][0]:g} deg" if points else "this one has no points"
+        whole = "a diagram runs from 0 to 360 deg, or to 720 deg in a four-stroke cycle"
+        return [Fault(path, f"{whole}, {runs}; give the values at both ends of the cycle, with angles in degrees")]
     return []
 
 
 def beyond_cycle(last: float, cycle: str) -> str:
     """Return what to write when a diagram ends at an angle (in degrees) that the cycle does not have; else ''."""
     whole = 360.0 * CYCLES[cycle]
-    if last <= whole:
+    if last <= whole:  # one of a single turn repeats in the second one of a four-stroke cycle
         return ""
     return f"the diagram runs to {last:g} deg, a {cycle} cycle has {whole:g} deg; write 'cycle: four-stroke' at the top"

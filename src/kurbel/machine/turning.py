@@ -53,7 +53,10 @@ class Flywheel:
 
 @dataclass(frozen=True, eq=False)
 class Effort:
-    """A turning-moment diagram: torques in N m over crank angles in degrees, ascending; equal neighbours are a jump."""
+    """A turning-moment diagram: torques in N m over crank angles in degrees, from 0 to 360 or 720, ascending.
+
+    Two points at one angle are a jump.
+    """
 
     angles: tuple[float, ...]
     torques: tuple[float, ...]

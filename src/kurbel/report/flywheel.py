@@ -101,7 +101,8 @@ def _cylinder_parts(case: Case, system: str) -> Iterable[Part]:
 
 def _notes(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
     if turning.crank is not None:
-        eta = f", with the efficiency {machine.efficiency:g}" if machine.efficiency != 1 else ""
+        over = "over" if turning.efficiency > 1 else "with"
+        eta = f", {over} the efficiency {machine.efficiency:g}" if machine.efficiency != 1 else ""
         yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
     if turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
         yield "Such a load holds no speed of its own: the mean of ω over time is taken as the nominal speed."
@@ -125,8 +126,6 @@ def _warnings(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
         )
     if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
         yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
-    if machine.efficiency != 1 and turning.M_mean < 0:
-        yield "the machine absorbs work: it needs more than its turning effort to be driven, 'efficiency' makes it less"
     yield from _wish_warnings(turning)
     if turning.multiplier is not None and turning.multiplier > 1:
         least = "at least " if turning.multiplier > _BEYOND else ""

@@ -1,8 +1,8 @@
-"""An elastic coupling between the crank shaft and a driven inertia, by harmonic balance at the nominal speed.
+"""An elastic coupling between the crank shaft and a driven inertia, both moving nearly uniformly.
 
-Every harmonic ν = nω of the turning effort M̂ and of the load L̂ drives both masses through the coupling:
-T̂ = (M̂ + L̂ iνJ₁/(iνJ₂ + c)) / (1 + iνJ₁ (1/(k/(iν) + d) + 1/(iνJ₂ + c))), with stiffness k, damping d, the moments of
-inertia J₁ and J₂, and the slope c of the load over the speed.
+About the nominal speed the equations are linear: J₁ ω̇₁ = M − T, J₂ ω̇₂ = T − L − c (ω₂ − ω_n), Ṡ = k (ω₁ − ω₂), with the
+torque T = S + d (ω₁ − ω₂) in the coupling, its stiffness k and damping d, the slope c of the load over the speed. Their
+periodic solution is found by collocation.
 """
 
 from __future__ import annotations
@@ -16,19 +16,26 @@ import numpy as np
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
 from kurbel.mechanisms import Extreme
+from kurbel.solver.elements import Elements, rule
 from kurbel.solver.excess import mean_torque
 from kurbel.solver.grid import Extremes, Grid, Sampled, extremes
-from kurbel.solver.torques import Mean, Sum, Torque
+from kurbel.solver.torques import Sum, Torque
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, ComplexArray
 
 RIGID_ABOVE = 100.0
 """Natural order from which on a coupling counts as rigid: it transmits what a rigid one would but for 1 in 10⁴."""
+_SWING = 120.0
+"""Degrees of a natural oscillation that one element may hold at first; …"""
+_TOLERANCE = 1e-10
+"""… it is cut while its last two coefficients are more over the swing, with which the error is far less, …"""
+_ROUNDS, _MOST_ELEMENTS = 10, 8000
+"""… so many times at the most."""
 _NEAR = 0.1
 """A harmonic whose order lies so near the natural one, relatively, is worth a warning."""
 _WORTH = 1e-3
-"""… if its amplitude is at least so much of the largest harmonic, …"""
+"""… if its amplitude is at least so much of one that swings as the whole torque does in the mean, …"""
 _AMPLIFIED = 1.5
 """… and it is amplified at least so many times: one that is damped is no resonance."""
 
@@ -60,114 +67,145 @@ class Harmonic(NamedTuple):
 
 
 class ElasticCoupling:
-    """The torque in the coupling and the speed of the crank shaft; see the head of the module."""
+    """The torque in the coupling and the speed of the crank shaft; see the head of the module.
+
+    The unknowns, (…, 3), are S − M_m over the natural order, and what J₁ and J₂ gain over ω_n times their momentum: all
+    in N m, of one size.
+    Raises NoSolutionError in a resonance that nothing damps.
+    """
 
     def __init__(self, coupling: Coupling, shaft: Shaft, effort: Torque, load: Torque) -> None:
         self.coupling = coupling
         self.shaft = shaft
         self._effort, self._load = effort, load
-        self.cycle = float(max(effort.breaks[-1], load.breaks[-1]))
+        self._torques = Sum(((1.0, effort), (-1.0, load)))
+        self.cycle = float(self._torques.breaks[-1])
         self.natural_frequency = natural_frequency(coupling, shaft.inertia)
         self.natural_order = self.natural_frequency / shaft.omega
-        most = max(200.0, 8 * self.natural_order)
-        self._orders = np.arange(1, math.ceil(most * self.cycle / 360) + 1) * (360 / self.cycle)
-
-    @cached_property
-    def _spectra(self) -> tuple[ComplexArray, ComplexArray]:
-        """Amplitudes of effort and load in N m at the orders, M(φ) = mean + Re Σ M̂ e^{inφ}."""
-        return self._spectrum(self._effort), self._spectrum(self._load)
-
-    def _spectrum(self, torque: Torque) -> ComplexArray:
-        """Fourier integrals by Gauss on the smooth pieces, cut so that no harmonic swings more than twice in one."""
-        widest = 720.0 / float(self._orders[-1])
-        low, width = torque.breaks[:-1], np.diff(torque.breaks)
-        parts = np.ceil(width / widest).astype(int)
-        cuts = [start + step * np.arange(n) / n for start, step, n in zip(low, width, parts, strict=True)]
-        grid = Grid(np.append(np.concatenate(cuts), torque.breaks[-1]))
-        values = torque.torque(grid.degrees, grid.within).value
-        turn = np.exp(-1j * np.radians(grid.degrees) * (360 / self.cycle))
-        phase, found = np.ones_like(turn), []
-        for _ in self._orders:
-            phase = phase * turn
-            wave = values * phase
-            found.append(grid.integral(wave.real) + 1j * grid.integral(wave.imag))
-        return np.asarray(np.array(found) * (2 / math.radians(self.cycle)), dtype=complex)
-
-    @cached_property
-    def _balance(self) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """Amplitudes of the torque in the coupling, of the speed it takes from the cranks, and the denominators."""
-        nu = 1j * self._orders * self.shaft.omega
-        effort, load = self._spectra
-        driven = nu * self.coupling.inertia + self.shaft.load_slope
-        spring = self.coupling.stiffness / nu + self.coupling.damping
-        below = 1 + nu * self.shaft.inertia * (1 / spring + 1 / driven)
-        torque = effort + load * (nu * self.shaft.inertia / driven)
-        excited = np.abs(torque) > 1e-9 * np.abs(torque).max()
-        stuck = excited & (np.abs(below) < 1e-9 * np.abs(nu * self.shaft.inertia / spring))
-        if stuck.any():
-            order = self._orders[np.argmax(stuck)]
-            raise NoSolutionError(
-                f"the coupling is in resonance with harmonic {order:g} of the torque and nothing damps it: give "
-                "'coupling.damping', or change its stiffness or the speed"
+        self._speeds = np.array([0.0, 1 / shaft.inertia, 1 / coupling.inertia]) / shaft.omega
+        twisting = self._speeds * np.array([0.0, 1.0, -1.0])
+        self._passing = coupling.damping * twisting + np.array([self.natural_order, 0.0, 0.0])
+        self._matrix = np.stack(
+            (
+                coupling.stiffness / self.natural_frequency * twisting,
+                -self._passing,
+                self._passing - np.array([0.0, 0.0, shaft.load_slope * self._speeds[2]]),
             )
-        torque = np.asarray(torque / np.where(below == 0, 1.0, below), dtype=complex)
-        speed: ComplexArray = np.asarray(torque / (nu * self.shaft.inertia), dtype=complex)
-        return torque, speed, np.asarray(below, dtype=complex)
-
-    def _series(self, amplitudes: ComplexArray, degrees: Array) -> Sampled:
-        """Return Re Σ a e^{inφ} and its slope by φ at crank angles (n,)."""
-        turn = np.exp(1j * np.radians(degrees) * (360 / self.cycle))
-        phase, value, slope = np.ones_like(turn), np.zeros_like(turn), np.zeros_like(turn)
-        for amplitude, order in zip(amplitudes, self._orders, strict=True):
-            phase = phase * turn
-            wave = amplitude * phase
-            value, slope = value + wave, slope + 1j * order * wave
-        return Sampled(value.real, slope.real)
+        )
+        self._largest = 0.0
+        self.elements, self._coefficients = self._solution()
 
     @cached_property
     def mean(self) -> float:
         """Mean torque in N m."""
         return mean_torque(self._effort, self.cycle)
 
+    def prepared(self, degrees: Array, within: Array) -> Array:
+        """Return effort and load less their mean in N m, as (2, …)."""
+        return np.stack([part.torque(degrees, within).value - self.mean for part in (self._effort, self._load)])
+
+    def _solution(self) -> tuple[Elements, Array]:
+        """Return elements and Legendre coefficients (k, 3, s + 1) of the unknowns on them."""
+        breaks = self._torques.breaks
+        parts = np.ceil(np.diff(breaks) * (self.natural_order / _SWING)).astype(int).clip(1, _MOST_ELEMENTS)
+        cuts = [low + step * np.arange(n) / n for low, step, n in zip(breaks[:-1], np.diff(breaks), parts)]
+        elements = Elements.over(np.append(np.concatenate(cuts), breaks[-1]))
+        self._refuse_resonance(elements)
+        answers = self._answers(elements)
+        for _ in range(_ROUNDS):
+            coefficients = _joined(answers)
+            least = _TOLERANCE * np.ptp(coefficients.sum(axis=2), axis=0) + 1e-14 * self._largest
+            rough = (np.abs(coefficients[..., -2:]).sum(axis=2) > least).any(axis=1)
+            if not rough.any() or len(rough) > _MOST_ELEMENTS:
+                break
+            elements, old, _ = elements.cut(rough)
+            answers = answers[old]
+            answers[rough[old]] = self._answers(Elements(*(of[rough[old]] for of in elements)))
+        width = np.radians(elements.width)
+        drift = width @ coefficients[:, 1, 0] / math.radians(self.cycle) * self._speeds[1]
+        # a load that does not depend on the speed leaves the mean speed open: it is the nominal one
+        coefficients[:, 1:, 0] -= drift / self._speeds[1:]
+        return elements, coefficients
+
+    def _answers(self, elements: Elements) -> Array:
+        """Return the unknowns at the nodes of all elements (k, 3 s, 4): from 0 under its torques, from unit starts."""
+        weights, unknowns = rule().matrix, 3 * len(rule().nodes)
+        effort, load = elements.prepared(self)
+        self._largest = max(self._largest, float(np.abs(effort).max()), float(np.abs(load).max()))
+        width = np.radians(elements.width)[:, None, None]
+        fed = width * (weights @ np.stack((np.zeros_like(effort), effort, -load), axis=-1))
+        starts = np.broadcast_to(np.tile(np.eye(3), (len(weights), 1)), (len(width), unknowns, 3))
+        systems = np.eye(unknowns) - width * np.kron(weights, self._matrix)
+        return np.asarray(np.linalg.solve(systems, np.concatenate((fed.reshape(-1, unknowns, 1), starts), axis=2)))
+
+    def _amplitudes(self, orders: Array, elements: Elements) -> tuple[ComplexArray, ComplexArray, float]:
+        """Return amplitudes in N m of effort and load at orders (n,), M = mean + Re Σ M̂ e^{inφ}, and the size of both.
+
+        The size is the amplitude of a single harmonic with the same mean square.
+        """
+        torques = elements.prepared(self)
+        weights = np.radians(elements.width)[:, None] * rule().matrix[-1] * (2 / math.radians(self.cycle))
+        waves = np.exp(-1j * orders[:, None] * np.radians(elements.degrees.ravel()))
+        effort, load = (np.asarray(waves @ (weights * part).ravel(), dtype=complex) for part in torques)
+        return effort, load, float(np.sqrt((weights * torques**2).sum(axis=(1, 2))).sum())
+
+    @cached_property
+    def _orders(self) -> Array:
+        """Orders of the harmonics near the natural one."""
+        step = 360 / self.cycle
+        low, high = (self.natural_order * (1 + side * _NEAR) / step for side in (-1, 1))
+        return step * np.arange(max(math.ceil(low), 1), math.floor(high) + 1, dtype=float)
+
+    def _denominators(self, orders: Array) -> tuple[ComplexArray, ComplexArray]:
+        """Return c + iνJ₂ and 1 + iνJ₁ (1/(k/(iν) + d) + 1/(c + iνJ₂)) at orders (n,), ν = n ω_n.
+
+        The second one is by what the harmonics of the torque in the coupling are less than M̂ + L̂ iνJ₁/(c + iνJ₂).
+        """
+        nu = 1j * orders * self.shaft.omega
+        driven = nu * self.coupling.inertia + self.shaft.load_slope
+        spring = self.coupling.stiffness / nu + self.coupling.damping
+        return np.asarray(driven), np.asarray(1 + nu * self.shaft.inertia * (1 / spring + 1 / driven), dtype=complex)
+
+    def _refuse_resonance(self, elements: Elements) -> None:
+        driven, below = self._denominators(self._orders)
+        nu = 1j * self._orders * self.shaft.omega
+        spring = self.coupling.stiffness / nu + self.coupling.damping
+        free = np.abs(below) < 1e-9 * np.abs(nu * self.shaft.inertia / spring)
+        if not free.any():
+            return
+        effort, load, size = self._amplitudes(self._orders, elements)
+        stuck = free & (np.abs(effort + load * (nu * self.shaft.inertia / driven)) > 1e-9 * size)
+        if stuck.any():
+            order = self._orders[np.argmax(stuck)]
+            raise NoSolutionError(
+                f"the coupling is in resonance with harmonic {order:g} of the torque and nothing damps it: give "
+                "'coupling.damping', or change its stiffness or the speed"
+            )
+
+    def _sampled(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        """Return the torque less its mean, and ω₁ − ω_n, with their slopes by φ, at crank angles of the cycle."""
+        state = self.elements.at(self._coefficients, degrees, within)
+        effort, load = self.prepared(degrees, within)
+        rate = state @ self._matrix.T + np.stack((np.zeros_like(effort), effort, -load), axis=-1)
+        return {
+            "torque": Sampled(state @ self._passing, rate @ self._passing),
+            "omega": Sampled(state[..., 1] * self._speeds[1], rate[..., 1] * self._speeds[1]),
+        }
+
     def torque(self, degrees: Array) -> Array:
         """Return the torque in the coupling in N m at crank angles (n,) in degrees."""
-        return self.mean + self._series(self._balance[0], degrees).value
+        angles = np.mod(degrees, self.cycle)
+        return self.mean + self._sampled(angles, angles)["torque"].value
 
     def omega(self, degrees: Array) -> Array:
         """Return the angular velocity of the crank shaft in rad/s."""
         angles = np.mod(degrees, self.cycle)
-        return self.shaft.omega + self._swing(angles, angles).value
-
-    def _swing(self, degrees: Array, within: Array) -> Sampled:
-        """Return ω − ω_n: what the effort alone would do, closed, less what the coupling takes, as a series."""
-        back = self._series(self._balance[1], degrees)
-        effort, work = self._alone.torque(degrees, within).value, self._alone_work(degrees)
-        momentum = self.shaft.inertia * self.shaft.omega
-        return Sampled((work - self._mean_work) / momentum - back.value, effort / momentum - back.slope)
-
-    @cached_property
-    def _alone(self) -> Sum:
-        return Sum(((1.0, self._effort), (-1.0, Mean(self._effort, self.cycle))))
-
-    def _alone_work(self, degrees: Array) -> Array:
-        flat = degrees.ravel()
-        return np.asarray(self._alone.work(np.zeros_like(flat), flat).sum(axis=0).reshape(degrees.shape))
-
-    @cached_property
-    def _mean_work(self) -> float:
-        grid = Grid(self._effort.breaks)
-        return grid.integral(self._alone_work(grid.degrees)) / math.radians(self.cycle)
+        return self.shaft.omega + self._sampled(angles, angles)["omega"].value
 
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
-        # the largest peaks belong to the orders up to the natural one; 18 nodes to a piece find them
-        pieces = max(16, math.ceil(min(self._orders[-1], 4 * self.natural_order) * self.cycle / 360))
-        grid = Grid(self._effort.breaks).split_at(np.linspace(0.0, self.cycle, pieces + 1))
-
-        def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
-            return {"torque": self._series(self._balance[0], degrees), "omega": self._swing(degrees, within)}
-
-        return extremes(grid, evaluate(grid.degrees, grid.within), evaluate)
+        grid = Grid(np.append(self.elements.low, self.cycle))
+        return extremes(grid, self._sampled(grid.degrees, grid.within), self._sampled)
 
     def _shifted(self, name: str, largest: bool, base: float) -> Extreme:
         found = self._extremes[name].largest if largest else self._extremes[name].smallest
@@ -195,7 +233,7 @@ class ElasticCoupling:
 
     @property
     def omega_mean(self) -> float:
-        """ω_n: the balance is drawn up about it."""
+        """ω_n: the equations are drawn up about it."""
         return self.shaft.omega
 
     @property
@@ -206,18 +244,11 @@ class ElasticCoupling:
 
     @cached_property
     def growth(self) -> float:
-        """Logarithm of what is left of a small disturbance after a cycle: 2π n/ω_n times the largest real part.
+        """Logarithm of what is left of a small disturbance after a cycle: its length times the largest real part.
 
-        Of the eigenvalues of J₁ ω̇₁ = −T, J₂ ω̇₂ = T − c ω₂, T = k ∫(ω₁ − ω₂) dt + d (ω₁ − ω₂), about uniform rotation.
+        Of the eigenvalues of the equations at the head of the module.
         """
-        coupling, natural = self.coupling, self.natural_frequency
-        own = np.array([coupling.stiffness / natural, coupling.damping, -coupling.damping]) / self.shaft.inertia
-        driven = own * (self.shaft.inertia / coupling.inertia)
-        driven[2] -= self.shaft.load_slope / coupling.inertia
-        # with the twist as a speed, times the natural frequency, all entries are of one size
-        matrix = np.stack((np.array([0.0, natural, -natural]), -own, driven))
-        largest = float(np.linalg.eigvals(matrix).real.max())
-        return largest * math.radians(self.cycle) / self.shaft.omega
+        return float(np.linalg.eigvals(self._matrix).real.max()) * math.radians(self.cycle)
 
     @cached_property
     def amplification(self) -> float | None:
@@ -238,11 +269,53 @@ class ElasticCoupling:
     @property
     def resonances(self) -> tuple[Harmonic, ...]:
         """Harmonics that are present in the torque and lie near the natural order."""
-        effort = np.abs(self._spectra[0]) + np.abs(self._spectra[1])
-        distance = self._orders / self.natural_order - 1
+        orders = self._orders
+        effort, load, size = self._amplitudes(orders, self.elements)
+        amplitudes = np.abs(effort) + np.abs(load)
+        distance = orders / self.natural_order - 1
         own, driven = self.shaft.inertia, self.coupling.inertia
-        gain = np.abs(1 / self._balance[2]) * (own + driven) / driven
-        near = (np.abs(distance) < _NEAR) & (effort > _WORTH * effort.max()) & (gain >= _AMPLIFIED)
+        gain = np.abs(1 / self._denominators(orders)[1]) * (own + driven) / driven
+        near = (amplitudes > _WORTH * size) & (gain >= _AMPLIFIED)
         return tuple(
-            Harmonic(*(float(of[i]) for of in (self._orders, distance, effort, gain))) for i in np.nonzero(near)[0]
+            Harmonic(*(float(of[i]) for of in (orders, distance, amplitudes, gain))) for i in np.nonzero(near)[0]
         )
+
+
+def _joined(answers: Array) -> Array:
+    """Return the Legendre coefficients (k, 3, s + 1) of the periodic solution from `_answers` (k, 3 s, 4)."""
+    last = answers[:, -3:]
+    starts = _around(-last[..., 1:], np.broadcast_to(np.eye(3), last[..., 1:].shape), last[..., 0])
+    values = answers[..., 0] + (answers[..., 1:] @ starts[..., None])[..., 0]
+    whole = np.concatenate((starts, values), axis=1).reshape(len(starts), -1, 3)
+    return np.asarray(np.einsum("ns,ksm->kmn", rule().to_legendre, whole))
+
+
+def _around(before: Array, after: Array, sides: Array) -> Array:
+    """Return x (k, m) with before_i x_i + after_i x_{i+1} = sides_i, x_k being x_0; matrices (k, m, m), sides (k, m).
+
+    Every second x is eliminated by rotations, which do not mind whether a solution grows or dies on its way, until one
+    is left. What the equations leave open there is taken as small as can be.
+    """
+    count, size = sides.shape
+    if count == 1:
+        return np.asarray(np.linalg.lstsq(before[0] + after[0], sides[0], rcond=1e-13)[0][None])
+    even, odd = slice(0, count - 1, 2), slice(1, count, 2)
+    turn, upper = np.linalg.qr(np.concatenate((after[even], before[odd]), axis=1), mode="complete")
+    empty = np.zeros_like(before[odd])
+    rows = np.concatenate(
+        (
+            np.concatenate((before[even], empty), axis=1),
+            np.concatenate((empty, after[odd]), axis=1),
+            np.concatenate((sides[even], sides[odd]), axis=1)[..., None],
+        ),
+        axis=2,
+    )
+    rows = np.swapaxes(turn, 1, 2) @ rows
+    parts = rows[:, size:, :size], rows[:, size:, size:-1], rows[:, size:, -1]
+    left = [np.concatenate((part, whole[2 * len(part) :])) for part, whole in zip(parts, (before, after, sides))]
+    found = np.empty_like(sides)
+    found[::2] = _around(*left)
+    ends = np.concatenate((found[even], np.roll(found[::2], -1, axis=0)[: len(turn)]), axis=1)
+    rest = rows[:, :size, -1:] - rows[:, :size, :-1] @ ends[..., None]
+    found[odd] = np.linalg.solve(upper[:, :size], rest)[..., 0]
+    return found

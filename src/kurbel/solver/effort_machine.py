@@ -49,12 +49,21 @@ class MachineTurning:
     # turning effort
 
     @cached_property
-    def effort(self) -> Sum:
-        """The turning effort M, times the efficiency."""
-        sources: list[Torque] = [CylinderEffort(forces, self.cycle) for forces in self._driving]
+    def _indicated(self) -> tuple[Torque, ...]:
         if self.machine.effort:
-            sources = [Diagram(self.machine.effort, self.cycle)]
-        return Sum([(self.machine.efficiency, source) for source in sources])
+            return (Diagram(self.machine.effort, self.cycle),)
+        return tuple(CylinderEffort(forces, self.cycle) for forces in self._driving)
+
+    @cached_property
+    def efficiency(self) -> float:
+        """What the turning effort is multiplied by: η, or 1/η where the machine is driven, its work being negative."""
+        work = total_work(Sum([(1.0, source) for source in self._indicated]), 0.0, self.cycle)
+        return self.machine.efficiency if work >= 0 else 1 / self.machine.efficiency
+
+    @cached_property
+    def effort(self) -> Sum:
+        """The turning effort M, with the losses of the machine: times the efficiency, or over it; see there."""
+        return Sum([(self.efficiency, source) for source in self._indicated])
 
     @cached_property
     def masses(self) -> tuple[InertiaEffort, ...]:
@@ -181,7 +190,7 @@ class MachineTurning:
         """Return the share of the inertia forces in T, in N (Tolle)."""
         if self.crank is None or not self.masses:
             return None
-        torque = Sum([(self.machine.efficiency, mass) for mass in self.masses]).torque(degrees, degrees)
+        torque = Sum([(self.efficiency, mass) for mass in self.masses]).torque(degrees, degrees)
         return np.asarray(torque.value / self.crank)
 
     # parts before a directly driven pump

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 _MISSED = 1e-3
 """By what δ may miss the wanted one, relatively, before it is told."""
+_DOUBLINGS = 30
+"""How many doublings of the flywheel are tried for one that turns."""
 
 
 class MachineSpeed(MachineTurning):
@@ -77,19 +79,19 @@ class MachineSpeed(MachineTurning):
     @cached_property
     def elastic(self) -> ElasticCoupling | None:
         """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with."""
-        coupling = self.machine.coupling
-        if coupling is None or self.J is None or not self.omega or self.rigid or self._needs_no_inertia:
-            return None
-        return self._coupled_to(self.J)
+        return None if self.J is None or not self.omega or self._needs_no_inertia else self._coupled_to(self.J)
 
-    def _coupled_to(self, flywheel: float) -> ElasticCoupling:
-        assert self.machine.coupling
+    def _coupled_to(self, flywheel: float) -> ElasticCoupling | None:
+        """Return the elastic coupling to a flywheel in kg m²; None where there is none, or one as good as rigid."""
+        coupling = self.machine.coupling
+        if not coupling or (self._natural_order_with(flywheel) or self.natural_order or 0.0) > RIGID_ABOVE:
+            return None
         assert self.omega
         own = flywheel + self._mean_of_masses
         if not own:
             raise UsageError("nothing before the coupling has any inertia: give 'flywheel' an inertia")
         shaft = Shaft(own, self.omega, self._load_slope)
-        return ElasticCoupling(self.machine.coupling, shaft, self._true_excess.effort, self.load)
+        return ElasticCoupling(coupling, shaft, self._true_excess.effort, self.load)
 
     @cached_property
     def natural_order(self) -> float | None:
@@ -97,7 +99,12 @@ class MachineSpeed(MachineTurning):
         if self.machine.coupling is None or not self.omega or self.machine.flywheel is None:
             return None
         given = self.machine.flywheel.inertia
-        inertia = self._mean_of_masses + (given if given is not None else self._needed_in_all)
+        return self._natural_order_with(given if given is not None else self._needed_in_all)
+
+    def _natural_order_with(self, flywheel: float) -> float | None:
+        assert self.machine.coupling
+        assert self.omega
+        inertia = self._mean_of_masses + flywheel
         return natural_frequency(self.machine.coupling, inertia) / self.omega if inertia else None
 
     @property
@@ -153,7 +160,7 @@ class MachineSpeed(MachineTurning):
     @cached_property
     def _true_excess(self) -> Excess:
         """The excess that changes the kinetic energy: efficiency takes its share of the effort, but not of inertia."""
-        lost = 1 - self.machine.efficiency
+        lost = 1 - self.efficiency
         if not lost or not self.masses:
             return self.excess
         return Excess(Sum((*self.effort.parts, *((lost, mass) for mass in self.masses))), self.load)
@@ -166,31 +173,28 @@ class MachineSpeed(MachineTurning):
         """
         if self.J is None or not self.omega:
             return None
-        if self.elastic:
-            self._refuse_standstill(self.elastic.omega_min)
-            return self.elastic
         try:
-            return self._speed_with(1.0 if self._needs_no_inertia else self.J)
-        except Standstill as stop:
-            raise NoSolutionError(self._stall(stop)) from None
+            return self._line_with(1.0 if self._needs_no_inertia else self.J)
         except Unsettled as stop:
-            raise NoSolutionError(self._unsettled(stop)) from None
+            raise NoSolutionError(self._refusal(stop)) from None
 
     @property
     def _needs_no_inertia(self) -> bool:
         """Whether the wanted δ is met by no flywheel at all, the effort being uniform; any inertia then turns alike."""
         return self.J == self.J_needed == 0 and not self.dE and not self.masses
 
-    def _refuse_standstill(self, slowest: Extreme) -> None:
-        if slowest.value <= 0:
-            raise NoSolutionError(
-                f"the machine stops near φ = {slowest.degrees:.4g}°: with the elastic coupling, J = "
-                f"{show(self.J or 0.0, 'inertia')} does not carry it over; give the flywheel more inertia"
-            )
+    def _line_with(self, flywheel: float) -> SpeedLine | ElasticCoupling:
+        """Return the speed with a flywheel in kg m²; raises Standstill, Unsettled, NoSolutionError, UsageError."""
+        elastic = self.elastic if flywheel == self.J else self._coupled_to(flywheel)
+        line = elastic or self._without_coupling(flywheel)
+        if not line.omega_min.value > 0:
+            raise Standstill(line.omega_min.degrees)
+        return line
 
-    def _speed_with(self, flywheel: float) -> SpeedLine:
+    def _without_coupling(self, flywheel: float) -> SpeedLine:
         assert self.omega
-        inertia = Inertia(flywheel + self._driven_rigidly, self.masses, self.omega)
+        driven = self.machine.coupling.inertia if self.machine.coupling else 0.0
+        inertia = Inertia(flywheel + driven, self.masses, self.omega)
         self._refuse_no_inertia(inertia)
         if self._law is not None:
             return SpeedDependentLoad(self._true_excess, self._law, inertia)
@@ -203,48 +207,45 @@ class MachineSpeed(MachineTurning):
             angle = float(grid.degrees.ravel()[np.argmin(values)])
             raise UsageError(f"nothing that turns has any inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
 
-    def _stall(self, stop: Standstill) -> str:
+    def _refusal(self, stop: Unsettled) -> str:
+        """Return where the machine stands still, if it does, and the flywheel with which it was found to turn."""
         assert self.J is not None
-        enough = _rounded_up(self._enough() if stop.inertia is None else self._with_more(stop.inertia))
+        with_this = f"with J = {show(self.J, 'inertia')}{' and the elastic coupling' if self.elastic else ''}"
+        message = f"{with_this} no speed line is found that repeats under this load"
+        if isinstance(stop, Standstill):
+            message = (
+                f"the machine stops near φ = {stop.degrees:.4g}°: {with_this} its kinetic energy does not carry it over"
+            )
+        enough = self._enough(stop.inertia)
+        if enough is None:
+            return f"{message}, nor is one with any other flywheel: look at its effort, load and speed"
         return (
-            f"the machine stops near φ = {stop.degrees:.4g}°: with J = {show(self.J, 'inertia')} its kinetic energy "
-            f"does not carry it over; it turns with a flywheel from J = {show(enough, 'inertia')} "
+            f"{message}; it turns with a flywheel from J = {show(enough, 'inertia')} "
             f"(GD2 = {show(4 * enough, 'gd2')}) on"
         )
 
-    def _unsettled(self, stop: Unsettled) -> str:
-        assert self.J is not None
-        message = f"with J = {show(self.J, 'inertia')} no speed line is found that repeats under this load"
-        if stop.inertia is None:
-            return f"{message}; give the flywheel more inertia"
-        return (
-            f"{message}; from about J = {show(_rounded_up(self._with_more(stop.inertia)), 'inertia')} on there is one"
-        )
+    def _enough(self, more: float | None) -> float | None:
+        """Return the smallest flywheel in kg m², within a fiftieth, with which the machine turns; None without any.
 
-    def _with_more(self, energy: float) -> float:
-        """Return the flywheel in kg m² with so much more kinetic energy in J at the nominal speed."""
+        more: kinetic energy in J that is known to be just enough.
+        """
         assert self.J is not None
         assert self.omega
-        return self.J + 2 * energy / self.omega**2
-
-    def _enough(self) -> float:
-        """Return the smallest flywheel in kg m², within a hundredth, with which the machine turns."""
-        assert self.J is not None
-        assert self.omega
-        enough = max(self.J, self.dE / self.omega**2)
-        while not self._turns(enough):
-            enough *= 2
-        least = max(self.J, enough / 1000)
-        while enough > 1.01 * least:
-            middle = math.sqrt(least * enough)
-            least, enough = (least, middle) if self._turns(middle) else (middle, enough)
-        return enough
+        least = max(self.J, 1e-6 * self._mean_of_masses)
+        enough = self.J + 2 * more / self.omega**2 if more else least + self.dE / self.omega**2
+        for _ in range(_DOUBLINGS):
+            if self._turns(_rounded_up(enough)):
+                break
+            least, enough = enough, 2 * enough
+        else:
+            return None
+        while not more and enough > 1.02 * max(least, enough / 1000):
+            middle = math.sqrt(max(least, enough / 4) * enough)
+            least, enough = (least, middle) if self._turns(_rounded_up(middle)) else (middle, enough)
+        return _rounded_up(enough)
 
     def _turns(self, flywheel: float) -> bool:
-        try:
-            return self._speed_with(flywheel).omega_mean > 0
-        except (Standstill, Unsettled):
-            return False
+        return math.isfinite(self._delta_with(flywheel))
 
     @property
     def delta(self) -> float | None:
@@ -278,20 +279,18 @@ class MachineSpeed(MachineTurning):
         assert self.machine.flywheel.fluctuation
         wanted = math.log(self.machine.flywheel.fluctuation)
 
-        def surplus(flywheel: float) -> float:
-            delta = self._delta_with(flywheel)
+        def surplus(logarithm: float) -> float:
+            delta = self._delta_with(math.exp(logarithm))
             return math.log(delta) - wanted if delta else -math.inf
 
-        return falling_root(surplus, self.J_needed)
+        found = falling_root(surplus, math.log(self.J_needed))
+        return None if found is None else math.exp(found)
 
     def _delta_with(self, flywheel: float) -> float:
         """Return δ of the speed line with another flywheel in kg m²; inf where it stalls."""
         try:
-            if self.elastic:
-                line = self._coupled_to(flywheel)
-                return line.delta if line.omega_min.value > 0 else math.inf
-            return self._speed_with(flywheel).delta
-        except (Standstill, Unsettled, NoSolutionError):
+            return self._line_with(flywheel).delta
+        except (Unsettled, NoSolutionError, UsageError):
             return math.inf
 
     @property

@@ -7,31 +7,26 @@ The whole cycle is solved at once, so that it does not matter how many turns a m
 from __future__ import annotations
 
 import math
-from functools import cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from kurbel.solver.legendre import legendre, legendre_slopes
+from kurbel.solver.elements import STAGES, Elements, Prepared, rule
+from kurbel.solver.legendre import legendre
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Flags
 
-_STAGES = 11
 _TOLERANCE = 1e-13
 """What the last two Legendre coefficients of an element may be, over the swing of z."""
 _ROUNDS = 60
 _MOST_ELEMENTS = 20_000
 
 
-class Equation(Protocol):
+class Equation(Prepared, Protocol):
     """z′ = f(φ, z), smooth between its breaks. z may not fall to `floor(φ)`; `noise` in z is not looked into."""
 
     noise: float
-
-    def prepared(self, degrees: Array, within: Array) -> Array:
-        """Return what f needs at crank angles (k, n) and does not change with z, as (m, k, n)."""
-        ...
 
     def rate(self, prepared: Array, z: Array) -> tuple[Array, Array]:
         """Return f and ∂f/∂z, per radian."""
@@ -44,65 +39,6 @@ class Equation(Protocol):
     def heavier(self, inertia: float) -> Equation:
         """Return the equation with more inertia, whose floor is lower by so much: the more, the tamer it is."""
         ...
-
-
-class Rule(NamedTuple):
-    """Radau IIA on 0 … 1: nodes (s,), matrix (s, s) of ∫ ℓⱼ from 0 to cᵢ, Legendre coefficients from nodal values."""
-
-    nodes: Array
-    matrix: Array
-    to_legendre: Array
-
-
-@cache
-def rule(stages: int = _STAGES) -> Rule:
-    """Return the rule with nodes at the roots of P_s − P_{s−1}, the last one at 1."""
-    # Golub: Jacobi matrix of the Legendre polynomials whose last entry puts an eigenvalue at 1
-    k = np.arange(1, stages, dtype=float)
-    off = k / np.sqrt(4 * k * k - 1)
-    last = np.zeros(stages)
-    last[-1] = stages / (2 * stages - 1)
-    x: Array = np.asarray(np.linalg.eigvalsh(np.diag(last) + np.diag(off, 1) + np.diag(off, -1)), dtype=float)
-    for _ in range(3):
-        p, slope = legendre(x, stages), legendre_slopes(x, stages)
-        x = np.asarray(x - (p[:, -1] - p[:, -2]) / (slope[:, -1] - slope[:, -2]), dtype=float)
-    x[-1] = 1.0
-    p = legendre(x, stages)
-    n = np.arange(stages)
-    below = np.concatenate((-np.ones((stages, 1)), p[:, : stages - 1]), axis=1)
-    integrals = (p[:, 1 : stages + 1] - below) / (2 * n + 1) / 2
-    integrals[:, 0] = (x + 1) / 2
-    matrix: Array = np.asarray(integrals @ np.linalg.inv(p[:, :stages]), dtype=float)
-    whole = legendre(np.concatenate(([-1.0], x)), stages)
-    return Rule((x + 1) / 2, matrix, np.asarray(np.linalg.inv(whole), dtype=float))
-
-
-class Elements(NamedTuple):
-    """Parts of smooth pieces of the cycle, in degrees; all (k,).
-
-    piece, offset, width: start of the piece, way from there to the start of the element, and its width; the way is kept
-    apart because a part may be thinner than the rounding of its angle. within: an angle inside the piece.
-    """
-
-    piece: Array
-    offset: Array
-    width: Array
-    within: Array
-
-    @property
-    def low(self) -> Array:
-        """Crank angles at which the elements begin."""
-        return self.piece + self.offset
-
-    @property
-    def degrees(self) -> Array:
-        """Crank angles (k, s) of the nodes."""
-        return self.piece[:, None] + (self.offset[:, None] + self.width[:, None] * rule().nodes)
-
-    def prepared(self, equation: Equation) -> Array:
-        """Return what the equation prepares at the nodes, (m, k, s)."""
-        degrees = self.degrees
-        return equation.prepared(degrees, np.broadcast_to(self.within[:, None], degrees.shape))
 
 
 class Periodic(NamedTuple):
@@ -120,10 +56,7 @@ class Periodic(NamedTuple):
 
     def at(self, degrees: Array, within: Array) -> Array:
         """Return z at crank angles (n,) in degrees, from the elements that hold `within`."""
-        k = np.clip(np.searchsorted(self.elements.low, within, side="right") - 1, 0, None)
-        way = (degrees - self.elements.piece[k]) - self.elements.offset[k]
-        x = 2 * way / self.elements.width[k] - 1
-        return np.asarray((legendre(x, _STAGES) * self.coefficients[k]).sum(axis=-1))
+        return self.elements.at(self.coefficients[:, None], degrees, within)[..., 0]
 
 
 def periodic(equation: Equation, breaks: Array) -> Periodic:
@@ -132,9 +65,8 @@ def periodic(equation: Equation, breaks: Array) -> Periodic:
     Newton's method starts from z = 0; where that leads nowhere, from a solution with more inertia, which is taken off.
     Raises Standstill where z falls to its floor on that way, and Unsettled where the way ends before it does.
     """
-    low, high = breaks[:-1], breaks[1:]
-    elements = Elements(low, np.zeros_like(low), high - low, (low + high) / 2)
-    guess = _Guess(elements, np.zeros_like(low), np.zeros_like(elements.degrees))
+    elements = Elements.over(breaks)
+    guess = _Guess(elements, np.zeros_like(elements.low), np.zeros_like(elements.degrees))
     with np.errstate(all="ignore"):  # a step too far may overflow; it is taken back
         try:
             return _settled(equation, guess)
@@ -224,7 +156,7 @@ def _settled(equation: Equation, guess: _Guess) -> Periodic:
         if not rough.any():
             growth = np.radians(elements.width)[:, None] * equation.rate(prepared, values)[1]
             return Periodic(elements, coefficients, start, values, float((growth @ rule().matrix[-1]).sum()))
-        elements, start, values, prepared = _refined(equation, elements, prepared, whole, coefficients, rough)
+        elements, start, values, prepared = _refined(equation, elements, prepared, coefficients, rough)
         if len(elements.width) > _MOST_ELEMENTS:
             break
     raise Unsettled
@@ -289,7 +221,7 @@ def _linear_step(at: _State) -> tuple[Array, Array]:
 
     In one element δ = response + gain δ_start; its last node is the start of the next one.
     """
-    systems = np.eye(_STAGES) - rule().matrix * at.stiffness[:, None, :]
+    systems = np.eye(STAGES) - rule().matrix * at.stiffness[:, None, :]
     sides = np.stack((at.residual, np.ones_like(at.residual)), axis=-1)
     try:
         response, gain = np.moveaxis(np.linalg.solve(systems, sides), -1, 0)
@@ -303,10 +235,11 @@ def _linear_step(at: _State) -> tuple[Array, Array]:
 
 def _chain(more: list[float], gains: list[float]) -> list[float]:
     """Return the periodic solution of d(k + 1) = more(k) + gains(k) d(k), run in the direction in which errors die."""
-    offset, whole = 0.0, 1.0
-    for add, gain in zip(more, gains):
-        offset, whole = add + gain * offset, whole * gain
-    if not abs(whole) > 1 or 0.0 in gains:
+    # by the logarithms, as products may overflow whichever way round
+    if 0.0 in gains or not sum(math.log(abs(gain)) for gain in gains) > 1e-9:
+        offset, whole = 0.0, 1.0
+        for add, gain in zip(more, gains):
+            offset, whole = add + gain * offset, whole * gain
         steps = [offset / (1 - whole) if whole != 1 else 0.0]
         for add, gain in zip(more[:-1], gains):
             steps.append(add + gain * steps[-1])
@@ -322,26 +255,13 @@ def _allowed(room: Array, step: Array) -> float:
 
 
 def _refined(
-    equation: Equation, elements: Elements, prepared: Array, whole: Array, coefficients: Array, rough: Flags
+    equation: Equation, elements: Elements, prepared: Array, coefficients: Array, rough: Flags
 ) -> tuple[Elements, Array, Array, Array]:
-    """Cut the rough elements at 0.1 and 0.5; values on the new ones come from the polynomials of the old."""
-    cuts = np.array([0.0, 0.1, 0.5])
-    parts = np.array([0.1, 0.4, 0.5])
-    offset = (elements.offset[rough, None] + elements.width[rough, None] * cuts).ravel()
-    width = (elements.width[rough, None] * parts).ravel()
-    new = Elements(np.repeat(elements.piece[rough], 3), offset, width, np.repeat(elements.within[rough], 3))
-    places = 2 * (cuts[:, None] + parts[:, None] * np.concatenate(([0.0], rule().nodes))) - 1
-    inside = np.einsum("pij,kj->kpi", legendre(places, _STAGES), coefficients[rough]).reshape(len(width), -1)
-    index = np.nonzero(rough)[0]
-    at = np.repeat(index, 3)
-    keep = ~rough
-    order = np.argsort(
-        np.concatenate((np.nonzero(keep)[0] * 3.0, at * 3.0 + np.tile([0, 1, 2], len(index)))), kind="stable"
-    )
-    merged = Elements(*(np.concatenate((old[keep], fresh))[order] for old, fresh in zip(elements, new, strict=True)))
-    new_prepared = new.prepared(equation)
-    floor = equation.floor(new_prepared)
-    inside[:, 1:] = np.maximum(inside[:, 1:], 0.99 * floor)
-    all_whole = np.concatenate((whole[keep], inside))[order]
-    all_prepared = np.concatenate((prepared[:, keep], new_prepared), axis=1)[:, order]
-    return merged, all_whole[:, 0], all_whole[:, 1:], all_prepared
+    """Cut the rough elements; values on the new ones come from the polynomials of the old."""
+    finer, old, places = elements.cut(rough)
+    whole = np.einsum("kin,kn->ki", legendre(places, STAGES), coefficients[old])
+    new = rough[old]
+    prepared = prepared[:, old]
+    prepared[:, new] = Elements(*(of[new] for of in finer)).prepared(equation)
+    values = np.where(new[:, None], np.maximum(whole[:, 1:], 0.99 * equation.floor(prepared)), whole[:, 1:])
+    return finer, whole[:, 0], values, prepared

@@ -48,24 +48,30 @@ def _next_part(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array) ->
     return np.where(quadratic & np.isfinite(step), np.clip(step, 0.0, 1.0), 0.5)
 
 
-_DOUBLINGS = 30
+_TRIALS = 20
+_CLOSE = 1e-10
+_FAR = 7.0
 
 
 def falling_root(function: Callable[[float], float], start: float) -> float | None:
-    """Return the positive argument at which a function that falls passes zero; None where it does not, far and wide.
+    """Return an argument within 7 of `start` at which the function was found to be zero within 1e-10, or None.
 
-    start: where to look first, positive. The function may be infinite.
+    The function falls, with a slope of about −1; it may jump, and be infinite.
     """
-    inner, f_inner = start, function(start)
-    step = 2.0 if f_inner > 0 else 0.5
-    for _ in range(_DOUBLINGS):
-        outer = inner * step
-        f_outer = function(outer)
-        if (f_outer > 0) != (f_inner > 0):
+    low, high, step = -math.inf, math.inf, 1.0
+    x, f = before, f_before = start, function(start)
+    for _ in range(_TRIALS):
+        if abs(f) <= _CLOSE:
+            return x
+        low, high = (x, high) if f > 0 else (low, x)
+        if math.isinf(low) or math.isinf(high):
+            following, step = x + step * min(max(f, -1.0), 1.0), 2 * step
+        else:
+            following = x - f * (x - before) / (f - f_before)
+            if not low < following < high:
+                following = (low + high) / 2
+        if abs(following - start) > _FAR:
             break
-        inner, f_inner = outer, f_outer
-    else:
-        return None
-    ends = (np.array([math.log(inner)]), np.array([math.log(outer)]), np.array([f_inner]), np.array([f_outer]))
-    root = bracketed_roots(lambda x: np.array([function(math.exp(one)) for one in x]), *ends)
-    return math.exp(float(root[0]))
+        before, f_before = x, f
+        x, f = following, function(following)
+    return None

@@ -81,7 +81,12 @@ class SlipLaw:
 
 
 class SpeedLine(ABC):
-    """ω over the turn. `z(degrees, within)` is the kinetic energy beyond that of uniform rotation, in J."""
+    """ω over the turn. `z(degrees, within)` is the kinetic energy beyond that of uniform rotation, in J.
+
+    Its extremes, and what hangs on them, raise Standstill where ω falls to SLOWEST times the nominal speed.
+    """
+
+    SLOWEST = 0.0
 
     def __init__(self, excess: Torque, inertia: Inertia, grid: Grid) -> None:
         self.excess = excess
@@ -113,7 +118,10 @@ class SpeedLine(ABC):
         def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
             return {"ratio": self._ratio(degrees, within)}
 
-        return extremes(self.grid, {"ratio": self._samples}, evaluate)["ratio"]
+        found = extremes(self.grid, {"ratio": self._samples}, evaluate)["ratio"]
+        if not found.smallest.value > self.SLOWEST**2 - 1:
+            raise Standstill(found.smallest.degrees)
+        return found
 
     def omega(self, degrees: Array) -> Array:
         """Return the angular velocity in rad/s at crank angles (n,) in degrees."""

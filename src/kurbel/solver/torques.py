@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -120,21 +120,11 @@ class Mean(Uniform):
 
 
 class Diagram:
-    """A turning-moment diagram by points, straight between them, repeated over a cycle in degrees.
+    """A turning-moment diagram by points, straight between them, that repeats from its last angle on."""
 
-    It repeats after one turn where its points do not go beyond 360°, else after `cycle`; from the last point a straight
-    line leads to the first one of the next turn.
-    """
-
-    def __init__(self, points: Effort, cycle: float, period: float | None = None) -> None:
+    def __init__(self, points: Effort, cycle: float) -> None:
         angles, torques = np.array(points.angles), np.array(points.torques)
-        self.period = period or (360.0 if angles[-1] <= 360.0 else cycle)
-        if angles[0] > 0 or angles[-1] < self.period:
-            at_zero = _across(angles, torques, self.period)
-            if angles[-1] < self.period:
-                angles, torques = np.append(angles, self.period), np.append(torques, at_zero)
-            if angles[0] > 0:
-                angles, torques = np.insert(angles, 0, 0.0), np.insert(torques, 0, at_zero)
+        self.period = float(angles[-1])
         width = np.diff(angles)
         kept = width > 0
         self._starts, self._torques, self._widths = angles[:-1][kept], torques[:-1][kept], width[kept]
@@ -169,9 +159,3 @@ class Diagram:
         piece = self._piece(degrees)
         way = degrees - turns * self.period - self._starts[piece]
         return turns, self._areas[piece], way * (self._torques[piece] + self._rises[piece] * way / 2)
-
-
-def _across(angles: Array, torques: Array, period: float) -> Any:
-    """Return the torque at angle 0 on the straight line from the last point to the first one of the next turn."""
-    gap = angles[0] + period - angles[-1]
-    return torques[-1] + (torques[0] - torques[-1]) * ((period - angles[-1]) / gap)

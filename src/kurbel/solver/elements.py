@@ -1,0 +1,110 @@
+"""Elements for collocation over a cycle: parts of its smooth pieces, each with the nodes of Radau IIA of 11 stages."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from kurbel.solver.legendre import legendre, legendre_slopes
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, Flags, Indices
+
+STAGES = 11
+
+
+class Prepared(Protocol):
+    """An equation of which a part hangs on the crank angle alone."""
+
+    def prepared(self, degrees: Array, within: Array) -> Array:
+        """Return what it needs at crank angles (k, n) and does not change with the unknowns, as (m, k, n)."""
+        ...
+
+
+class Rule(NamedTuple):
+    """Radau IIA on 0 … 1: nodes (s,), matrix (s, s) of ∫ ℓⱼ from 0 to cᵢ, Legendre coefficients from nodal values."""
+
+    nodes: Array
+    matrix: Array
+    to_legendre: Array
+
+
+@cache
+def rule(stages: int = STAGES) -> Rule:
+    """Return the rule with nodes at the roots of P_s − P_{s−1}, the last one at 1."""
+    # Golub: Jacobi matrix of the Legendre polynomials whose last entry puts an eigenvalue at 1
+    k = np.arange(1, stages, dtype=float)
+    off = k / np.sqrt(4 * k * k - 1)
+    last = np.zeros(stages)
+    last[-1] = stages / (2 * stages - 1)
+    x: Array = np.asarray(np.linalg.eigvalsh(np.diag(last) + np.diag(off, 1) + np.diag(off, -1)), dtype=float)
+    for _ in range(3):
+        p, slope = legendre(x, stages), legendre_slopes(x, stages)
+        x = np.asarray(x - (p[:, -1] - p[:, -2]) / (slope[:, -1] - slope[:, -2]), dtype=float)
+    x[-1] = 1.0
+    p = legendre(x, stages)
+    n = np.arange(stages)
+    below = np.concatenate((-np.ones((stages, 1)), p[:, : stages - 1]), axis=1)
+    integrals = (p[:, 1 : stages + 1] - below) / (2 * n + 1) / 2
+    integrals[:, 0] = (x + 1) / 2
+    matrix: Array = np.asarray(integrals @ np.linalg.inv(p[:, :stages]), dtype=float)
+    whole = legendre(np.concatenate(([-1.0], x)), stages)
+    return Rule((x + 1) / 2, matrix, np.asarray(np.linalg.inv(whole), dtype=float))
+
+
+class Elements(NamedTuple):
+    """Parts of smooth pieces of the cycle, in degrees; all (k,).
+
+    piece, offset, width: start of the piece, way from there to the start of the element, and its width; the way is kept
+    apart because a part may be thinner than the rounding of its angle. within: an angle inside the piece.
+    """
+
+    piece: Array
+    offset: Array
+    width: Array
+    within: Array
+
+    @classmethod
+    def over(cls, breaks: Array) -> Elements:
+        """Return the pieces between the angles `breaks` (k + 1,) in degrees, one element each."""
+        low, high = breaks[:-1], breaks[1:]
+        return cls(low, np.zeros_like(low), high - low, (low + high) / 2)
+
+    @property
+    def low(self) -> Array:
+        """Crank angles at which the elements begin."""
+        return self.piece + self.offset
+
+    @property
+    def degrees(self) -> Array:
+        """Crank angles (k, s) of the nodes."""
+        return self.piece[:, None] + (self.offset[:, None] + self.width[:, None] * rule().nodes)
+
+    def prepared(self, equation: Prepared) -> Array:
+        """Return what the equation prepares at the nodes, (m, k, s)."""
+        degrees = self.degrees
+        return equation.prepared(degrees, np.broadcast_to(self.within[:, None], degrees.shape))
+
+    def at(self, coefficients: Array, degrees: Array, within: Array) -> Array:
+        """Return Σ c_n P_n at crank angles (n,), of the elements that hold `within`; coefficients: (k, …, s + 1)."""
+        k = np.clip(np.searchsorted(self.low, within, side="right") - 1, 0, None)
+        x = 2 * ((degrees - self.piece[k]) - self.offset[k]) / self.width[k] - 1
+        return np.asarray(np.einsum("...n,...mn->...m", legendre(x, STAGES), coefficients[k]))
+
+    def cut(self, rough: Flags) -> tuple[Elements, Indices, Array]:
+        """Return the elements with the rough ones cut at 0.1 and 0.5.
+
+        Beside them stand, of each new one, the index of the old one that holds it and where its nodes, its start
+        included, lie on −1 … 1 there (k, s + 1).
+        """
+        times = np.where(rough, 3, 1)
+        old = np.repeat(np.arange(len(times)), times)
+        part = np.arange(len(old)) - np.repeat(np.cumsum(times) - times, times)
+        begin = np.where(rough[old], np.array([0.0, 0.1, 0.5])[part], 0.0)
+        share = np.where(rough[old], np.array([0.1, 0.4, 0.5])[part], 1.0)
+        width = self.width[old]
+        finer = Elements(self.piece[old], self.offset[old] + width * begin, width * share, self.within[old])
+        nodes = begin[:, None] + share[:, None] * np.append(0.0, rule().nodes)
+        return finer, old, np.asarray(2 * nodes - 1)
