@@ -17,7 +17,8 @@ from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
 from kurbel.mechanisms import Extreme
 from kurbel.solver.excess import mean_torque
-from kurbel.solver.grid import Extremes, Grid, Sampled, extremes
+from kurbel.solver.grid import Grid
+from kurbel.solver.search import Extremes, Sampled, extremes
 from kurbel.solver.torques import Mean, Sum, Torque
 
 if TYPE_CHECKING:
