@@ -38,7 +38,7 @@ class Pieces:
         self.within = np.broadcast_to((start + end) / 2, (len(low), len(self.nodes)))
         right_angle = 90.0 * np.rint(self.within / 90.0)
         offset = ((start - right_angle) + (end - right_angle)) / 2 + (end - start) / 2 * self.nodes
-        self.degrees = right_angle + offset
+        self.degrees: Array = right_angle + offset
         self.degrees[:, 0], self.degrees[:, -1] = low, high
         self.beyond = offset - (self.degrees - right_angle)
         self.beyond[:, 0] = self.beyond[:, -1] = 0.0

@@ -22,18 +22,19 @@ if TYPE_CHECKING:
 
 
 class Lines(NamedTuple):
-    """The lines of pieces (n,): fraction and pressure in Pa where each begins, its gradient in Pa, its exponent."""
+    """The lines of pieces (n,): first fraction, pressure in Pa there, gradient in Pa, exponent, last fraction."""
 
     z: Array
     p: Array
     gradients: Array
     exponents: Array
+    next_z: Array
 
     @classmethod
     def of(cls, pieces: Sequence[Piece]) -> Lines:
         """Return the lines of pieces that have a width."""
         z, p, next_z, next_p, exponents = np.array(pieces).T
-        return cls(z, p, (next_p - p) / (next_z - z), exponents)
+        return cls(z, p, (next_p - p) / (next_z - z), exponents, next_z)
 
 
 class ProcessPressure:
@@ -58,10 +59,19 @@ class ProcessPressure:
     def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
         """Return the gauge pressure in Pa at displacements x (n,) in m, on the pieces that hold the angles `within`."""
         piece = np.searchsorted(self.starts, np.mod(once_each(within), self.place.cycle), side="right") - 1
-        share = x / self._stroke if self.place.head_end else 1 - x / self._stroke
         lines = self.lines
+        share = x / self._stroke if self.place.head_end else 1 - x / self._stroke
+        share = share + self._to_corner(getattr(share, "value", share), angle, piece)
         straight = (lines.p[piece] - self.place.base) + lines.gradients[piece] * (share - lines.z[piece])
         return self._curved(straight, share, piece) if self.process.polytropic else straight
+
+    def _to_corner(self, share: Array, angle: CrankAngle, piece: Indices) -> Array:
+        """Return what stroke fractions at a corner lack: its angle is rounded, and its line may be steep."""
+        turned = np.mod(angle.degrees, self.place.cycle)
+        begins = np.abs(turned - self.starts[piece]) <= _ROUNDING
+        ends = np.abs(turned - self.starts[piece + 1 - len(self.starts)]) <= _ROUNDING
+        lines = self.lines
+        return np.asarray(np.where(begins, lines.z[piece] - share, np.where(ends, lines.next_z[piece] - share, 0.0)))
 
     def _curved(self, straight: Any, share: Any, piece: Indices) -> Any:
         """Return P (V/V′)^n less the ambient on polytropic pieces, and the straight value elsewhere."""
@@ -92,6 +102,8 @@ class ProcessPressure:
         return self.process.area
 
 
+_ROUNDING = 3e-13
+"""Degrees of crank angle by which the angle of a corner may be off: a few units in the last place of 720."""
 _NO_WIDTH = 1e-10
 """Degrees of crank angle; over less a line cannot be followed, and its piece is a jump."""
 
