@@ -30,13 +30,13 @@ GRADES = 0.5 ** np.arange(1, 24)
 Function = Callable[[np.ndarray], np.ndarray]
 
 
-def precise_integral(function: Function, breaks: np.ndarray) -> float:
-    """∫ |f| dφ: 12 Gauss points on parts that shrink by halves toward all breaks and all least values of a dense scan.
+def with_least(function: Function, breaks: np.ndarray) -> np.ndarray:
+    """The breaks, and all angles of least values of a dense scan: there a magnitude has its kinks, or is near to one.
 
-    There a magnitude has its kinks, or comes near to one. function: f ≥ 0 at crank angles (n,) in degrees.
+    function: f ≥ 0 at crank angles (n,) in degrees.
     """
     low, high = breaks[:-1, None], breaks[1:, None]
-    mesh = low + (high - low) * np.linspace(1e-9, 1 - 1e-9, 601)
+    mesh = low + (high - low) * np.linspace(1e-9, 1 - 1e-9, 3001)
     values = function(mesh.ravel()).reshape(mesh.shape)
     rows, columns = np.nonzero((values[:, 1:-1] <= values[:, :-2]) & (values[:, 1:-1] < values[:, 2:]))
     left, right = mesh[rows, columns], mesh[rows, columns + 2]
@@ -46,7 +46,12 @@ def precise_integral(function: Function, breaks: np.ndarray) -> float:
         lower = function(inner[0]) < function(inner[1])
         left, right = np.where(lower, left, inner[0]), np.where(lower, inner[1], right)
     cuts = np.sort(np.concatenate((breaks, (left + right) / 2)))
-    cuts = cuts[np.concatenate(([True], np.diff(cuts) > 1e-11))]
+    return cuts[np.concatenate(([True], np.diff(cuts) > 1e-11))]
+
+
+def precise_integral(function: Function, breaks: np.ndarray) -> float:
+    """∫ |f| dφ: 12 Gauss points on parts that shrink by halves toward all breaks and all least values."""
+    cuts = with_least(function, breaks)
     shares = np.concatenate(([0.0], GRADES[::-1], 1 - GRADES[1:], [1.0]))
     edges = cuts[:-1, None] + np.diff(cuts)[:, None] * shares
     half = np.radians(np.diff(edges))[..., None] / 2
@@ -76,11 +81,14 @@ def errors_of_bearings(forces: CylinderForces) -> list[float]:
     machine = forces.drive.machine
     strength = Case(Machine((forces.drive.cylinder,), speed=machine.speed, crankshaft=shaft())).strength
     turn = math.radians(forces.drive.cycle)
+    breaks = forces.drive.breaks()
+    if forces.drive.has_friction:  # where the guide changes sides, every force has a kink
+        breaks = with_least(friction_power(forces), breaks)
     errors = []
     for bearing, diameter, length in (("pin", 0.18, 0.2), ("A", 0.19, 0.3), ("B", 0.19, 0.3)):
         found = strength.pressure_mean(bearing)
         assert found is not None
-        precise = precise_integral(bearing_load(strength, bearing), forces.drive.breaks()) / turn / diameter / length
+        precise = precise_integral(bearing_load(strength, bearing), breaks) / turn / diameter / length
         errors.append(abs(found / precise - 1))
     return errors
 

@@ -55,23 +55,26 @@ class ProcessPressure:
         self.starts = np.array([start for start, _ in begun])
         self.pieces = tuple(piece for _, piece in begun)
         self.lines = Lines.of(self.pieces)
+        self._ends = np.roll(self.starts, -1)
 
     def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
         """Return the gauge pressure in Pa at displacements x (n,) in m, on the pieces that hold the angles `within`."""
         piece = np.searchsorted(self.starts, np.mod(once_each(within), self.place.cycle), side="right") - 1
         lines = self.lines
         share = x / self._stroke if self.place.head_end else 1 - x / self._stroke
-        share = share + self._to_corner(getattr(share, "value", share), angle, piece)
+        share = self._at_corners(share, angle, piece)
         straight = (lines.p[piece] - self.place.base) + lines.gradients[piece] * (share - lines.z[piece])
         return self._curved(straight, share, piece) if self.process.polytropic else straight
 
-    def _to_corner(self, share: Array, angle: CrankAngle, piece: Indices) -> Array:
-        """Return what stroke fractions at a corner lack: its angle is rounded, and its line may be steep."""
+    def _at_corners(self, share: Any, angle: CrankAngle, piece: Indices) -> Any:
+        """Return the stroke fractions, at corners those of the card: their angles are rounded, lines may be steep."""
         turned = np.mod(angle.degrees, self.place.cycle)
         begins = np.abs(turned - self.starts[piece]) <= _ROUNDING
-        ends = np.abs(turned - self.starts[piece + 1 - len(self.starts)]) <= _ROUNDING
-        lines = self.lines
-        return np.asarray(np.where(begins, lines.z[piece] - share, np.where(ends, lines.next_z[piece] - share, 0.0)))
+        ends = np.abs(turned - self._ends[piece]) <= _ROUNDING
+        if not (begins.any() or ends.any()):
+            return share
+        lines, value = self.lines, getattr(share, "value", share)
+        return share + (np.where(begins, lines.z[piece], np.where(ends, lines.next_z[piece], value)) - value)
 
     def _curved(self, straight: Any, share: Any, piece: Indices) -> Any:
         """Return P (V/V′)^n less the ambient on polytropic pieces, and the straight value elsewhere."""
