@@ -25,7 +25,7 @@ class CardWork:
     def __init__(self, pressure: ProcessPressure) -> None:
         self._pressure = pressure
         self._place = pressure.place
-        self._z, self._p, self._gradients, self._exponents = pressure.lines
+        self._z, self._p, self._gradients, self._exponents, _ = pressure.lines
 
     @cached_property
     def _up_to(self) -> tuple[Array, Array]:

@@ -18,7 +18,8 @@ from kurbel.machine.turning import Coupling
 from kurbel.mechanisms import Extreme
 from kurbel.solver.elements import Elements, rule
 from kurbel.solver.excess import mean_torque
-from kurbel.solver.grid import Extremes, Grid, Sampled, extremes
+from kurbel.solver.grid import Grid
+from kurbel.solver.search import Extremes, Sampled, extremes
 from kurbel.solver.torques import Sum, Torque
 
 if TYPE_CHECKING:

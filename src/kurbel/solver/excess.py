@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kurbel.solver.grid import Brackets, Extremes, Grid, Sampled, extremes, roots, sign_changes
+from kurbel.solver.grid import Grid
+from kurbel.solver.search import Evaluate, Extremes, Sampled, extremes, zeros
 from kurbel.solver.torques import Sum, Torque, total_work, total_works
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
+    from kurbel.arrays import Array
 
 
 class Excess:
@@ -30,53 +31,17 @@ class Excess:
     @cached_property
     def effort_extremes(self) -> Extremes:
         """Largest and smallest turning effort in N m, one-sided values at jumps included."""
-
-        def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
-            jet = self.effort.torque(degrees, within)
-            return {"M": Sampled(jet.value, jet.slope)}
-
+        evaluate = _evaluated(self.effort)
         return extremes(self.grid, evaluate(self.grid.degrees, self.grid.within), evaluate)["M"]
 
     @cached_property
     def crossings(self) -> tuple[float, ...]:
         """Crank angles in degrees, ascending, at which the effort crosses the resistance, by a jump or through zero."""
-        degrees, within, values = self._signed_samples
-        if len(values) < 2 or (values > 0).all() or (values < 0).all():
-            return ()
-        after = np.roll(np.arange(len(values)), -1)
-        change = np.nonzero(values * values[after] < 0)[0]
-        following = after[change]
-        inside = (within[change] == within[following]) & (following > change)
-        brackets = Brackets(*(of[at][inside] for of, at in _ends(degrees, within, values, change, following)))
-        # otherwise it stands at the break before the piece in which the new sign is met first
-        found = self.grid.breaks[np.searchsorted(self.grid.breaks, within[following]) - 1]
-        found[inside] = roots(lambda phi, side: self.torque.torque(phi, side).value, brackets)
-        return tuple(np.sort(np.mod(found, self.cycle)).tolist())
-
-    @cached_property
-    def _signed_samples(self) -> tuple[Array, Array, Array]:
-        """Angles, pieces and excess torques in ascending order, at least one between any two crossings, without zeros.
-
-        Beside the nodes of the grid these are the extremes that could reach across zero between two nodes.
-        """
-        jet = self.torque.torque(self.grid.degrees, self.grid.within)
-        reach = np.maximum(np.abs(jet.slope[:, :-1]), np.abs(jet.slope[:, 1:])) * self._widths
-        near = np.minimum(np.abs(jet.value[:, :-1]), np.abs(jet.value[:, 1:])) <= reach
-        turning = sign_changes(self.grid, jet.slope, near)
-        peaks = roots(lambda phi, side: self.torque.torque(phi, side).slope, turning)
-        peak_values = self.torque.torque(peaks, turning.within).value if len(peaks) else peaks
-        degrees = np.concatenate((self.grid.degrees.ravel(), peaks))
-        within = np.concatenate((self.grid.within.ravel(), turning.within))
-        values = np.concatenate((jet.value.ravel(), peak_values))
-        order = np.lexsort((degrees, within))
+        evaluate = _evaluated(self.torque)
         # an effort that equals the resistance over a while differs from it by rounding only
-        noise = 8 * np.finfo(float).eps * max(map(abs, (e.value for e in self.effort_extremes)))
-        kept = order[np.abs(values[order]) > noise]
-        return degrees[kept], within[kept], values[kept]
-
-    @property
-    def _widths(self) -> Array:
-        return np.asarray(np.radians(np.diff(self.grid.degrees, axis=1)))
+        size = max(abs(extreme.value) for extreme in self.effort_extremes)
+        found = zeros(self.grid, evaluate(self.grid.degrees, self.grid.within), evaluate, size)["M"]
+        return tuple(found.tolist())
 
     @cached_property
     def lobes(self) -> tuple[float, ...]:
@@ -128,11 +93,8 @@ class Excess:
         return np.where(degrees == 0, 0.0, total + rest)
 
 
-def _ends(
-    degrees: Array, within: Array, values: Array, low: Indices, high: Indices
-) -> tuple[tuple[Array, Indices], ...]:
-    """Return array and indices of each field of Brackets."""
-    return (degrees, low), (degrees, high), (within, low), (values, low), (values, high)
+def _evaluated(torque: Torque) -> Evaluate:
+    return lambda degrees, within: {"M": Sampled.of(torque.torque(degrees, within), degrees.shape)}
 
 
 def mean_torque(torque: Torque, cycle: float) -> float:

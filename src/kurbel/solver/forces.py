@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,9 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
 from kurbel.mechanisms import Extreme
 from kurbel.solver.drive import Drive
-from kurbel.solver.grid import Extremes, Grid, Sampled, distinct_angles, extremes, reversals, roots, sign_changes
+from kurbel.solver.grid import Grid, Pieces, integral
 from kurbel.solver.motion import Motion
+from kurbel.solver.search import Curve, Evaluate, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
 from kurbel.solver.state import State
 
 if TYPE_CHECKING:
@@ -44,43 +46,32 @@ class CylinderForces:
     @cached_property
     def grid(self) -> Grid:
         """The cycle in smooth pieces, cut also where the guide force changes sides, if friction makes that a kink."""
-        grid = Grid(self.drive.breaks())
+        return self._cut_at_turns(Grid(self.drive.breaks()))
+
+    def _cut_at_turns(self, grid: Grid) -> Grid:
         if not self.drive.crosshead_friction:
             return grid
-        sense = self.drive.jets_at(grid.degrees, grid.within).guide_sense
-        turns = roots(
-            lambda phi, within: self.drive.jets_at(phi, within).guide_sense.value, sign_changes(grid, sense.value)
-        )
-        return grid.split_at(turns)
+        sense = self._quantities("guide_sense")
+        return grid.split_at(zeros(grid, sense(grid.degrees, grid.within), sense)["guide_sense"])
+
+    def _quantities(self, *names: str) -> Evaluate:
+        return lambda degrees, within: _sampled(self.drive.jets_at(degrees, within), names)
 
     @cached_property
     def _samples(self) -> State:
         return self.drive.jets_at(self.grid.degrees, self.grid.within, self.grid.beyond)
 
     @cached_property
-    def _force_extremes(self) -> dict[str, Extremes]:
+    def _curves(self) -> dict[str, Curve]:
         names = [name for name in _SEARCHED if getattr(self._samples, name) is not None]
-
-        def sampled(state: State) -> dict[str, Sampled]:
-            shape = state.phi.shape
-            jets = {name: getattr(state, name) for name in names}
-            return {
-                name: Sampled(
-                    np.broadcast_to(getattr(j, "value", j), shape), np.broadcast_to(getattr(j, "slope", 0.0), shape)
-                )
-                for name, j in jets.items()
-            }
-
-        def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
-            return sampled(self.drive.jets_at(degrees, within))
-
-        return extremes(self.grid, sampled(self._samples), evaluate)
+        return curves(self.grid, _sampled(self._samples, names), self._quantities(*names))
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes of `P_inertia` or of one of the searched quantities in SI, None where it is left out."""
         if column == "P_inertia":
             return self._inertia_extremes
-        return self._force_extremes.get(column) if self.drive.has_force else None
+        curve = self._curves.get(column) if self.drive.has_force else None
+        return curve and extremes_of(curve)
 
     @cached_property
     def _inertia_extremes(self) -> Extremes | None:
@@ -96,13 +87,10 @@ class CylinderForces:
     @cached_property
     def phi_reversal(self) -> tuple[float, ...] | None:
         """Druckwechsel: crank angles in degrees at which P takes the other sign, through zero or by a jump."""
-        force = self._samples.P if self.drive.has_force else None
+        force = self._curves.get("P") if self.drive.has_force else None
         if force is None:
             return None
-        values = np.broadcast_to(_value(force), self.grid.degrees.shape)
-        crossings, steps = reversals(self.grid, values)
-        inside = roots(lambda phi, within: _value(self.drive.jets_at(phi, within).P), crossings)
-        return distinct_angles(np.concatenate((inside, steps)), self.drive.cycle)
+        return tuple(sign_changes(self.grid, {"P": force}, self._quantities("P"))["P"].tolist())
 
     # work
 
@@ -189,7 +177,7 @@ class CylinderForces:
     @cached_property
     def pin_pressure(self) -> Extreme | None:
         """Largest pressure in Pa of the sliding block on the crank pin, over d_z l_z; None without a pin's size."""
-        found, area = self._force_extremes.get("F_pin") if self.drive.has_force else None, self.drive.mechanism.pin_area
+        found, area = self.extremes_of("F_pin"), self.drive.mechanism.pin_area
         if found is None or area is None:
             return None
         largest = max(found, key=lambda extreme: abs(extreme.value))
@@ -230,20 +218,23 @@ class CylinderForces:
 
     @cached_property
     def energy_residual(self) -> float | None:
-        """(∮ T R dφ − indicated work + other work) over ∮ |T| R dφ: a second, finer quadrature against closed work.
+        """(∮ T R dφ − indicated work + other work) over ∮ |T| R dφ: another quadrature against closed work.
 
-        The work of friction is itself a quadrature; on the halved pieces its error would show.
+        The work of friction is itself a quadrature on the pieces of the grid. This one shares none of them, nor a node,
+        searches anew where the guide changes sides, and cuts its pieces until they agree: an error of either shows.
 
         With a measured trace at equal angles the quadrature follows the straight lines between the samples, the
         indicated work the trapezoid rule: the residual then shows what the spacing of the samples leaves open.
         """
         if self.work_left is None:
             return None
-        grid = self.grid.halved()
-        torque = State(self.drive, CrankAngle.of(grid.degrees, grid.beyond), grid.within).M
-        turnover = grid.integral(np.abs(torque))
-        return (grid.integral(torque) - self.work_left) / turnover if turnover else 0.0
+        turnover = self.grid.integral(np.abs(self._samples.M.value))
+        pieces = self._cut_at_turns(Grid(self.drive.breaks()).other())
+        return float(integral(pieces.breaks, self._torque) - self.work_left) / turnover if turnover else 0.0
+
+    def _torque(self, pieces: Pieces) -> Array:
+        return np.asarray(State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond)).M)
 
 
-def _value(quantity: Any) -> Any:
-    return getattr(quantity, "value", quantity)
+def _sampled(state: State, names: Iterable[str]) -> dict[str, Sampled]:
+    return {name: Sampled.of(getattr(state, name), state.phi.shape) for name in names}

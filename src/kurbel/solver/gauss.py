@@ -1,6 +1,9 @@
-"""The Gauss-Legendre rule of 16 points, and rules for narrow pieces."""
+"""Rules of Gauss-Legendre and of Lobatto for integrals over a piece."""
 
 from __future__ import annotations
+
+Rule = tuple[tuple[float, ...], tuple[float, ...]]
+"""Nodes and weights on (−1, 1)."""
 
 HALF_RULE = (
     (0.09501250983763744, 0.1894506104550685),
@@ -14,8 +17,26 @@ HALF_RULE = (
 )
 """Nodes and weights on (−1, 1), the positive half; the rule is symmetric."""
 
-NODES = tuple(-node for node, _ in reversed(HALF_RULE)) + tuple(node for node, _ in HALF_RULE)
-WEIGHTS = tuple(weight for _, weight in reversed(HALF_RULE)) + tuple(weight for _, weight in HALF_RULE)
-LOBATTO = (-1.0, -0.4472135954999579, 0.4472135954999579, 1.0), (1 / 6, 5 / 6, 5 / 6, 1 / 6)
+_HALF_LOBATTO = (
+    (0.10132627352194945, 0.20195830817822988),
+    (0.2998304689007632, 0.1936900238252036),
+    (0.48605942188713763, 0.17749191339170411),
+    (0.6523887028824931, 0.1540269808071643),
+    (0.7920082918618151, 0.1242553821325141),
+    (0.8992005330934721, 0.0893936973259308),
+    (0.969568046270218, 0.05085036100591991),
+    (1.0, 0.008333333333333333),
+)
+
+
+def _whole(half: tuple[tuple[float, float], ...]) -> Rule:
+    nodes, weights = (tuple(column) for column in zip(*half, strict=True))
+    return (*(-node for node in reversed(nodes)), *nodes), (*reversed(weights), *weights)
+
+
+GAUSS = _whole((*HALF_RULE, (1.0, 0.0)))
+"""16 points of Gauss, and both ends with the weight 0."""
+LOBATTO_16 = _whole(_HALF_LOBATTO)
+LOBATTO_4 = (-1.0, -0.4472135954999579, 0.4472135954999579, 1.0), (1 / 6, 5 / 6, 5 / 6, 1 / 6)
 SIMPSON = (-1.0, 0.0, 1.0), (1 / 3, 4 / 3, 1 / 3)
-"""Nodes and weights for narrow pieces, both ends included: exact for polynomials of degree 5 and of degree 3."""
+"""Rules for narrow pieces, both ends included: exact for polynomials of degree 5 and of degree 3."""

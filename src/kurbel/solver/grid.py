@@ -4,183 +4,158 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kurbel.mechanisms import Extreme, Mechanism
-from kurbel.solver.gauss import LOBATTO, NODES, SIMPSON, WEIGHTS
-from kurbel.solver.roots import bracketed_roots
+from kurbel.mechanisms import Mechanism
+from kurbel.solver.gauss import GAUSS, LOBATTO_4, LOBATTO_16, SIMPSON, Rule
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Flags
 
 _NARROW = 2.0  # degrees; on pieces no wider the rule of Lobatto integrates as exactly as Gauss
 _NARROWEST = 0.25  # and on these that of Simpson
-_MANY = 300  # pieces; where there are no more, sixteen points cost nothing
+_MANY = 300  # pieces; where there are fewer, sixteen points cost nothing
+_SAME = 1e-10  # degrees; two angles that differ by rounding only would leave a piece without width
+_HALVES = np.array([0.0, 0.5, 1.0])
+_CUTS = np.linspace(0.0, 1.0, 9)
+_ROUNDS = 12  # of cuts into eight: enough for a kink
+_AGREEMENT = 1e-12  # of values; integrals of what is smooth then agree far better
 
 
-class Sampled(NamedTuple):
-    """Values and slopes of one quantity on a grid, each (pieces, nodes)."""
+class Pieces:
+    """Pieces from `low` to `high` (n,) in degrees with the nodes of a rule.
 
-    value: Array
-    slope: Array
-
-
-class Grid:
-    """Smooth pieces between the angles `breaks` (n + 1,) in degrees, each with 16 Gauss points and both its ends.
-
-    A measured trace has thousands of pieces; on many and narrow ones there are fewer points. nodes, weights: the rule
-    on (−1, 1); with Gauss points the weight of the ends is 0.
     degrees, within: crank angles of the nodes and the middles of their pieces, (pieces, nodes). beyond: what the
     rounding of `degrees` took from the nodes; with R/L near 1 the rod swings round within a hair of 90°, and it counts.
     """
 
-    def __init__(self, breaks: Array) -> None:
-        self.breaks = breaks
-        low, high = breaks[:-1, None], breaks[1:, None]
-        self.nodes, self.weights = _rule(len(breaks), float((high - low).max()))
-        self.within = np.broadcast_to((low + high) / 2, (len(breaks) - 1, len(self.nodes)))
+    def __init__(self, low: Array, high: Array, rule: Rule) -> None:
+        self.low, self.high = low, high
+        self.nodes, self.weights = map(np.array, rule)
+        start, end = low[:, None], high[:, None]
+        self.within = np.broadcast_to((start + end) / 2, (len(low), len(self.nodes)))
         right_angle = 90.0 * np.rint(self.within / 90.0)
-        offset = ((low - right_angle) + (high - right_angle)) / 2 + (high - low) / 2 * self.nodes
-        self.degrees = right_angle + offset
-        self.degrees[:, 0], self.degrees[:, -1] = breaks[:-1], breaks[1:]
+        offset = ((start - right_angle) + (end - right_angle)) / 2 + (end - start) / 2 * self.nodes
+        self.degrees: Array = right_angle + offset
+        self.degrees[:, 0], self.degrees[:, -1] = low, high
         self.beyond = offset - (self.degrees - right_angle)
         self.beyond[:, 0] = self.beyond[:, -1] = 0.0
 
     @cached_property
     def _half_widths(self) -> Array:
-        return np.asarray(np.radians(np.diff(self.breaks)) / 2)
+        return np.asarray(np.radians(self.high - self.low) / 2)
 
     def integral(self, value: Array) -> float:
-        """Return ∫ value dφ (φ in radians) over all pieces by a rule of Gauss; value (pieces, nodes)."""
+        """Return ∫ value dφ (φ in radians) over all pieces by the rule; value (pieces, nodes)."""
         return float(self._half_widths @ (value @ self.weights))
 
-    def halved(self) -> Grid:
-        """Return the grid with every piece cut in two; one of many narrow pieces, those of a trace, as it is."""
-        return self if len(self.nodes) < len(NODES) else self.split_at((self.breaks[:-1] + self.breaks[1:]) / 2)
+    def integrals(self, value: Array) -> Array:
+        """Return ∫ value dφ (φ in radians) over each piece; value (…, pieces, nodes)."""
+        return np.asarray(self._half_widths * (value @ self.weights))
+
+
+class Grid(Pieces):
+    """Smooth pieces that follow one another between the angles `breaks` (n + 1,) in degrees.
+
+    Each has 16 Gauss points and, of weight 0, both its ends. A measured trace has thousands of pieces; on many and
+    narrow ones there are fewer points.
+    """
+
+    def __init__(self, breaks: Array) -> None:
+        low, high = breaks[:-1], breaks[1:]
+        super().__init__(low, high, _rule(low, high))
+        self.breaks = breaks
+
+    def slopes(self, value: Array) -> Array:
+        """Return the derivative by φ of the polynomials through values (…, pieces, nodes), of the same shape."""
+        gaps = self.nodes[:, None] - self.nodes + np.eye(len(self.nodes))
+        products = gaps.prod(axis=1)
+        matrix = products[:, None] / products / gaps
+        np.fill_diagonal(matrix, 0.0)
+        np.fill_diagonal(matrix, -matrix.sum(axis=1))
+        return np.asarray((value @ matrix.T) / self._half_widths[:, None])
+
+    def other(self) -> Grid:
+        """Return the same cycle in other pieces: each cut in two unequal ones."""
+        return self.split_at(self.low + 0.381966 * (self.high - self.low))
 
     def split_at(self, angles: Array) -> Grid:
-        """Return the grid cut at further angles in degrees."""
-        return Grid(ascending(np.concatenate((self.breaks, angles)))) if len(angles) else self
+        """Return the grid cut at further angles in degrees; two that differ by rounding only are one."""
+        if not len(angles):
+            return self
+        breaks = ascending(np.concatenate((self.breaks, angles)), apart=_SAME)
+        breaks[-1] = self.breaks[-1]
+        return Grid(breaks)
 
 
-def _rule(count: int, widest: float) -> tuple[Array, Array]:
-    """Return nodes, with both ends, and weights for so many pieces, the widest of which has this width in degrees."""
-    rule: tuple[tuple[float, ...], tuple[float, ...]] = (-1.0, *NODES, 1.0), (0.0, *WEIGHTS, 0.0)
-    if count > _MANY and widest <= _NARROW:
-        rule = SIMPSON if widest <= _NARROWEST else LOBATTO
-    return np.array(rule[0]), np.array(rule[1])
+def _rule(low: Array, high: Array) -> Rule:
+    if _few(low, high):
+        return GAUSS
+    return SIMPSON if (high - low).max() <= _NARROWEST else LOBATTO_4
 
 
-class Brackets(NamedTuple):
-    """Intervals that hold one root each: ends in degrees, piece middles, function values at the ends; all (n,)."""
-
-    low: Array
-    high: Array
-    within: Array
-    f_low: Array
-    f_high: Array
+def _few(low: Array, high: Array) -> bool:
+    return len(low) < _MANY or bool((high - low).max() > _NARROW)
 
 
-def sign_changes(grid: Grid, values: Array, worth: Any = True) -> Brackets:
-    """Return the node intervals over which values (pieces, nodes) change sign, where `worth` holds."""
-    before, after = values[:, :-1], values[:, 1:]
-    # a zero at a node counts for the interval that it ends, so that it is found once
-    rows, nodes = np.nonzero((((before < 0) & (after >= 0)) | ((before > 0) & (after <= 0))) & worth)
-    return Brackets(
-        grid.degrees[rows, nodes],
-        grid.degrees[rows, nodes + 1],
-        grid.within[rows, nodes],
-        values[rows, nodes],
-        values[rows, nodes + 1],
-    )
+def _inside(low: Array, high: Array, rule: Rule) -> Pieces:
+    """Return pieces whose nodes at the ends, too, stand inside, though next to the end."""
+    pieces = Pieces(low, high, rule)
+    pieces.degrees[:, 0], pieces.degrees[:, -1] = np.nextafter(low, high), np.nextafter(high, low)
+    return pieces
 
 
-def reversals(grid: Grid, values: Array) -> tuple[Brackets, Array]:
-    """Return where values (pieces, nodes) take the other sign, round the cycle: intervals that hold a root, and angles.
+def _cut(pieces: Pieces, shares: Array, rule: Rule) -> Pieces:
+    """Return every piece cut at these shares (k,) of its width, from 0 to 1."""
+    edges = pieces.low[:, None] + (pieces.high - pieces.low)[:, None] * shares
+    edges[:, -1] = pieces.high
+    return _inside(edges[:, :-1].ravel(), edges[:, 1:].ravel(), rule)
 
-    What is zero but for rounding has no sign: +, 0, − is one reversal, at the angle where the new sign begins; +, 0, +
-    is none. At a jump it is the angle of the jump.
+
+def integral(breaks: Array, function: Callable[[Pieces], Array]) -> Array:
+    """Return ∫ dφ (φ in radians) of quantities between the first and the last of the breaks (n,) in degrees, (…,).
+
+    function: their values (…, pieces, nodes), each at its own angle. Only jumps must stand among the breaks: every
+    piece is cut, and cut again until whole and parts agree, so that nothing need be known of kinks, or of poles beside
+    the real axis. The nodes, those of Lobatto, are none of a grid's; being at the ends, they see a kink just there.
     """
-    flat, degrees = values.ravel(), grid.degrees.ravel()
-    signs = np.where(np.abs(flat) <= 8 * np.finfo(float).eps * np.abs(flat).max(), 0.0, np.sign(flat))
-    signed = np.flatnonzero(signs)
-    turned = signs[signed] != signs[np.roll(signed, -1)]
-    last, first = signed[turned], np.roll(signed, -1)[turned]
-    nodes = values.shape[1]
-    crossing = (first == last + 1) & (first % nodes != 0)
-    low, high = last[crossing], first[crossing]
-    brackets = Brackets(degrees[low], degrees[high], grid.within.ravel()[low], flat[low], flat[high])
-    other = first[~crossing]
-    return brackets, degrees[np.where(other % nodes == 0, other, other - 1)]
+    low, high = breaks[:-1], breaks[1:]
+    rule = LOBATTO_16 if _few(low, high) else LOBATTO_4
+    pieces = _inside(low, high, rule)
+    value = function(pieces)
+    settled = np.zeros(value.shape[:-2])
+    size = pieces.integrals(np.abs(value)).sum(axis=-1)
+    for cuts in (_HALVES, *(_CUTS,) * _ROUNDS):
+        parts = _cut(pieces, cuts, rule)
+        finer = function(parts)
+        sums = parts.integrals(finer)
+        doubtful = _doubtful(pieces, value, cuts, finer, size)
+        again = np.repeat(doubtful, len(cuts) - 1)
+        settled = settled + sums[..., ~again].sum(axis=-1)
+        # where rounding keeps too many from agreeing, no cut will mend it
+        if not 0 < doubtful.sum() <= len(breaks):
+            break
+        pieces, value = _inside(parts.low[again], parts.high[again], rule), finer[..., again, :]
+    return np.asarray(settled + sums[..., again].sum(axis=-1))
 
 
-def roots(function: Callable[[Array, Array], Array], brackets: Brackets) -> Array:
-    """Return the roots in degrees of function(degrees, within) in the brackets (n,)."""
-    if not len(brackets.low):
-        return brackets.low
-    low, high, within, f_low, f_high = brackets
-    return bracketed_roots(lambda degrees: function(degrees, within), low, high, f_low, f_high)
+def _doubtful(pieces: Pieces, value: Array, cuts: Array, finer: Array, size: Array) -> Flags:
+    """Return the pieces (n,) whose polynomials through their nodes miss the values at the nodes of their parts."""
+    at = (2 * (cuts[:-1, None] + np.diff(cuts)[:, None] * (1 + pieces.nodes) / 2) - 1).ravel()
+    missed = np.abs(value @ _interpolation(pieces.nodes, at).T - finer.reshape(*value.shape[:-1], -1)).max(axis=-1)
+    wrong = missed * np.radians(pieces.high - pieces.low) > _AGREEMENT * size[..., None]
+    return np.asarray(wrong.reshape(-1, wrong.shape[-1]).any(axis=0))
 
 
-class Extremes(NamedTuple):
-    """Largest and smallest value of one quantity over the cycle, with their crank angles."""
-
-    largest: Extreme
-    smallest: Extreme
-
-
-def extremes(
-    grid: Grid, samples: dict[str, Sampled], evaluate: Callable[[Array, Array], dict[str, Sampled]]
-) -> dict[str, Extremes]:
-    """Return the exact extremes of several quantities over the grid, one-sided values at its breaks included.
-
-    samples: the quantities on the grid; evaluate: the same at any (degrees, within), each (n,). Interior extremes are
-    roots of the slope; only those intervals are searched that promise to beat the samples.
-    """
-    brackets = {name: sign_changes(grid, sampled.slope, _promising(grid, sampled)) for name, sampled in samples.items()}
-    counts = [len(bracket.low) for bracket in brackets.values()]
-    owner = np.repeat(np.arange(len(samples)), counts)
-    stacked = Brackets(*(np.concatenate(parts) for parts in zip(*brackets.values(), strict=True)))
-
-    def slope(degrees: Array, within: Array) -> Array:
-        return np.stack([sampled.slope for sampled in evaluate(degrees, within).values()])[owner, np.arange(len(owner))]
-
-    found = roots(slope, stacked)
-    values = {name: s.value for name, s in evaluate(found, stacked.within).items()} if len(found) else {}
-    return {
-        name: _pick(
-            np.concatenate((grid.degrees.ravel(), found[owner == k])),
-            np.concatenate((sampled.value.ravel(), values[name][owner == k] if values else found)),
-        )
-        for k, (name, sampled) in enumerate(samples.items())
-    }
-
-
-def _promising(grid: Grid, sampled: Sampled) -> Flags:
-    """Return the intervals (pieces, nodes − 1) whose ends could hide an extreme of the whole cycle between them."""
-    value, slope = sampled
-    width = np.radians(np.diff(grid.degrees, axis=1))
-    # an estimate, not a bound: with eighteen nodes to a smooth piece, a hill between two of them shows in their slopes,
-    # and half of slope times width is twice what a parabola with these slopes could rise
-    reach = np.maximum(np.abs(slope[:, :-1]), np.abs(slope[:, 1:])) * width / 2
-    top = np.maximum(value[:, :-1], value[:, 1:]) + reach
-    bottom = np.minimum(value[:, :-1], value[:, 1:]) - reach
-    return np.asarray((top >= value.max()) | (bottom <= value.min()))
-
-
-def _pick(degrees: Array, values: Array) -> Extremes:
-    return Extremes(_first_at(degrees, values, 1.0), _first_at(degrees, values, -1.0))
-
-
-def _first_at(degrees: Array, values: Array, sign: float) -> Extreme:
-    """Return the extreme and the first angle that reaches it but for rounding: plateaus answer alike everywhere."""
-    best = (values * sign).max()
-    level = best - 4 * np.finfo(float).eps * abs(best)
-    # beside the values of the other sign this is the rounding of a dead centre, which is no float
-    exact = abs(best) > 4 * np.finfo(float).eps * np.abs(values).max()
-    return Extreme(float(best * sign) + 0.0 if exact else 0.0, float(degrees[values * sign >= level].min()))
+def _interpolation(nodes: Array, at: Array) -> Array:
+    """Return the matrix (m, n) that turns values at nodes (n,) into those of their polynomial at other places (m,)."""
+    gaps = at[:, None] - nodes
+    hit = gaps == 0
+    shares = 1 / np.where(hit, 1.0, gaps) / (nodes[:, None] - nodes + np.eye(len(nodes))).prod(axis=1)
+    shares = np.where(hit.any(axis=1, keepdims=True), hit, shares)
+    return np.asarray(shares / shares.sum(axis=1, keepdims=True))
 
 
 def cycle_breaks(mechanism: Mechanism, cycle: float, starts: Iterable[Array]) -> Array:
@@ -193,15 +168,9 @@ def cycle_breaks(mechanism: Mechanism, cycle: float, starts: Iterable[Array]) ->
     given = list(starts)
     if sum(map(len, given)) > _MANY:
         given.append(np.arange(0.0, cycle, _NARROW))
-    # two angles that differ by rounding only would leave a piece without width
-    angles = ascending(np.concatenate([*turns, *given, [cycle]]), apart=1e-10)
+    angles = ascending(np.concatenate([*turns, *given, [cycle]]), apart=_SAME)
     angles[-1] = cycle
     return angles
-
-
-def distinct_angles(found: Array, cycle: float) -> tuple[float, ...]:
-    """Return angles in degrees within the cycle, ascending, each once."""
-    return tuple(ascending(np.mod(found, cycle), apart=1e-9).tolist())
 
 
 def ascending(angles: Array, apart: float = 0.0) -> Array:

@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import Extreme, Mechanism
-from kurbel.solver.grid import Extremes, Grid, Sampled, ascending, distinct_angles, extremes, roots, sign_changes
+from kurbel.solver.grid import Grid, ascending
 from kurbel.solver.jet import jet_angle
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
+from kurbel.solver.search import Evaluate, Extremes, Sampled, extremes, zeros
 
 
 class Motion:
@@ -119,11 +117,7 @@ class Motion:
 
     def _searched(self, function: Callable[[CrankAngle], Any]) -> Extremes:
         """Search the extremes of a kinematic quantity over one revolution by the roots of its slope."""
-
-        def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
-            jet = function(jet_angle(degrees))
-            return {"it": Sampled(jet.value, jet.slope)}
-
+        evaluate = _evaluated(function)
         return extremes(self._turn, evaluate(self._turn.degrees, self._turn.within), evaluate)["it"]
 
     def _sliding(self, order: int) -> Callable[[Extreme], Extreme] | None:
@@ -232,11 +226,13 @@ class Motion:
         closed = self.mechanism.velocity_extremes()
         if closed:
             return tuple(sorted(extreme.degrees for extreme in closed))
-        brackets = sign_changes(self._turn, self._curvature_at(self._turn.degrees, self._turn.within))
-        return distinct_angles(roots(self._curvature_at, brackets), 360.0)
+        evaluate = _evaluated(self.mechanism.curvature)
+        found = zeros(self._turn, evaluate(self._turn.degrees, self._turn.within), evaluate)["it"]
+        return tuple(found.tolist())
 
-    def _curvature_at(self, degrees: Array, within: Array) -> Array:
-        return np.asarray(self.mechanism.curvature(CrankAngle.of(degrees)))
+
+def _evaluated(function: Callable[[CrankAngle], Any]) -> Evaluate:
+    return lambda degrees, within: {"it": Sampled.of(function(jet_angle(degrees)), degrees.shape)}
 
 
 def _of_closed(found: tuple[Extreme, ...]) -> Extremes:

@@ -18,9 +18,10 @@ import numpy as np
 from kurbel.mechanisms import Extreme
 from kurbel.solver.effort import InertiaEffort
 from kurbel.solver.excess import Excess
-from kurbel.solver.grid import Extremes, Grid, Sampled, extremes
+from kurbel.solver.grid import Grid
 from kurbel.solver.jet import Jet
 from kurbel.solver.radau import Periodic, Standstill, periodic
+from kurbel.solver.search import Extremes, Sampled, extremes
 from kurbel.solver.torques import Torque
 
 if TYPE_CHECKING:

@@ -22,18 +22,19 @@ if TYPE_CHECKING:
 
 
 class Lines(NamedTuple):
-    """The lines of pieces (n,): fraction and pressure in Pa where each begins, its gradient in Pa, its exponent."""
+    """The lines of pieces (n,): first fraction, pressure in Pa there, gradient in Pa, exponent, last fraction."""
 
     z: Array
     p: Array
     gradients: Array
     exponents: Array
+    next_z: Array
 
     @classmethod
     def of(cls, pieces: Sequence[Piece]) -> Lines:
         """Return the lines of pieces that have a width."""
         z, p, next_z, next_p, exponents = np.array(pieces).T
-        return cls(z, p, (next_p - p) / (next_z - z), exponents)
+        return cls(z, p, (next_p - p) / (next_z - z), exponents, next_z)
 
 
 class ProcessPressure:
@@ -54,14 +55,26 @@ class ProcessPressure:
         self.starts = np.array([start for start, _ in begun])
         self.pieces = tuple(piece for _, piece in begun)
         self.lines = Lines.of(self.pieces)
+        self._ends = np.roll(self.starts, -1)
 
     def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
         """Return the gauge pressure in Pa at displacements x (n,) in m, on the pieces that hold the angles `within`."""
         piece = np.searchsorted(self.starts, np.mod(once_each(within), self.place.cycle), side="right") - 1
-        share = x / self._stroke if self.place.head_end else 1 - x / self._stroke
         lines = self.lines
+        share = x / self._stroke if self.place.head_end else 1 - x / self._stroke
+        share = self._at_corners(share, angle, piece)
         straight = (lines.p[piece] - self.place.base) + lines.gradients[piece] * (share - lines.z[piece])
         return self._curved(straight, share, piece) if self.process.polytropic else straight
+
+    def _at_corners(self, share: Any, angle: CrankAngle, piece: Indices) -> Any:
+        """Return the stroke fractions, at corners those of the card: their angles are rounded, lines may be steep."""
+        turned = np.mod(angle.degrees, self.place.cycle)
+        begins = np.abs(turned - self.starts[piece]) <= _ROUNDING
+        ends = np.abs(turned - self._ends[piece]) <= _ROUNDING
+        if not (begins.any() or ends.any()):
+            return share
+        lines, value = self.lines, getattr(share, "value", share)
+        return share + (np.where(begins, lines.z[piece], np.where(ends, lines.next_z[piece], value)) - value)
 
     def _curved(self, straight: Any, share: Any, piece: Indices) -> Any:
         """Return P (V/V′)^n less the ambient on polytropic pieces, and the straight value elsewhere."""
@@ -92,6 +105,8 @@ class ProcessPressure:
         return self.process.area
 
 
+_ROUNDING = 3e-13
+"""Degrees of crank angle by which the angle of a corner may be off: a few units in the last place of 720."""
 _NO_WIDTH = 1e-10
 """Degrees of crank angle; over less a line cannot be followed, and its piece is a jump."""
 

@@ -14,7 +14,8 @@ from kurbel.machine import Machine
 from kurbel.machine.crankshaft import Crankshaft, strength_obstacle
 from kurbel.mechanisms import Extreme
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.grid import Brackets, Extremes, Grid, Sampled, ascending, extremes, roots, sign_changes
+from kurbel.solver.grid import Grid, Pieces, integral
+from kurbel.solver.search import Extremes, Sampled, extremes, zeros
 from kurbel.solver.state import State
 from kurbel.solver.strength.columns import StrengthColumns, strength_columns
 from kurbel.solver.strength.places import Place, Stresses, places
@@ -97,36 +98,21 @@ class CrankshaftStrength:
     def _grid(self) -> Grid:
         """The cycle in smooth pieces, cut also where a stress changes its sign: its magnitude has a kink there."""
         grid = self.forces.grid
-        drive = self.forces.drive
+        jets = self.forces.drive.jets_at(grid.degrees, grid.within, grid.beyond)
+        sampled = self._signed(jets)
+        self._refuse_infinite(quantity.value for quantity in sampled.values())
+        found = zeros(grid, sampled, lambda phi, within: self._signed(self.forces.drive.jets_at(phi, within)))
+        return grid.split_at(np.concatenate(tuple(found.values())))
 
-        def signed(degrees: Array, within: Array, beyond: Array | float = 0.0) -> Array:
-            # plain values: the slopes of jets are not needed to find a zero
-            state = State(drive, CrankAngle.of(degrees, beyond), within)
-            return np.stack(np.broadcast_arrays(*_with_kinks(self._running(state))))
-
-        sampled = signed(grid.degrees, grid.within, grid.beyond)
-        self._refuse_infinite(sampled)
-        brackets = [sign_changes(grid, values) for values in sampled]
-        owner = np.repeat(np.arange(len(brackets)), [len(bracket.low) for bracket in brackets])
-        stacked = Brackets(*(np.concatenate(parts) for parts in zip(*brackets)))
-        turns = roots(lambda phi, within: signed(phi, within)[owner, np.arange(len(owner))], stacked)
-        # two that differ by rounding only would leave a piece without width
-        breaks = ascending(np.concatenate((grid.breaks, turns)), apart=1e-10)
-        breaks[-1] = drive.cycle
-        return Grid(breaks)
+    def _signed(self, state: State) -> dict[str, Sampled]:
+        return _sampled(_with_kinks(self._running(state)), state)
 
     def _quantities(self, state: State) -> dict[str, Sampled]:
         body = self._running(state)
         found = {f"combined {i}": place.combined(body) for i, place in enumerate(self.places)}
         found |= {f"von Mises {i}": place.von_mises(body) for i, place in enumerate(self.places)}
         found |= {"pin": norm(*body.pin), "A": norm(*body.A), "B": norm(*body.B)}
-        shape = state.phi.shape
-        return {
-            name: Sampled(
-                np.broadcast_to(getattr(j, "value", j), shape), np.broadcast_to(getattr(j, "slope", 0.0), shape)
-            )
-            for name, j in found.items()
-        }
+        return _sampled(found, state)
 
     @cached_property
     def _samples(self) -> dict[str, Sampled]:
@@ -253,15 +239,18 @@ class CrankshaftStrength:
         size = self._size(bearing)
         if size is None:
             return None
-        turn = math.radians(self.forces.drive.cycle)
-        force = self._rod_force if bearing == "pin" else self._samples[bearing].value
-        return self._grid.integral(force) / turn / size[0] / size[1]
+        return self._mean_loads[bearing] / size[0] / size[1]
 
-    @property
-    def _rod_force(self) -> Array:
-        grid = self._grid
-        state = State(self.forces.drive, CrankAngle.of(grid.degrees, grid.beyond), grid.within)
-        return np.asarray(np.hypot(state.T, state.D))
+    @cached_property
+    def _mean_loads(self) -> dict[str, float]:
+        """Means over time in N of the force of the rod on the pin, and of the forces on both bearings."""
+        found = integral(self._grid.breaks, self._loads) / math.radians(self.forces.drive.cycle)
+        return dict(zip(("pin", "A", "B"), found.tolist(), strict=True))
+
+    def _loads(self, pieces: Pieces) -> Array:
+        state = State(self.forces.drive, CrankAngle.of(pieces.degrees, pieces.beyond))
+        body = self._running(state)
+        return np.stack([np.hypot(*force) for force in ((state.D, state.T), body.A, body.B)])
 
     def pressure_velocity(self, bearing: str) -> float | None:
         """Return k = p_m v in W/m² with the surface speed v = π d n (G); None without a speed of rotation."""
@@ -290,12 +279,17 @@ class CrankshaftStrength:
         return equilibrium_residual(self._running(state), np.asarray(state.M))
 
 
-def _with_kinks(body: FreeBody) -> tuple[Any, ...]:
+def _with_kinks(body: FreeBody) -> dict[str, Any]:
     """Return the forces and moments whose magnitudes make stresses: where one passes zero, its magnitude has a kink."""
     in_plane, twist = body.moments_beyond_pin(body.shaft.web_distance)
     # web B is bent out of plane as much at the pin as at the shaft
     ends = (body.A.T - body.pin.T, body.A.T + body.pin.T)
-    return (*body.pin, *body.A, body.force_in_web_B, in_plane, twist, *ends)
+    found = (*body.pin, *body.A, body.force_in_web_B, in_plane, twist, *ends)
+    return {str(number): force for number, force in enumerate(found)}
+
+
+def _sampled(found: dict[str, Any], state: State) -> dict[str, Sampled]:
+    return {name: Sampled.of(jet, state.phi.shape) for name, jet in found.items()}
 
 
 def _strained(place: Place, degrees: float, body: FreeBody) -> Strained:

@@ -1,0 +1,139 @@
+"""Lists of angles are complete: no sample of a dense scan between two listed angles has the other sign."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from kurbel.machine import Machine
+from kurbel.solver.case import Case
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.grid import Grid
+from kurbel.solver.search import Evaluate, Sampled, curves, zeros
+from machines import single_acting
+from random_cylinders import cylinders
+
+SAMPLES = 400
+
+
+def scanned(breaks: np.ndarray, evaluate: Evaluate) -> tuple[np.ndarray, np.ndarray]:
+    """Angles and values of the only quantity on a dense mesh, and at the summits of parabolas through its samples."""
+    low, high = breaks[:-1, None], breaks[1:, None]
+    degrees = low + (high - low) * np.linspace(0, 1, SAMPLES)
+    within = np.broadcast_to((low + high) / 2, degrees.shape)
+    (found,) = evaluate(degrees, within).values()
+    before, here, after = found.value[:, :-2], found.value[:, 1:-1], found.value[:, 2:]
+    bend = before - 2 * here + after
+    step = np.clip((before - after) / np.where(bend == 0, 1.0, bend) / 2, -1, 1)
+    summits = degrees[:, 1:-1] + step * np.diff(degrees)[:, 1:]
+    (at_summits,) = evaluate(summits, within[:, 1:-1]).values()
+    # ends stand beside each other, before and after a jump; between equal angles their order remains
+    angles = np.concatenate((degrees, summits), axis=1)
+    values = np.concatenate((found.value, at_summits.value), axis=1)
+    order = np.argsort(angles, axis=1, kind="stable")
+    return np.take_along_axis(angles, order, 1).ravel(), np.take_along_axis(values, order, 1).ravel()
+
+
+def wrong_signs(found: np.ndarray, breaks: np.ndarray, evaluate: Evaluate, size: float = 0.0) -> int:
+    """Count the samples whose sign is not that of the others between the same two listed angles, and false angles."""
+    angles, values = scanned(breaks, evaluate)
+    clear = np.abs(values) > 1e-12 * max(size, np.abs(values).max())
+    apart = np.abs(angles[:, None] - np.array([*found, -1.0])).min(axis=1) > 1e-9
+    angles, signs = angles[clear & apart], np.sign(values[clear & apart])
+    arc = np.searchsorted(found, angles) % max(len(found), 1)
+    per_arc = [signs[arc == number] for number in range(max(len(found), 1))]
+    mixed = sum(min((one > 0).sum(), (one < 0).sum()) for one in per_arc)
+    means = [one.mean() for one in per_arc if len(one)]
+    same = sum(a == b for a, b in zip(means, [*means[1:], means[0]])) if len(found) else 0
+    return int(mixed) + int(same)
+
+
+def force_along(forces: CylinderForces) -> Evaluate:
+    return lambda degrees, within: {"P": Sampled.of(forces.drive.jets_at(degrees, within).P, degrees.shape)}
+
+
+def missing_reversals(forces: CylinderForces) -> int:
+    found, extremes = forces.phi_reversal, forces.extremes_of("P")
+    assert found is not None
+    assert extremes is not None
+    both = extremes.largest.value > 0 > extremes.smallest.value
+    return wrong_signs(np.array(found), forces.drive.breaks(), force_along(forces)) + int(bool(found) != both)
+
+
+def missing_crossings(forces: CylinderForces) -> int:
+    shaft = Case(Machine((forces.drive.cylinder,), speed=forces.drive.machine.speed)).flywheel
+    torque = shaft.excess.torque
+
+    def evaluate(degrees: np.ndarray, within: np.ndarray) -> dict[str, Sampled]:
+        return {"M": Sampled.of(torque.torque(degrees, within), degrees.shape)}
+
+    size = max(abs(extreme.value) for extreme in shaft.excess.effort_extremes)
+    return wrong_signs(np.array(shaft.phi_crossing), shaft.excess.grid.breaks, evaluate, size)
+
+
+@pytest.mark.parametrize("summit", [11.4, 1.0, 1e-3, 1e-6])
+def test_a_short_druckwechsel_is_found(summit: float) -> None:
+    """A constant pressure that leaves P_max of a few newtons beside a P_min of thousands."""
+    lowest = single_acting(0.4, 0.4 / 0.3, 0.3, 0.0, 120, 100).motion.b_min
+    assert lowest is not None
+    pressure = (summit + 100 * lowest.value) / (math.pi / 4 * 0.3**2)
+    forces = single_acting(0.4, 0.4 / 0.3, 0.3, pressure, 120, 100)
+    found = forces.extremes_of("P")
+    assert found is not None
+    assert found.largest.value == pytest.approx(summit, abs=1e-11)
+    assert forces.phi_reversal is not None
+    assert len(forces.phi_reversal) == 4
+    assert np.abs(forces.at(forces.phi_reversal).P).max() <= 1e-12 * -found.smallest.value
+
+
+def test_no_angle_is_missing_in_random_cylinders() -> None:
+    for forces in cylinders(10, 12):
+        assert missing_reversals(forces) == 0
+        assert missing_crossings(forces) == 0
+
+
+@pytest.mark.slow
+def test_no_angle_is_missing_in_two_thousand_cylinders() -> None:
+    seed = int(np.random.SeedSequence().entropy % 2**32)
+    print("seed", seed)
+    lost = [
+        (number, missing)
+        for number, forces in enumerate(cylinders(seed, 2000))
+        if (missing := missing_reversals(forces) + missing_crossings(forces))
+    ]
+    assert not lost
+
+
+@pytest.mark.parametrize("share", np.linspace(0.02, 0.98, 13))
+@pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-10])
+def test_a_pair_of_zeros_is_found_wherever_it_stands(share: float, depth: float) -> None:
+    """cos(φ − φ₀) less nearly its summit, on pieces of 45°: closed, ± arccos(1 − depth) round φ₀."""
+    grid = Grid(np.arange(0.0, 361.0, 45.0))
+    summit = 45.0 * share
+
+    def evaluate(degrees: np.ndarray, within: np.ndarray) -> dict[str, Sampled]:
+        phi = np.radians(degrees - summit)
+        return {"it": Sampled(depth - 2 * np.sin(phi / 2) ** 2, -np.sin(phi))}
+
+    found = zeros(grid, evaluate(grid.degrees, grid.within), evaluate)["it"]
+    half = np.degrees(2 * np.arcsin(np.sqrt(depth / 2)))
+    assert sorted(np.mod([summit - half, summit + half], 360.0)) == pytest.approx(list(found), abs=1e-9)
+
+
+@pytest.mark.parametrize("share", np.linspace(0.02, 0.98, 25))
+@pytest.mark.parametrize("below", [1e-2, 1e-4])
+def test_two_extremes_between_two_nodes_are_found(share: float, below: float) -> None:
+    """x³/3 − below² x turns round twice: its slope dips across zero and back, where all nodes see it rise."""
+    grid = Grid(np.arange(0.0, 361.0, 45.0))
+    place = 45.0 * share
+
+    def evaluate(degrees: np.ndarray, within: np.ndarray) -> dict[str, Sampled]:
+        x = np.where(within < 45, np.radians(degrees - place), np.radians(45.0 - place))
+        return {"it": Sampled((x**2 / 3 - below**2) * x, np.where(within < 45, x**2 - below**2, 0.0))}
+
+    curve = curves(grid, evaluate(grid.degrees, grid.within), evaluate)["it"]
+    ends = np.degrees([-below, below]) + place
+    inside = ends[(ends > 0) & (ends < 45)]
+    assert all(np.abs(curve.degrees - end).min() < 1e-9 for end in inside)

@@ -1,0 +1,152 @@
+"""Friction work and mean bearing loads against a quadrature that shares nothing with the solver but the integrand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.machine import Machine
+from kurbel.machine.friction import Friction
+from kurbel.machine.ideal_cards import Diesel
+from kurbel.machine.indicator import Indicator
+from kurbel.machine.masses import ConnectingRod, Masses
+from kurbel.machine.piston import Piston
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.case import Case
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.grid import Grid
+from kurbel.solver.state import State
+from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from machines import one_cylinder
+from random_cylinders import cylinders
+from shafts import shaft
+
+GAUSS = np.polynomial.legendre.leggauss(12)
+GRADES = 0.5 ** np.arange(1, 24)
+Function = Callable[[np.ndarray], np.ndarray]
+
+
+def with_least(function: Function, breaks: np.ndarray) -> np.ndarray:
+    """The breaks, and all angles of least values of a dense scan: there a magnitude has its kinks, or is near to one.
+
+    function: f ≥ 0 at crank angles (n,) in degrees.
+    """
+    low, high = breaks[:-1, None], breaks[1:, None]
+    mesh = low + (high - low) * np.linspace(1e-9, 1 - 1e-9, 3001)
+    values = function(mesh.ravel()).reshape(mesh.shape)
+    rows, columns = np.nonzero((values[:, 1:-1] <= values[:, :-2]) & (values[:, 1:-1] < values[:, 2:]))
+    left, right = mesh[rows, columns], mesh[rows, columns + 2]
+    golden = (math.sqrt(5) - 1) / 2
+    for _ in range(36):
+        inner = right - golden * (right - left), left + golden * (right - left)
+        lower = function(inner[0]) < function(inner[1])
+        left, right = np.where(lower, left, inner[0]), np.where(lower, inner[1], right)
+    cuts = np.sort(np.concatenate((breaks, (left + right) / 2)))
+    return cuts[np.concatenate(([True], np.diff(cuts) > 1e-11))]
+
+
+def precise_integral(function: Function, breaks: np.ndarray) -> float:
+    """∫ |f| dφ: 12 Gauss points on parts that shrink by halves toward all breaks and all least values."""
+    cuts = with_least(function, breaks)
+    shares = np.concatenate(([0.0], GRADES[::-1], 1 - GRADES[1:], [1.0]))
+    edges = cuts[:-1, None] + np.diff(cuts)[:, None] * shares
+    half = np.radians(np.diff(edges))[..., None] / 2
+    nodes = edges[:, :-1, None] + np.diff(edges)[..., None] * (1 + GAUSS[0]) / 2
+    return math.fsum((function(nodes.ravel()).reshape(nodes.shape) * GAUSS[1] * half).ravel().tolist())
+
+
+def friction_power(forces: CylinderForces) -> Function:
+    return lambda degrees: np.asarray(State(forces.drive, CrankAngle.of(degrees)).crosshead_power)
+
+
+def error_of_friction(forces: CylinderForces) -> float:
+    precise = precise_integral(friction_power(forces), forces.drive.breaks())
+    assert forces.crosshead_work is not None
+    return abs(forces.crosshead_work / precise - 1)
+
+
+def bearing_load(strength: CrankshaftStrength, bearing: str) -> Function:
+    def load(degrees: np.ndarray) -> np.ndarray:
+        state = strength.forces.at(degrees)
+        return np.hypot(*((state.D, state.T) if bearing == "pin" else getattr(strength._running(state), bearing)))
+
+    return load
+
+
+def errors_of_bearings(forces: CylinderForces) -> list[float]:
+    machine = forces.drive.machine
+    strength = Case(Machine((forces.drive.cylinder,), speed=machine.speed, crankshaft=shaft())).strength
+    turn = math.radians(forces.drive.cycle)
+    breaks = forces.drive.breaks()
+    if forces.drive.has_friction:  # where the guide changes sides, every force has a kink
+        breaks = with_least(friction_power(forces), breaks)
+    errors = []
+    for bearing, diameter, length in (("pin", 0.18, 0.2), ("A", 0.19, 0.3), ("B", 0.19, 0.3)):
+        found = strength.pressure_mean(bearing)
+        assert found is not None
+        precise = precise_integral(bearing_load(strength, bearing), breaks) / turn / diameter / length
+        errors.append(abs(found / precise - 1))
+    return errors
+
+
+def rubbing_diesel() -> CylinderForces:
+    """Piston force and rod angle pass zero beside each other: the guide changes sides twice between two nodes."""
+    diesel = Diesel.from_keys(
+        -51379.84345506035,
+        0.032183767208578615,
+        exponent=1.3138075981361519,
+        compression_ratio=9.149748785327816,
+    )
+    return one_cylinder(
+        SliderCrank(0.17495922359333085, 0.671018700829822, -0.0479227279492077),
+        60 * 1.301188205871063,
+        pistons=(Piston(0.20559387583925628, 0.01909191112069929, indicator=Indicator(diesel)),),
+        masses=Masses(1326.5875, ConnectingRod(586.5834509198818, 0.35)),
+        friction=Friction(0.1),
+    )
+
+
+def test_friction_where_the_guide_changes_sides_twice_at_once() -> None:
+    forces = rubbing_diesel()
+    assert error_of_friction(forces) <= 1e-12
+    assert forces.energy_residual is not None
+    assert abs(forces.energy_residual) <= 1e-14
+
+
+def test_the_residual_shows_gauss_across_a_kink(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A planted fault: the pieces of the grid are not cut where the guide changes sides."""
+    monkeypatch.setattr(CylinderForces, "grid", property(lambda forces: Grid(forces.drive.breaks())))
+    forces = rubbing_diesel()
+    precise = precise_integral(friction_power(forces), forces.drive.breaks())
+    turnover = precise_integral(lambda degrees: np.abs(forces.at(degrees).M), forces.drive.breaks())
+    assert forces.crosshead_work is not None
+    error = (forces.crosshead_work - precise) / turnover
+    assert abs(error) > 1e-6
+    assert forces.energy_residual == pytest.approx(error, rel=0.3)  # it divides by a turnover with the same fault
+
+
+def test_friction_of_random_cylinders() -> None:
+    for forces in cylinders(11, 5, friction=True):
+        assert error_of_friction(forces) <= 1e-12
+        assert forces.energy_residual is not None
+        assert abs(forces.energy_residual) <= 1e-13
+
+
+def test_mean_pressures_of_random_bearings() -> None:
+    for forces in cylinders(12, 2):
+        assert max(errors_of_bearings(forces)) <= 1e-12
+
+
+@pytest.mark.slow
+def test_friction_and_bearings_of_three_hundred_cylinders() -> None:
+    seed = int(np.random.SeedSequence().entropy % 2**32)
+    print("seed", seed)
+    for forces in cylinders(seed, 300, friction=True):
+        assert error_of_friction(forces) <= 1e-12
+        assert max(errors_of_bearings(forces)) <= 1e-12
+        assert forces.energy_residual is not None
+        assert abs(forces.energy_residual) <= 1e-13
