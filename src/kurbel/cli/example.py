@@ -6,11 +6,13 @@ import os
 
 import click
 
+from kurbel.cli.exit_status import exit_statuses
+
 _FOLDER = os.path.join(os.path.dirname(os.path.dirname(__file__)), "configs")
 _SUFFIX = ".yaml"
 
 
-@click.command(short_help="List the shipped machines, or print one.")
+@click.command(short_help="List the shipped machines, or print one.", epilog=exit_statuses())
 @click.argument("name", required=False)
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
 def example(name: str | None, file_name: str | None) -> None:
@@ -27,7 +29,7 @@ def example(name: str | None, file_name: str | None) -> None:
     elif file_name is not None:
         write_text("".join(line + "\n" for line in _listing()), file_name)
     else:
-        write_stdout("".join(stdout_charset().text(line) + "\n" for line in _listing()))
+        write_stdout(stdout_charset().text(line) + "\n" for line in _listing())
 
 
 def _names() -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from kurbel.machine import Machine
 from kurbel.report.left_out import flywheel_left_out, warnings
 from kurbel.report.motion import given, plain_values, refuse_absent
-from kurbel.report.shown import shown_column, shown_key_value
+from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, Part, Report
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineSpeed
@@ -54,7 +54,7 @@ def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] 
         turning = case.flywheel
         whole = Part(
             "whole machine",
-            tuple(_columns(turning, angles, columns or FLYWHEEL_COLUMNS, system)),
+            _columns(turning, angles, columns or FLYWHEEL_COLUMNS, system),
             tuple(shown_key_value(name, value, system) for name, value in key_values(turning)),
             flywheel_left_out(machine),
             tuple(_warnings(machine, turning)),
@@ -66,15 +66,14 @@ def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] 
     return Report(title, "flywheel", machine.name, "cylinders", parts, whole, notes=tuple(_notes(machine, turning)))
 
 
-def _columns(turning: MachineSpeed, angles: Sequence[float], columns: Sequence[str], system: str) -> Iterable[Column]:
-    degrees = np.asarray(angles, dtype=float)
-    lines = {"omega": turning.omega_line}
-    yield shown_column("phi", degrees, system)
-    for name in dict.fromkeys(columns):
-        line = lines.get(name) or (getattr(turning, name) if name in FLYWHEEL_COLUMNS and name != "phi" else None)
-        values = line(degrees) if line else None
-        if values is not None:
-            yield shown_column(name, values, system)
+def _columns(turning: MachineSpeed, angles: Sequence[float], columns: Sequence[str], system: str) -> tuple[Column, ...]:
+    def line(name: str) -> Any:
+        return getattr(turning, {"omega": "omega_line"}.get(name, name)) if name in FLYWHEEL_COLUMNS else None
+
+    def values_at(degrees: Any) -> Callable[[str], Any]:
+        return lambda name: line(name)(degrees) if line(name) else None
+
+    return shown_columns(columns, values_at, angles, system)
 
 
 def key_values(turning: MachineSpeed, repeated: bool = False) -> Iterable[tuple[str, Any]]:

@@ -13,12 +13,12 @@ from kurbel.machine.fit import may_lock
 from kurbel.report.left_out import left_out, warnings
 from kurbel.report.motion import (
     columns_of,
+    cylinder_columns,
     given,
     mechanism_notes,
     motion_key_values,
     plain_values,
     refuse_absent,
-    shown_columns,
 )
 from kurbel.report.shown import shown_key_value
 from kurbel.report.tables import LeftOut, Part, Report
@@ -69,7 +69,7 @@ def _part(
     fitting = FORCE_COLUMNS if cylinder.mechanism.slides else _ALL_COLUMNS
     return Part(
         cylinder.name,
-        tuple(shown_columns(forces, angles, columns or fitting, _ALL_COLUMNS, system)),
+        cylinder_columns(forces, angles, columns or fitting, _ALL_COLUMNS, system),
         tuple(shown_key_value(name, value, system) for name, value in key_values(forces)),
         (*left_out(case.machine, cylinder), *_no_loss(forces)),
         (*warnings(cylinder), *_balance_warnings(forces), *_pin_warnings(forces), *measured_warnings(case, forces)),
