@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import BROKEN, NO_SOLUTION, exit_statuses
+from kurbel.cli.exit_status import BROKEN, DONE, NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import machine_file
 
 
@@ -23,4 +23,7 @@ def check(file: str) -> int:
 
     result = checked(load(file), COMMANDS)
     write_stdout((listing(result, stdout_charset()),))
-    return int(result.broken)
+    if result.errors:  # all of them, as one of the gravest kind
+        gravest = min(result.errors, key=lambda error: error.exit_status)
+        raise type(gravest)("\n".join(map(str, result.errors)))
+    return BROKEN if result.broken else DONE

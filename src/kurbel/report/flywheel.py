@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from kurbel.machine import Machine
-from kurbel.report.left_out import flywheel_left_out, warnings
+from kurbel.report.left_out import flywheel_left_out
 from kurbel.report.motion import given, plain_values, refuse_absent
+from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, Part, Report
 from kurbel.solver.case import Case
@@ -57,7 +58,7 @@ def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] 
             _columns(turning, angles, columns or FLYWHEEL_COLUMNS, system),
             tuple(shown_key_value(name, value, system) for name, value in key_values(turning)),
             flywheel_left_out(machine),
-            tuple(_warnings(machine, turning)),
+            tuple(_warnings(case, turning)),
         )
         parts = tuple(_cylinder_parts(case, system))
         there = [column.id for column in _columns(turning, (0.0,), FLYWHEEL_COLUMNS, system)] if columns else []
@@ -113,9 +114,9 @@ def _notes(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
         )
 
 
-def _warnings(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
-    for cylinder in machine.cylinders:
-        yield from warnings(cylinder)
+def _warnings(case: Case, turning: MachineSpeed) -> Iterable[str]:
+    machine = case.machine
+    yield from of_machine(machine_notes(machine, case), machine)
     if turning.deficit is not None:
         yield (
             f"mean effort {show(turning.M_mean, 'torque')} and mean resistance "

@@ -9,8 +9,9 @@ import numpy as np
 
 from kurbel.machine import Machine
 from kurbel.quantities import SHAFT_PARTS, STRESSES
-from kurbel.report.left_out import left_out, strength_left_out, warnings
+from kurbel.report.left_out import left_out, strength_left_out
 from kurbel.report.motion import given, plain_values, refuse_absent
+from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.shown import shown_column, shown_columns, shown_key_value
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
@@ -59,7 +60,7 @@ def stress_report(
             () if places_only else _columns(strength, angles, columns or STRESS_COLUMNS, system),
             tuple(shown_key_value(name, value, system) for name, value in values),
             (*left_out(machine, cylinder), *strength_left_out(machine)),
-            (*warnings(cylinder), *(() if cool else verdict)),
+            (*of_machine(machine_notes(machine, case), machine), *(() if cool else verdict)),
             tuple(_place_tables(strength, system)),
         )
     notes = (*_NOTES, *((_TURNING_ROD,) if strength.rod_pull else ()), *(verdict if cool else ()))
