@@ -68,7 +68,11 @@ def test_version_and_help() -> None:
     runner = CliRunner()
     assert runner.invoke(kurbel, ["--version"]).stdout == f"kurbel {__version__}\n"
     text = runner.invoke(kurbel, ["--help"]).stdout
-    listed = [line.split()[0] for line in text.partition("Commands:")[2].splitlines() if line.strip()]
+    listed = [
+        line.split()[0]
+        for line in text.partition("Commands:")[2].partition("Exit status")[0].splitlines()
+        if line.strip()
+    ]
     assert tuple(listed) == COMMANDS
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from kurbel.errors import UsageError
 from kurbel.render import Look, render
-from kurbel.report.tables import Column, Part, Report
+from kurbel.report.tables import Column, Part, PlaceTable, Report
 from render.sample_report import HIGH, ONE, PHI, REPORT
 
 VALUES = st.lists(st.none() | st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=6)
@@ -52,7 +52,17 @@ def test_json_reads_back_exactly(values: list[float | None]) -> None:
 def test_any_name_survives_in_csv(name: str) -> None:
     report = report_of([1.0], name)
     two = report._replace(parts=report.parts * 2)
-    assert read_csv(render(two, Look("csv")))[1][0] == name
+    assert read_csv(render(two, Look("csv")))[1][0].removeprefix("'") == name.removeprefix("'")
+
+
+@pytest.mark.parametrize("name", ["=2+5", "+2", "-2+3", "@SUM(A1:A9)", '=HYPERLINK("http://a.b","c")', "＝2+5"])
+def test_no_name_is_a_formula_to_a_spreadsheet(name: str) -> None:
+    part = Part(name, (PHI._replace(values=(0.0,)), Column("x", "x", "x", "m", (-2.0,))))
+    places = PlaceTable("t", "t", ("part",), ((name,),), (Column("s", "s", "s", "Pa", (-3.0,)),))
+    report = Report("t", "forces", "m", "cylinders", (part, part))
+    assert read_csv(render(report, Look("csv")))[1] == ["'" + name, "0", "-2.0"]
+    alone = Report("t", "accuracy", "m", "scenes", (Part(name, (), place_tables=(places,)),))
+    assert read_csv(render(alone, Look("csv")))[1] == ["'" + name, "t", "'" + name, "-3.0"]
 
 
 @given(st.text(st.characters(blacklist_categories=["Cs"])), st.sampled_from(["utf-8", "ascii"]))

@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 import click
 
 from kurbel import __version__
+from kurbel.cli.exit_status import BROKEN, DONE, INTERNAL, INTERRUPTED, NO_SOLUTION, WRONG, exit_statuses
 from kurbel.errors import KurbelError, MachineFileError
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
@@ -23,8 +24,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 COMMANDS = ("table", "motion", "forces", "flywheel", "stress", "accuracy", "check", "example", "schema")
 """In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""
 
-_INTERRUPTED = 130
-_INTERNAL = 70
 _DEBUG = "KURBEL_DEBUG"
 
 
@@ -50,16 +49,23 @@ class _Kurbel(click.Group):
 
         raise click.UsageError(f"no command '{name}'{did_you_mean(name, COMMANDS)}", ctx)
 
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:  # before click writes an empty line, which may fail
+            raise click.Abort from None
+
     def main(self, *args: Any, **extra: Any) -> NoReturn:
         _survive_missing_characters()
         warnings.simplefilter("error", RuntimeWarning)  # what numpy warns of is no result
         try:
             status = super().main(*args, **(extra | {"standalone_mode": False}))
         except click.ClickException as error:
-            error.show()
-            status = error.exit_code
+            status = _failed(_shown(error), error.exit_code)
         except click.Abort:
-            status = _INTERRUPTED
+            status = INTERRUPTED
+        except SystemExit:  # click's answer to a reader of its help that leaves early
+            status = DONE
         except MachineFileError as error:
             status = _failed(error.pretty(), error.exit_status)
         except KurbelError as error:
@@ -75,7 +81,7 @@ class _Kurbel(click.Group):
             status = _failed(
                 f"Error: this is a fault in kurbel, not in your input: {type(error).__name__}: {error}\n"
                 f"Please report it; {_DEBUG}=1 shows where it happened.",
-                _INTERNAL,
+                INTERNAL,
             )
         sys.exit(status if isinstance(status, int) else 0)
 
@@ -87,23 +93,41 @@ def _survive_missing_characters() -> None:
             stream.reconfigure(errors="replace")
 
 
+def _shown(error: click.ClickException) -> str:
+    from io import StringIO
+
+    text = StringIO()
+    error.show(text)
+    return text.getvalue()
+
+
 def _failed(message: str, status: int) -> int:
+    """Say what went wrong and return the status, which stays the same where standard error is full or closed."""
     from kurbel.render.charset import Charset
 
     charset = Charset(getattr(sys.stderr, "encoding", None) or "utf-8")
-    click.echo("\n".join(charset.text(line) for line in message.splitlines()), err=True)
+    try:
+        click.echo("\n".join(charset.text(line) for line in message.splitlines()), err=True)
+    except (OSError, ValueError):
+        from kurbel.render.output import silence
+
+        silence(sys.stderr)
     return status
 
 
 def _output_failed(error: OSError) -> int:
-    from kurbel.render.output import silence_stdout
+    from kurbel.render.output import silence
 
-    silence_stdout()
+    silence(sys.stdout)
     named = f"{error.filename}: " if error.filename else ""
-    return _failed(f"Error: {named}{error.strerror or error}", KurbelError.exit_status)
+    return _failed(f"Error: {named}{error.strerror or error}", WRONG)
 
 
-@click.group(cls=_Kurbel, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=_Kurbel,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=exit_statuses(BROKEN, NO_SOLUTION),
+)
 @click.version_option(__version__, prog_name="kurbel", message="%(prog)s %(version)s")
 def kurbel() -> None:
     """Calculate crank drives: motion, forces, friction, flywheel and crankshaft of piston machines.
@@ -120,8 +144,7 @@ def kurbel() -> None:
       kurbel forces engine.yaml                 forces and key values
       kurbel flywheel engine.yaml               turning effort, flywheel, speed
 
-    Results go to standard output, everything else to standard error. Exit status: 0 done, 1 a limit
-    is broken (check), 2 wrong usage or input, 3 no solution.
+    Results go to standard output, everything else to standard error.
     """
 
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.output_options import Output, output_options
+from kurbel.cli.exit_status import BROKEN, NO_SOLUTION, exit_statuses
+from kurbel.cli.output_options import Output, loaded, output_options
 
 
-@click.command(short_help="Error against run time; stiff and extreme cases.")
+@click.command(short_help="Error against run time; stiff and extreme cases.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
 @click.argument("file", metavar="[FILE]", required=False)
 @click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")
-@click.option(
-    "--extremes", is_flag=True, help="Put stiff and extreme machines to kurbel instead; status 1 if one fails."
-)
+@click.option("--extremes", is_flag=True, help="Put stiff and extreme machines to kurbel instead.")
 @click.option("--plot", "picture", metavar="FILE.svg|png", help="Draw the picture too; needs matplotlib.")
 @output_options
 def accuracy(file: str | None, quick: bool, extremes: bool, picture: str | None, output: Output) -> int:
@@ -28,10 +27,10 @@ def accuracy(file: str | None, quick: bool, extremes: bool, picture: str | None,
 
     if picture is not None:
         check_plot(picture)
-    from kurbel.machine_file import load, loads
+    from kurbel.machine_file import loads
     from kurbel.report.accuracy import accuracy_report
 
-    report = accuracy_report(None if file is None else load(file), quick, loads)
+    report = accuracy_report(None if file is None else loaded(file, output.file_name, picture), quick, loads)
     output.write(report)
     if picture is not None:
         draw(report, picture)

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import click
 
+from kurbel.cli.exit_status import BROKEN, DONE, NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import machine_file
 
 
-@click.command(short_help="Read and check a machine file and its limits.")
+@click.command(short_help="Read and check a machine file and its limits.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
 @machine_file
 def check(file: str) -> int:
     """Read the machine in FILE and say what will be computed, what is left out and why.
 
-    Where the file gives 'limits', compare the key values with them. Exit status: 0 all is well, 1 a limit is
-    broken, 2 the file has faults.
+    Where the file gives 'limits', compare the key values with them.
     """
     from kurbel.cli import COMMANDS
     from kurbel.machine_file import load
@@ -22,5 +22,8 @@ def check(file: str) -> int:
     from kurbel.report.check import checked
 
     result = checked(load(file), COMMANDS)
-    write_stdout(listing(result, stdout_charset()))
-    return int(result.broken)
+    write_stdout((listing(result, stdout_charset()),))
+    if result.errors:  # all of them, as one of the gravest kind
+        gravest = min(result.errors, key=lambda error: error.exit_status)
+        raise type(gravest)("\n".join(map(str, result.errors)))
+    return BROKEN if result.broken else DONE

@@ -6,13 +6,15 @@ import os
 
 import click
 
+from kurbel.cli.exit_status import exit_statuses
+
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # a wheel carries the machines inside the package; in a checkout they lie beside src, where people look for them
 _PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, os.pardir, "configs"))
 _SUFFIX = ".yaml"
 
 
-@click.command(short_help="List the shipped machines, or print one.")
+@click.command(short_help="List the shipped machines, or print one.", epilog=exit_statuses())
 @click.argument("name", required=False)
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
 def example(name: str | None, file_name: str | None) -> None:
@@ -29,7 +31,7 @@ def example(name: str | None, file_name: str | None) -> None:
     elif file_name is not None:
         write_text("".join(line + "\n" for line in _listing()), file_name)
     else:
-        write_stdout("".join(stdout_charset().text(line) + "\n" for line in _listing()))
+        write_stdout(stdout_charset().text(line) + "\n" for line in _listing())
 
 
 def _folder() -> str:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import click
 
+from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import Asked, machine_table
 
 
-@click.command(short_help="Turning effort, flywheel and speed line of the machine.")
+@click.command(short_help="Turning effort, flywheel and speed line of the machine.", epilog=exit_statuses(NO_SOLUTION))
 @machine_table
 def flywheel(asked: Asked) -> None:
     """Print the turning effort of the whole machine, its excess work, and what the flywheel makes of it.
 
     Every cylinder counts at the angle of its crank; T is referred to the radius of crank 1, T_b is the share of the
     inertia forces in it. E is the excess of the work over that of the resistance, omega the speed under the load of
-    FILE, which may depend on it. Key values are exact and do not depend on --step. Exit status 3: the machine stalls,
-    or its coupling is in resonance with nothing to damp it. FILE may be - for standard input.
+    FILE, which may depend on it. Key values are exact and do not depend on --step. FILE may be - for standard input.
     """
     from kurbel.report.flywheel import flywheel_report
 

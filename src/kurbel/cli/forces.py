@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import click
 
+from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import Asked, machine_table
 
 
-@click.command(short_help="Forces, work and friction loss of every cylinder.")
+@click.command(short_help="Forces, work and friction loss of every cylinder.", epilog=exit_statuses(NO_SOLUTION))
 @machine_table
 def forces(asked: Asked) -> None:
     """Print the forces in the crank train over the working cycle, and the key values, for every cylinder of FILE.
@@ -19,5 +20,5 @@ def forces(asked: Asked) -> None:
     from kurbel.report.forces import forces_report
 
     case = asked.case()
-    angles = asked.crank_angles(360.0 * case.machine.revolutions)
+    angles = asked.crank_angles(360.0 * case.machine.revolutions, len(case.cylinders))
     asked.output.write(forces_report(case, angles, asked.columns, asked.units))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import click
 
+from kurbel.cli.exit_status import exit_statuses
 from kurbel.cli.output_options import Asked, machine_table
 
 
-@click.command(short_help="Displacement, velocity, acceleration of any mechanism.")
+@click.command(short_help="Displacement, velocity, acceleration of any mechanism.", epilog=exit_statuses())
 @machine_table
 def motion(asked: Asked) -> None:
     """Print the motion of every cylinder's mechanism in FILE over one turn of the crank, and the key values.
@@ -18,4 +19,5 @@ def motion(asked: Asked) -> None:
     from kurbel.report.motion import motion_report
 
     case = asked.case()
-    asked.output.write(motion_report(case, asked.crank_angles(360.0), asked.columns, asked.units))
+    angles = asked.crank_angles(360.0, len(case.cylinders))
+    asked.output.write(motion_report(case, angles, asked.columns, asked.units))

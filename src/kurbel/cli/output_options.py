@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -11,6 +11,7 @@ import click
 from kurbel.render import FORMATS, LAYOUTS, Look
 
 if TYPE_CHECKING:
+    from kurbel.machine import Machine
     from kurbel.report.tables import Report
     from kurbel.solver.case import Case
 
@@ -158,13 +159,25 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return _look_options(with_output)
 
 
-def crank_angles(step: float, angles: tuple[float, ...] | None, end: float) -> tuple[float, ...]:
-    """Return the angles given, or 0, step, 2 step, … `end` in degrees."""
-    if angles is not None:
-        return angles
-    from kurbel.report.angles import stepped
+def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts: int) -> Sequence[float]:
+    """Return the angles given, or 0, step, 2 step, … `end` in degrees; parts: cylinders or L/R that have them each."""
+    from kurbel.report.angles import check_rows, stepped
 
-    return stepped(step, end)
+    if angles is None:
+        return stepped(step, end, parts)
+    check_rows(len(angles), parts)
+    return angles
+
+
+def loaded(file: str, *outputs: str | None) -> Machine:
+    """Read the machine. Raises UsageError where an output would overwrite its file, or a trace that it names."""
+    from kurbel.machine_file import load
+    from kurbel.render.output import refuse_overwriting
+
+    machine = load(file)
+    for output in outputs:
+        refuse_overwriting(output, (file, *machine.trace_files))
+    return machine
 
 
 class Asked(NamedTuple):
@@ -179,14 +192,13 @@ class Asked(NamedTuple):
 
     def case(self) -> Case:
         """Read the machine and return it with its results, none of which is computed yet."""
-        from kurbel.machine_file import load
         from kurbel.solver.case import Case
 
-        return Case(load(self.file))
+        return Case(loaded(self.file, self.output.file_name))
 
-    def crank_angles(self, end: float) -> tuple[float, ...]:
-        """Return the crank angles in degrees to print, from 0 to `end` where none are named."""
-        return crank_angles(self.step, self.angles, end)
+    def crank_angles(self, end: float, parts: int = 1) -> Sequence[float]:
+        """Return the crank angles in degrees to print for each part, from 0 to `end` where none are named."""
+        return crank_angles(self.step, self.angles, end, parts)
 
 
 def machine_table(command: Callable[..., None]) -> Callable[..., Any]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import click
 
+from kurbel.cli.exit_status import exit_statuses
 
-@click.command(short_help="JSON Schema of the machine file, for editors.")
+
+@click.command(short_help="JSON Schema of the machine file, for editors.", epilog=exit_statuses())
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
 def schema(file_name: str | None) -> None:
     """Print the JSON Schema (draft-07) of the machine file; editors complete and check with it.

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import click
 
+from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import Asked, machine_table
 
 
-@click.command(short_help="Bearing forces and stresses of the crankshaft.")
+@click.command(short_help="Bearing forces and stresses of the crankshaft.", epilog=exit_statuses(NO_SOLUTION))
 @machine_table
 @click.option("--places", "places_only", is_flag=True, help="Only the stresses place by place; as csv one line each.")
 def stress(asked: Asked, places_only: bool) -> None:

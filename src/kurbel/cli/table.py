@@ -6,10 +6,11 @@ import math
 
 import click
 
+from kurbel.cli.exit_status import exit_statuses
 from kurbel.cli.output_options import Number, Output, Words, angle_options, crank_angles, output_options, units_option
 
 
-@click.command(short_help="Zusammenstellung 112 for any L/R; needs no machine file.")
+@click.command(short_help="Zusammenstellung 112 for any L/R; needs no machine file.", epilog=exit_statuses())
 @click.option(
     "--ratio",
     "ratios",
@@ -64,4 +65,6 @@ def table(
     """
     from kurbel.report.zusammenstellung import RATIOS, zusammenstellung
 
-    output.write(zusammenstellung(ratios or RATIOS, rows, crank_angles(step, angles, 180), formula, compare))
+    ratios = ratios or RATIOS
+    printed = crank_angles(step, angles, 180, len(ratios))
+    output.write(zusammenstellung(ratios, rows, printed, formula, compare))

@@ -277,3 +277,12 @@ class Machine:
     def revolutions(self) -> int:
         """Revolutions of the shaft until everything repeats: 1, or 2 where any cylinder works in four strokes."""
         return CYCLES[self._common_cycle]
+
+    @property
+    def trace_files(self) -> tuple[str, ...]:
+        """The files that the traces of the machine were read from."""
+        indicators = [
+            piston.indicator for cylinder in self.cylinders for piston in cylinder.pistons if piston.indicator
+        ]
+        files = (getattr(end, "file", None) for one in indicators for end in (one.head_end, one.crank_end))
+        return tuple(dict.fromkeys(file for file in files if file))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.render.charset import Charset
@@ -36,6 +37,11 @@ class Look(NamedTuple):
 
 def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
     """Return the report as text that ends with a newline; the same report gives the same text every time."""
+    return "".join(pieces(report, look))
+
+
+def pieces(report: Report, look: Look) -> Iterable[str]:
+    """Return the text of the report piece by piece, each made when it is asked for: a long table is never held."""
     if look.format == "csv":
         from kurbel.render.csv_text import csv_text
 

@@ -30,20 +30,20 @@ class _Grid(NamedTuple):
         return sum(cells + _GAP for cells in (self.name, self.symbol, self.unit) if cells)
 
 
-def table(sheet: Sheet, look: Look) -> list[Line]:
-    """Return the lines of the sheet, block under block."""
+def table(sheet: Sheet, look: Look) -> Iterator[Line]:
+    """Yield the lines of the sheet, block under block."""
     grid = _grid(sheet)
     if look.width is not None and look.width < grid.side + 2 * grid.cell:
         sheet = sheet._replace(named_beside=False)
         grid = _grid(sheet)
     count = len(sheet.heads[0].cells)
     sizes = _book_sizes(count) if look.width is None else _fitting_sizes(count, (look.width - grid.side) // grid.cell)
-    lines: list[Line] = []
     start = 0
     for size in sizes:
-        lines += [*([BLANK] if lines else []), *_block(sheet, grid, slice(start, start + size), look.charset.rule)]
+        if start:
+            yield BLANK
+        yield from _block(sheet, grid, slice(start, start + size), look.charset.rule)
         start += size
-    return lines
 
 
 def _book_sizes(count: int) -> list[int]:
@@ -61,12 +61,12 @@ def _fitting_sizes(count: int, most: int) -> list[int]:
 def _grid(sheet: Sheet) -> _Grid:
     rows = [*sheet.heads, *(row for band in sheet.bands for row in band.rows)]
     name = max(width(band.name) for band in sheet.bands) if sheet.named_beside else 0
-    cells = max((len(text) for row in rows for text in row.cells), default=0)
+    cells = max(row.cells.width for row in rows)
     return _Grid(name, max(width(row.symbol) for row in rows), max(width(row.unit) for row in rows), cells + _GAP)
 
 
 def _block(sheet: Sheet, grid: _Grid, across: slice, rule: str) -> Iterator[Line]:
-    count = len(sheet.heads[0].cells[across])
+    count = len(range(len(sheet.heads[0].cells))[across])
     ruled = line(rule * (grid.side + count * grid.cell), "rule")
     for head in sheet.heads:
         yield _line("", head, grid, across, "head")
@@ -86,5 +86,5 @@ def _line(name: str, row: Row, grid: _Grid, across: slice, role: str) -> Line:
     side.append(Piece(symbol + gap, "head" if role == "head" else "symbol"))
     if grid.unit:
         side.append(Piece(left(row.unit, grid.unit) + gap, "unit"))
-    cells = (Piece(right(text, grid.cell), "mark" if text.endswith("*") else role) for text in row.cells[across])
+    cells = (Piece(right(text, grid.cell), "mark" if text.endswith("*") else role) for text in row.cells.within(across))
     return (*side, *cells)

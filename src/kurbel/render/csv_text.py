@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import repeat
 from typing import TYPE_CHECKING
 
 from kurbel.render.numbers import exact, whole_if_integral
@@ -11,15 +12,19 @@ if TYPE_CHECKING:
     from kurbel.render import Look
     from kurbel.report.tables import Column, Part, Report, Value
 
+_FORMULA = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
+"""What a formula begins with in a spreadsheet, also in wide characters."""
 
-def csv_text(report: Report, look: Look) -> str:
-    """Return the table as CSV with `\\n` line ends; with the decimal comma, `;` separates the columns.
+
+def csv_text(report: Report, look: Look) -> Iterator[str]:
+    """Yield the rows of the table as CSV with `\\n` line ends; with the decimal comma, `;` separates the columns.
 
     Several cylinders stand under one another, told apart by a first column; a column that one of them has not is
     empty there. Tables of places are written where nothing stands over the crank angle, one under another likewise.
     """
     separator = ";" if look.comma else ","
-    return "".join(separator.join(_quoted(text, separator) for text in row) + "\n" for row in _rows(report, look))
+    for row in _rows(report, look):
+        yield separator.join(_quoted(text, separator) for text in row) + "\n"
 
 
 def _rows(report: Report, look: Look) -> Iterator[list[str]]:
@@ -63,7 +68,8 @@ def _place_rows(report: Report, look: Look) -> Iterator[list[str]]:
     for part, table in tables:
         texts = {head(column): [_number(v, look.digits, look) for v in column.values] for column in table.columns}
         texts |= {
-            one: [look.charset.text(name) for name in names] for one, names in zip(table.heads, zip(*table.names))
+            one: [_harmless(look.charset.text(name)) for name in names]
+            for one, names in zip(table.heads, zip(*table.names))
         }
         blank = [""] * len(table.names)
         for row in zip(*(texts.get(name, blank) for name in (*heads, *columns))):
@@ -78,16 +84,21 @@ def head(column: Column) -> str:
 
 def _name(part: Part, look: Look) -> str:
     if isinstance(part.name, str):
-        return look.charset.text(part.name)
+        return _harmless(look.charset.text(part.name))
     return _number(whole_if_integral(part.name), None, look)
 
 
-def _texts(column: Column | None, count: int, look: Look) -> list[str]:
+def _harmless(name: str) -> str:
+    """Return a name that a spreadsheet does not take for a formula: an apostrophe marks it as text."""
+    return f"'{name}" if name[:1] in _FORMULA else name
+
+
+def _texts(column: Column | None, count: int, look: Look) -> Iterator[str]:
     if column is None:
-        return [""] * count
+        return repeat("", count)
     if column.id == "phi":
-        return ["" if value is None else _number(whole_if_integral(value), None, look) for value in column.values]
-    return [_number(value, look.digits, look) for value in column.values]
+        return ("" if value is None else _number(whole_if_integral(value), None, look) for value in column.values)
+    return (_number(value, look.digits, look) for value in column.values)
 
 
 def _number(value: Value, digits: int | None, look: Look) -> str:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Sequence
+from itertools import chain
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel import __version__
 from kurbel.errors import UsageError
@@ -17,12 +19,12 @@ FORMAT = 1
 """Number of the output format; it changes when a script that reads it would break."""
 
 
-def json_text(report: Report, look: Look) -> str:
-    """Return the report as one JSON object, each column on a line of its own. Raises UsageError for a decimal comma."""
+def json_text(report: Report, look: Look) -> Iterator[str]:
+    """Return one JSON object in pieces, each column on a line of its own. Raises UsageError for a decimal comma."""
     if look.comma:
         raise UsageError("--decimal comma: JSON has the decimal point only; use it with table, csv or markdown")
     content = _report(report, look.digits)
-    return "".join(_lines(content, "", ascii_only=not look.charset.has("φ"))) + "\n"
+    return chain(_pieces(content, "", ascii_only=not look.charset.has("φ")), "\n")
 
 
 def _report(report: Report, digits: int | None) -> dict[str, Any]:
@@ -78,9 +80,9 @@ def _place_tables(part: Part, digits: int | None) -> dict[str, Any]:
 
 def _column(column: Column, digits: int | None) -> dict[str, Any]:
     if column.id == "phi":
-        values: list[Value] = [None if value is None else whole_if_integral(value) for value in column.values]
+        values = _Values(column.values, lambda value: None if value is None else whole_if_integral(value))
     else:
-        values = [_value(value, digits) for value in column.values]
+        values = _Values(column.values, lambda value: _value(value, digits))
     content: dict[str, Any] = {"id": column.id, "symbol": column.symbol, "unit": column.unit, "values": values}
     return content | ({"marked": list(column.marked)} if column.marked else {})
 
@@ -98,18 +100,40 @@ def _value(value: Value, digits: int | None) -> Value:
     return None if value is None else rounded(value, digits)
 
 
-def _lines(node: Any, indent: str, ascii_only: bool) -> list[str]:
-    """Return a node on one line, or its entries on lines of their own where one of them holds an object."""
-    if not _holds_object(node):
-        return [json.dumps(node, ensure_ascii=ascii_only, allow_nan=False)]
-    deeper = indent + " "
-    if isinstance(node, dict):
-        keys = [json.dumps(key, ensure_ascii=ascii_only) + ": " for key in node]
-        opening, children, closing = "{", list(node.values()), "}"
+class _Values(NamedTuple):
+    """The values of a column, and how each is written."""
+
+    values: Sequence[Value]
+    written: Callable[[Value], Value]
+
+    def pieces(self) -> Iterator[str]:
+        """Yield the list in pieces that are short beside a long column."""
+        yield "["
+        for start in range(0, len(self.values), _AT_ONCE):
+            piece = [self.written(value) for value in self.values[start : start + _AT_ONCE]]
+            yield (", " if start else "") + json.dumps(piece, allow_nan=False)[1:-1]
+        yield "]"
+
+
+_AT_ONCE = 10_000
+
+
+def _pieces(node: Any, indent: str, ascii_only: bool) -> Iterator[str]:
+    """Yield a node on one line, or its entries on lines of their own where one of them holds an object."""
+    if isinstance(node, _Values):
+        yield from node.pieces()
+    elif not isinstance(node, (dict, list)):
+        yield json.dumps(node, ensure_ascii=ascii_only, allow_nan=False)
     else:
-        keys, opening, children, closing = [""] * len(node), "[", node, "]"
-    texts = [key + "".join(_lines(child, deeper, ascii_only)) for key, child in zip(keys, children)]
-    return [opening, "\n", deeper, f",\n{deeper}".join(texts), closing]
+        broken, deeper = _holds_object(node), indent + " "
+        before, between = ("\n" + deeper, ",\n" + deeper) if broken else ("", ", ")
+        opening, closing = "{}" if isinstance(node, dict) else "[]"
+        keys = [json.dumps(key, ensure_ascii=ascii_only) + ": " for key in node] if opening == "{" else [""] * len(node)
+        yield opening + before
+        for index, (key, child) in enumerate(zip(keys, node.values() if isinstance(node, dict) else node)):
+            yield (between if index else "") + key
+            yield from _pieces(child, deeper, ascii_only)
+        yield closing
 
 
 def _holds_object(node: Any) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 
@@ -22,6 +22,7 @@ def line(text: str, role: str = "text") -> Line:
     return (Piece(text, role),)
 
 
-def plain(lines: Iterable[Line]) -> str:
-    """Return the lines as text, without blanks at their ends."""
-    return "".join("".join(piece.text for piece in pieces).rstrip() + "\n" for pieces in lines)
+def plain(lines: Iterable[Line]) -> Iterator[str]:
+    """Yield the lines as text, without blanks at their ends."""
+    for pieces in lines:
+        yield "".join(piece.text for piece in pieces).rstrip() + "\n"

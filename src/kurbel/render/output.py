@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import stat
 import sys
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from kurbel.errors import UsageError
-from kurbel.render import Look, render
+from kurbel.render import Look, pieces
 from kurbel.render.charset import Charset
 
 if TYPE_CHECKING:
     from kurbel.report.tables import Report
 
-_MOST_COLOURED_ROWS = 400
+_MOST_COLOURED_LINES = 400
 
 
 def write_report(report: Report, look: Look, file_name: str | None = None) -> None:
@@ -24,16 +28,16 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
     text. Raises UsageError where it cannot be written.
     """
     if file_name is not None and file_name != "-":
-        write_file(file_name, render(report, look._replace(encoding="utf-8", width=None)))
+        write_file(file_name, pieces(report, look._replace(encoding="utf-8", width=None)))
         return
     stdout = _stdout()
     look = look._replace(encoding=stdout_charset().encoding)
     if look.format != "table" or not stdout.isatty():
-        write_stdout(render(report, look))
+        write_stdout(pieces(report, look))
         return
     look = look._replace(width=_terminal_width())
     if not _coloured(report, look):
-        write_stdout(render(report, look))
+        write_stdout(pieces(report, look))
 
 
 def _coloured(report: Report, look: Look) -> bool:
@@ -42,8 +46,8 @@ def _coloured(report: Report, look: Look) -> bool:
         return False
     from kurbel.render.page import page
 
-    lines = page(report, look)
-    if len(lines) > _MOST_COLOURED_ROWS:
+    lines = list(islice(page(report, look), _MOST_COLOURED_LINES + 1))
+    if len(lines) > _MOST_COLOURED_LINES:
         return False
     from kurbel.render.terminal import write_lines
 
@@ -67,8 +71,8 @@ def stdout_charset() -> Charset:
     return Charset(getattr(_stdout(), "encoding", None) or "utf-8")
 
 
-def write_stdout(text: str, encoding: str | None = None) -> None:
-    """Write to standard output, as bytes so that line ends stay `\\n`; a reader that leaves early is no fault.
+def write_stdout(texts: Iterable[str], encoding: str | None = None) -> None:
+    """Write to standard output, as bytes so that line ends stay `\n`; a reader that leaves early is no fault.
 
     Raises UsageError where it cannot be written, on a full disk say.
     """
@@ -76,36 +80,94 @@ def write_stdout(text: str, encoding: str | None = None) -> None:
     try:
         if hasattr(stdout, "buffer"):
             stdout.flush()
-            stdout.buffer.write(text.encode(encoding or stdout.encoding or "utf-8", "replace"))
+            for text in texts:
+                stdout.buffer.write(text.encode(encoding or stdout.encoding or "utf-8", "replace"))
         else:
-            stdout.write(text)
+            stdout.writelines(texts)
         stdout.flush()
     except BrokenPipeError:
-        silence_stdout()
+        silence(stdout)
     except OSError as error:
-        silence_stdout()
+        silence(stdout)
         raise UsageError(f"cannot write to standard output: {error.strerror}") from None
 
 
-def silence_stdout() -> None:
-    """Let what is still buffered go nowhere: Python would complain about it at its end."""
+def silence(stream: Any) -> None:
+    """Let what is still buffered go nowhere: Python would complain about it at its end, and change the exit status."""
     with suppress(OSError, ValueError, AttributeError):  # there may be no real file behind it
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def write_text(text: str, file_name: str | None = None) -> None:
     """Write UTF-8 text unchanged to a file, or to standard output whatever its encoding: a file that is piped on."""
     if file_name is not None and file_name != "-":
-        write_file(file_name, text)
+        write_file(file_name, (text,))
     else:
-        write_stdout(text, "utf-8")
+        write_stdout((text,), "utf-8")
 
 
-def write_file(file_name: str, text: str) -> None:
-    """Write a file as UTF-8 with `\\n` line ends. Raises UsageError where it cannot be written."""
+def write_file(file_name: str, texts: Iterable[str]) -> None:
+    """Write a file as UTF-8 with `\n` line ends, whole or not at all. Raises UsageError where it cannot be written."""
     try:
-        with open(file_name, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+        with replaced(file_name) as path, open(path, "w", encoding="utf-8", newline="\n") as file:
+            file.writelines(texts)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise UsageError(f"cannot write {file_name or 'to an empty file name'}: {reason}") from None
+
+
+@contextmanager
+def replaced(file_name: str) -> Iterator[str]:
+    """Yield the path to write to: a new file beside the wanted one, which takes its place once it is whole.
+
+    What is no file, such as a pipe or /dev/stdout, is written to as it is.
+    """
+    old = _status(file_name)
+    if old and (not stat.S_ISREG(old.st_mode) or _is_open(old)):
+        yield file_name
+        return
+    if old and not os.access(file_name, os.W_OK):  # a rename would not ask
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), file_name)
+    target = os.path.realpath(file_name)  # a link stays one
+    beside = os.path.join(os.path.dirname(target), f".kurbel-{os.urandom(8).hex()}{os.path.splitext(file_name)[1]}")
+    try:
+        os.close(os.open(beside, os.O_CREAT | os.O_EXCL, 0o666))
+        if old:
+            os.chmod(beside, stat.S_IMODE(old.st_mode))
+        yield beside
+        os.replace(beside, target)
+    except BaseException:  # an interrupt, too, leaves nothing behind
+        with suppress(OSError):
+            os.unlink(beside)
+        raise
+
+
+def _status(file_name: str) -> os.stat_result | None:
+    if not os.path.basename(file_name):
+        missing = errno.EISDIR if file_name else errno.ENOENT
+        raise OSError(missing, os.strerror(missing))
+    try:
+        return os.stat(file_name)
+    except FileNotFoundError:
+        return None
+
+
+def _is_open(status: os.stat_result) -> bool:
+    """Whether this file is where standard output or standard error goes: /dev/stdout by its other name."""
+    for descriptor in (1, 2):
+        with suppress(OSError):
+            if os.path.samestat(status, os.fstat(descriptor)):
+                return True
+    return False
+
+
+def refuse_overwriting(file_name: str | None, read: Iterable[str]) -> None:
+    """Raise UsageError where a file to be written is one of those that are read, by whatever name; - is stdin."""
+    if file_name is None or file_name == "-":
+        return
+    for other in read:
+        with suppress(OSError, ValueError):
+            status = os.fstat(0) if other == "-" else os.stat(other)
+            if stat.S_ISREG(status.st_mode) and os.path.samestat(os.stat(file_name), status):
+                shown = "standard input" if other == "-" else other
+                raise UsageError(f"{file_name} would overwrite {shown}, which is read; name another file")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from kurbel.render.lines import BLANK, Line, line
@@ -13,20 +14,21 @@ if TYPE_CHECKING:
     from kurbel.report.tables import Report
 
 
-def page(report: Report, look: Look) -> list[Line]:
-    """Return the lines of the whole page."""
+def page(report: Report, look: Look) -> Iterator[Line]:
+    """Yield the lines of the whole page."""
     if look.layout == "rows":
         from kurbel.render.rows import table
     else:
         from kurbel.render.book import table
-    lines = [line(look.charset.text(report.title), "title"), *(line(look.charset.text(one)) for one in report.head)]
+    yield line(look.charset.text(report.title), "title")
+    yield from (line(look.charset.text(one)) for one in report.head)
     for sheet in sheets(report, look):
-        lines += [BLANK, *table(sheet, look)]
+        yield BLANK
+        yield from table(sheet, look)
     if any(part.place_tables for part in report.all_parts):
         from kurbel.render.place_table import place_tables
 
         for place_lines in place_tables(report, look):
-            lines += [BLANK, *place_lines]
+            yield from (BLANK, *place_lines)
     for paragraph in prose(report, look):
-        lines += [BLANK, *paragraph]
-    return lines
+        yield from (BLANK, *paragraph)

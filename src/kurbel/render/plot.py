@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.errors import UsageError
+from kurbel.render.output import replaced
 
 if TYPE_CHECKING:
     from kurbel.report.tables import Part, PlaceTable, Report
@@ -76,7 +77,8 @@ def draw(report: Report, file_name: str) -> None:
         handles = {label: line for axis in axes.flat for line, label in zip(*axis.get_legend_handles_labels())}
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=2 * across, fontsize=8)
         try:
-            figure.savefig(file_name, metadata={"Date": None} if file_name.lower().endswith(".svg") else None)
+            with replaced(file_name) as path:
+                figure.savefig(path, metadata={"Date": None} if file_name.lower().endswith(".svg") else None)
         except OSError as error:
             raise UsageError(f"cannot write {file_name}: {error.strerror or error}") from None
 

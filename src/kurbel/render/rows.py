@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 _GAP = 3
 
 
-def table(sheet: Sheet, look: Look) -> list[Line]:
-    """Return the lines of the sheet, part under part."""
-    lines: list[Line] = []
-    for band in sheet.bands:
-        lines += [*([BLANK] if lines else []), *_band(band, sheet.heads, look.charset.rule)]
-    return lines
+def table(sheet: Sheet, look: Look) -> Iterator[Line]:
+    """Yield the lines of the sheet, part under part."""
+    for index, band in enumerate(sheet.bands):
+        if index:
+            yield BLANK
+        yield from _band(band, sheet.heads, look.charset.rule)
 
 
 def _band(band: Band, heads: tuple[Row, ...], rule: str) -> Iterator[Line]:
     columns = [*heads, *band.rows]
-    widths = [max(width(text) for text in (row.symbol, row.unit, *row.cells)) for row in columns]
+    widths = [max(width(row.symbol), width(row.unit), row.cells.width) for row in columns]
     ruled = line(rule * (sum(widths) + _GAP * (len(widths) - 1)), "rule")
     if band.name:
         yield line(band.name, "name")

@@ -2,16 +2,49 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import cached_property
 from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
-from kurbel.render.numbers import DIGITS, angle_scale, cell, scale_of, whole_if_integral
+from kurbel.render.numbers import DIGITS, Scale, angle_scale, cell, scale_of, whole_if_integral
 
 if TYPE_CHECKING:
     from kurbel.render import Look
-    from kurbel.report.tables import Column, Part, Report
+    from kurbel.report.tables import Column, Part, Report, Value
 
 MARK = "*"
+
+
+class Cells:
+    """The values of a column as text, each made when it is asked for, so that a long table is never held.
+
+    pad: what stands behind a cell that is not marked.
+    """
+
+    def __init__(self, column: Column, scale: Scale, comma: bool, pad: str) -> None:
+        self._values, self._scale, self._comma, self._pad = column.values, scale, comma, pad
+        self._marked = frozenset(column.marked)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __iter__(self) -> Iterator[str]:
+        return self.within(slice(None))
+
+    def within(self, part: slice) -> Iterator[str]:
+        """Yield the cells of a part of the column."""
+        for index in range(len(self._values))[part]:
+            yield self._text(self._values[index]) + (MARK if index in self._marked else self._pad)
+
+    def _text(self, value: Value) -> str:
+        return cell(value, self._scale, self._comma)
+
+    @cached_property
+    def width(self) -> int:
+        """Width of the widest: with the same decimals for all, that of the largest or the smallest value."""
+        ends = (end((value for value in self._values if value is not None), default=None) for end in (min, max))
+        return max(len(self._text(end)) for end in ends) + len(self._pad)
 
 
 class Row(NamedTuple):
@@ -19,7 +52,7 @@ class Row(NamedTuple):
 
     symbol: str
     unit: str
-    cells: tuple[str, ...]
+    cells: Cells
 
 
 class Band(NamedTuple):
@@ -40,11 +73,11 @@ class Sheet(NamedTuple):
     named_beside: bool
 
 
-def sheets(report: Report, look: Look) -> list[Sheet]:
-    """Return one sheet for each run of parts with the same crank angles."""
+def sheets(report: Report, look: Look) -> Iterator[Sheet]:
+    """Yield one sheet for each run of parts with the same crank angles."""
     parts = [part for part in report.all_parts if part.columns]
     runs = (tuple(run) for _, run in groupby(parts, lambda part: part.columns[0].values))
-    return [_sheet(report, run, look) for run in runs]
+    return (_sheet(report, run, look) for run in runs)
 
 
 def _sheet(report: Report, parts: tuple[Part, ...], look: Look) -> Sheet:
@@ -54,11 +87,12 @@ def _sheet(report: Report, parts: tuple[Part, ...], look: Look) -> Sheet:
         for part in parts
     )
     phi = parts[0].columns[0]
-    heads = [_angles(phi, look, pad)]
+    heads = [_scaled(phi, angle_scale(phi.values), look, pad)]
     if report.mirrored:
         symbol, ascii_symbol = f"360° − {phi.symbol}", f"360 - {phi.ascii_symbol}"
         values = tuple(None if value is None else 360 - value for value in phi.values)
-        heads.append(_angles(phi._replace(symbol=symbol, ascii_symbol=ascii_symbol, values=values), look, pad))
+        mirrored = phi._replace(symbol=symbol, ascii_symbol=ascii_symbol, values=values)
+        heads.append(_scaled(mirrored, angle_scale(values), look, pad))
     return Sheet(tuple(heads), bands, report.group == "ratios")
 
 
@@ -83,14 +117,10 @@ def _row(column: Column, look: Look, pad: str) -> Row:
     scale = scale_of(column.values, look.digits or DIGITS)
     if column.decimals is not None:
         scale = scale._replace(decimals=column.decimals, exponent=0)
-    marks = dict.fromkeys(column.marked, MARK)
-    cells = tuple(cell(value, scale, look.comma) + marks.get(i, pad) for i, value in enumerate(column.values))
-    charset = look.charset
-    return Row(charset.symbol(column.symbol, column.ascii_symbol), charset.unit(column.unit, scale.exponent), cells)
+    return _scaled(column, scale, look, pad)
 
 
-def _angles(column: Column, look: Look, pad: str) -> Row:
-    scale = angle_scale(column.values)
-    cells = tuple(cell(value, scale, look.comma) + pad for value in column.values)
+def _scaled(column: Column, scale: Scale, look: Look, pad: str) -> Row:
     charset = look.charset
-    return Row(charset.symbol(column.symbol, column.ascii_symbol), charset.unit(column.unit), cells)
+    symbol = charset.symbol(column.symbol, column.ascii_symbol)
+    return Row(symbol, charset.unit(column.unit, scale.exponent), Cells(column, scale, look.comma, pad))

@@ -6,14 +6,14 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from kurbel.errors import NoSolutionError, UsageError
+from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.keys import Key, Physical
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.fit import may_lock
 from kurbel.mechanisms import Mechanism
 from kurbel.quantities import KEY_VALUES, NOISE_POWER
-from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages, warnings
-from kurbel.report.sizes import speed_notes
+from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages
+from kurbel.report.notes import Note, machine_notes, of_cylinder
 from kurbel.units import SI, show
 
 
@@ -33,62 +33,51 @@ class Section(NamedTuple):
 
 
 class Checked(NamedTuple):
-    """The outcome of a check; `broken` says that a limit is."""
+    """The outcome of a check; `broken` says that a limit is, `errors` which ones cannot be judged, and why."""
 
     title: str
     sections: tuple[Section, ...]
     broken: bool
+    errors: tuple[KurbelError, ...]
 
 
 def checked(machine: Machine, commands: Sequence[str]) -> Checked:
     """Return what is to be said of a machine; `commands` are those that exist.
 
-    Key values are computed only where the machine has limits. Raises UsageError for a limit of something that the
-    machine does not have.
+    Key values are computed only where the machine has limits.
     """
-    limits = tuple(_limits(machine, commands))
+    judged = tuple(_limits(machine, commands))
+    limits = tuple(one for one in judged if isinstance(one, Entry))
+    found = machine_notes(machine)
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
-        *(_cylinder_section(machine, cylinder) for cylinder in machine.cylinders),
+        *(_cylinder_section(machine, cylinder, found) for cylinder in machine.cylinders),
         Section("Whole machine", tuple(_turning_entries(machine))),
         Section("Crankshaft", tuple(_crankshaft_entries(machine))),
         Section("Not used yet", tuple(_unused(machine, commands))),
         Section("Limits", limits),
     )
     broken = any(entry.bad for entry in limits)
-    return Checked(f"{machine.name}: a valid machine", tuple(s for s in sections if s.entries), broken)
+    errors = tuple(one for one in judged if isinstance(one, KurbelError))
+    return Checked(f"{machine.name}: a valid machine", tuple(s for s in sections if s.entries), broken, errors)
 
 
 def _machine_entries(machine: Machine) -> Iterable[Entry]:
     yield Entry("cylinders", str(len(machine.cylinders)) if machine.cylinders else "none, a given turning effort")
     yield Entry("cycle", f"{machine.cycle}, {360 * machine.revolutions} deg")
     yield Entry("speed", "not given" if machine.speed is None else show(machine.speed, "speed"))
-    yield from (Entry("note", note) for note in speed_notes(machine))
 
 
-def _cylinder_section(machine: Machine, cylinder: Cylinder) -> Section:
+def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note]) -> Section:
     entries = [
         Entry("mechanism", _described(cylinder.mechanism)),
         *(Entry(f"{piston.name}", f"bore {show(piston.bore, 'length')}") for piston in cylinder.pistons),
         Entry("computed", ", ".join(what for what, why in stages(machine, cylinder).items() if not why)),
         *(Entry("left out", f"{what}: {why}") for what, why in left_out(machine, cylinder)),
-        *(Entry("note", note) for note in (*warnings(cylinder), *cylinder.mechanism.notes)),
-        *(Entry("note", note) for note in _of_measurements(machine, cylinder)),
+        *(Entry("note", note) for note in (*of_cylinder(found, machine, cylinder), *cylinder.mechanism.notes)),
         *(Entry("note", note) for note in _of_locking(machine, cylinder)),
     ]
     return Section(cylinder.name, tuple(entries))
-
-
-def _of_measurements(machine: Machine, cylinder: Cylinder) -> Iterable[str]:
-    """Yield what is implausible in what was measured; nothing is computed for a machine without measurements."""
-    chambers = [end for p in cylinder.pistons if p.indicator for end in (p.indicator.head_end, p.indicator.crank_end)]
-    if machine.brake_power is None and not any(hasattr(chamber, "samples") for chamber in chambers):
-        return
-    from kurbel.report.forces import measured_warnings
-    from kurbel.solver.case import Case
-
-    case = Case(machine)
-    yield from measured_warnings(case, case.cylinders[machine.cylinders.index(cylinder)])
 
 
 def _of_locking(machine: Machine, cylinder: Cylinder) -> Iterable[str]:
@@ -162,19 +151,22 @@ def _pending(key: Key, commands: Sequence[str]) -> bool:
     return bool(key.commands) and not any(command in commands for command in key.commands)
 
 
-def _limits(machine: Machine, commands: Sequence[str]) -> Iterable[Entry]:
+def _limits(machine: Machine, commands: Sequence[str]) -> Iterable[Entry | KurbelError]:
+    """Yield how each limit stands, or why that cannot be told."""
     if not machine.limits:
         return
     from kurbel.report.limits import command_of, limited_values
 
-    values = limited_values(machine, (name for name, _ in machine.limits if command_of(name) in commands))
+    values, errors = limited_values(machine, (name for name, _ in machine.limits if command_of(name) in commands))
     for name, bound in machine.limits:
         found = [(where, value) for where, id, value in values if id == name]
         if command_of(name) not in commands:
             yield Entry(name, f"not checked: kurbel {command_of(name)} does not exist yet")
+        elif name in errors:
+            yield type(errors[name])(f"limits.{name}: {errors[name]}")
         elif not found:
             text = KEY_VALUES[name].text
-            raise UsageError(f"limits.{name}: this machine has no {name}: {text[:1].lower()}{text[1:]}")
+            yield UsageError(f"limits.{name}: this machine has no {name}: {text[:1].lower()}{text[1:]}")
         for where, value in found:
             yield _compared(name, bound, where, value)
 
@@ -183,15 +175,23 @@ _ROUNDING = 1e-9
 """A bound is no more exact than what is printed of it: a stroke of 110 mm does not break a limit of 110 mm."""
 
 
-def _compared(name: str, bound: float, where: str, value: float) -> Entry:
-    """Compare a value with its bound: a `_min` may not fall below it, everything else may not exceed it."""
+def _compared(name: str, bound: float, where: str, value: float) -> Entry | KurbelError:
+    """Compare a value with its bound: a `_min` may not fall below it, everything else may not exceed it.
+
+    Of a residual the magnitude counts. What is not finite cannot be compared.
+    """
+    if not math.isfinite(value):
+        from kurbel.report.shown import too_large
+
+        return UsageError(f"limits.{name} ({where}): {too_large(KEY_VALUES[name])}")
     quantity = KEY_VALUES[name]
-    lower = name.endswith("_min")
-    excess = bound - value if lower else value - bound
+    kind = quantity.kind
+    lower, bars = name.endswith("_min"), "|" if name.endswith("_residual") else ""
+    excess = bound - value if lower else (abs(value) if bars else value) - bound
     broken = excess > _ROUNDING * abs(bound)
     relation = ("<" if broken else "≥") if lower else (">" if broken else "≤")
-    shown = f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else _shown(value, quantity.kind)
-    text = f"{shown} {relation} {_shown(bound, quantity.kind)}"
+    size = f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else f"{bars}{_shown(value, kind)}{bars}"
+    text = f"{size} {relation} {_shown(bound, kind)}"
     return Entry(name, f"{text}  {'BROKEN' if broken else 'kept'}  ({where})", broken)
 
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
 from kurbel.machine import Machine
-from kurbel.report.left_out import flywheel_left_out, warnings
+from kurbel.report.left_out import flywheel_left_out
 from kurbel.report.motion import given, plain_values, refuse_absent
-from kurbel.report.shown import shown_column, shown_key_value
+from kurbel.report.notes import machine_notes, of_machine
+from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, Part, Report
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineSpeed
@@ -54,10 +55,10 @@ def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] 
         turning = case.flywheel
         whole = Part(
             "whole machine",
-            tuple(_columns(turning, angles, columns or FLYWHEEL_COLUMNS, system)),
+            _columns(turning, angles, columns or FLYWHEEL_COLUMNS, system),
             tuple(shown_key_value(name, value, system) for name, value in key_values(turning)),
             flywheel_left_out(machine),
-            tuple(_warnings(machine, turning)),
+            tuple(_warnings(case, turning)),
         )
         parts = tuple(_cylinder_parts(case, system))
         there = [column.id for column in _columns(turning, (0.0,), FLYWHEEL_COLUMNS, system)] if columns else []
@@ -66,15 +67,14 @@ def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] 
     return Report(title, "flywheel", machine.name, "cylinders", parts, whole, notes=tuple(_notes(machine, turning)))
 
 
-def _columns(turning: MachineSpeed, angles: Sequence[float], columns: Sequence[str], system: str) -> Iterable[Column]:
-    degrees = np.asarray(angles, dtype=float)
-    lines = {"omega": turning.omega_line}
-    yield shown_column("phi", degrees, system)
-    for name in dict.fromkeys(columns):
-        line = lines.get(name) or (getattr(turning, name) if name in FLYWHEEL_COLUMNS and name != "phi" else None)
-        values = line(degrees) if line else None
-        if values is not None:
-            yield shown_column(name, values, system)
+def _columns(turning: MachineSpeed, angles: Sequence[float], columns: Sequence[str], system: str) -> tuple[Column, ...]:
+    def line(name: str) -> Any:
+        return getattr(turning, {"omega": "omega_line"}.get(name, name)) if name in FLYWHEEL_COLUMNS else None
+
+    def values_at(degrees: Any) -> Callable[[str], Any]:
+        return lambda name: line(name)(degrees) if line(name) else None
+
+    return shown_columns(columns, values_at, angles, system)
 
 
 def key_values(turning: MachineSpeed, repeated: bool = False) -> Iterable[tuple[str, Any]]:
@@ -115,9 +115,9 @@ def _notes(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
         )
 
 
-def _warnings(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
-    for cylinder in machine.cylinders:
-        yield from warnings(cylinder)
+def _warnings(case: Case, turning: MachineSpeed) -> Iterable[str]:
+    machine = case.machine
+    yield from of_machine(machine_notes(machine, case), machine)
     if turning.deficit is not None:
         yield (
             f"mean effort {show(turning.M_mean, 'torque')} and mean resistance "

@@ -10,16 +10,17 @@ import numpy as np
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.fit import may_lock
-from kurbel.report.left_out import left_out, warnings
+from kurbel.report.left_out import left_out
 from kurbel.report.motion import (
     columns_of,
+    cylinder_columns,
     given,
     mechanism_notes,
     motion_key_values,
     plain_values,
     refuse_absent,
-    shown_columns,
 )
+from kurbel.report.notes import Note, machine_notes, of_cylinder
 from kurbel.report.shown import shown_key_value
 from kurbel.report.tables import LeftOut, Part, Report
 from kurbel.solver.case import Case
@@ -53,14 +54,20 @@ def forces_report(case: Case, angles: Sequence[float], columns: Sequence[str] | 
     if not machine.cylinders:
         raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
     with np.errstate(all="ignore"):  # what overflows is refused below, by name
-        parts = tuple(_part(case, forces, angles, columns, system) for forces in case.cylinders)
+        found = machine_notes(machine, case)
+        parts = tuple(_part(case, forces, found, angles, columns, system) for forces in case.cylinders)
     refuse_absent(parts, columns or (), "forces", _ALL_COLUMNS, columns_of(case, _ALL_COLUMNS) if columns else ())
     title = f"{machine.name}. Kräfte im Kurbeltriebe"
     return Report(title, "forces", machine.name, "cylinders", parts, notes=mechanism_notes(machine))
 
 
 def _part(
-    case: Case, forces: CylinderForces, angles: Sequence[float], columns: Sequence[str] | None, system: str
+    case: Case,
+    forces: CylinderForces,
+    found: Sequence[Note],
+    angles: Sequence[float],
+    columns: Sequence[str] | None,
+    system: str,
 ) -> Part:
     cylinder = forces.drive.cylinder
     if may_lock(cylinder):
@@ -69,24 +76,11 @@ def _part(
     fitting = FORCE_COLUMNS if cylinder.mechanism.slides else _ALL_COLUMNS
     return Part(
         cylinder.name,
-        tuple(shown_columns(forces, angles, columns or fitting, _ALL_COLUMNS, system)),
+        cylinder_columns(forces, angles, columns or fitting, _ALL_COLUMNS, system),
         tuple(shown_key_value(name, value, system) for name, value in key_values(forces)),
         (*left_out(case.machine, cylinder), *_no_loss(forces)),
-        (*warnings(cylinder), *_balance_warnings(forces), *_pin_warnings(forces), *measured_warnings(case, forces)),
+        (*of_cylinder(found, case.machine, cylinder), *_balance_warnings(forces), *_pin_warnings(forces)),
     )
-
-
-def measured_warnings(case: Case, forces: CylinderForces) -> Iterable[str]:
-    """Yield what is implausible in what was measured: in the traces of a cylinder, and below the brake power."""
-    machine = case.machine
-    traced = any(gas.traced for gas in forces.drive.gas)
-    if not traced and machine.brake_power is None:
-        return
-    from kurbel.report.plausibility import brake_warnings, trace_warnings
-
-    yield from trace_warnings(forces)
-    if forces is case.cylinders[-1]:
-        yield from brake_warnings(machine, case.cylinders)
 
 
 _CLOSED = 1e-9

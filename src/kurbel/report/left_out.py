@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from kurbel.machine import Cylinder, Machine
-from kurbel.report.sizes import size_notes
 from kurbel.report.tables import LeftOut
 
 
@@ -26,15 +27,24 @@ def _motion_stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
 
 def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     no_masses = "no masses given" if cylinder.masses is None else ""
+    rods = dict.fromkeys(_rod_areas(cylinder), "no crank_end_rod given, its area is taken as 0")
     ram = {"ram force": "" if cylinder.ram_force else "no ram_force given"}
     return {
         "gas force": _no_gas(cylinder),
+        **rods,
         # of an engine nobody expects one
         **(ram if cylinder.ram_force or cylinder.mechanism.quick_return else {}),
         "inertia": no_masses or ("no speed given" if machine.speed is None else ""),
         "weight": "no inclination given" if cylinder.inclination is None else no_masses,
         "friction": "no friction given" if cylinder.friction is None else "",
     }
+
+
+def _rod_areas(cylinder: Cylinder) -> Iterable[str]:
+    """Yield what a pressure at the crank end would not act on if the rod were given."""
+    for number, piston in enumerate(cylinder.pistons):
+        if piston.indicator and piston.indicator.crank_end is not None and not piston.crank_end_rod:
+            yield f"piston rod of {piston.name}" if number else "piston rod"
 
 
 def _moment(cylinder: Cylinder) -> dict[str, str]:
@@ -91,21 +101,12 @@ def _no_gas(cylinder: Cylinder) -> str:
     return "" if any(piston.indicator for piston in cylinder.pistons) else "no indicator given"
 
 
-def warnings(cylinder: Cylinder) -> tuple[str, ...]:
-    """Return what the reader tidied up in the indicator cards of a cylinder, and what is larger than ever built."""
-    tidied = tuple(
-        f"{piston.name}, {end}: {note}"
-        for piston in cylinder.pistons
-        if piston.indicator
-        for end, chamber in (("head end", piston.indicator.head_end), ("crank end", piston.indicator.crank_end))
-        for note in getattr(chamber, "notes", ())
-    )
-    return (*tidied, *size_notes(cylinder))
-
-
 def flywheel_left_out(machine: Machine) -> tuple[LeftOut, ...]:
     """Return what turning effort, flywheel and speed line of a machine leave out, with the reason."""
-    of_each = [[one for one in left_out(machine, cylinder) if one.what in _IN_EFFORT] for cylinder in machine.cylinders]
+    of_each = [
+        [one for one in left_out(machine, cylinder) if one.what.startswith(_IN_EFFORT)]
+        for cylinder in machine.cylinders
+    ]
     alike = all(found == of_each[0] for found in of_each)
     found = [
         one if alike else LeftOut(f"{one.what} of {cylinder.name}", one.why)
@@ -133,5 +134,5 @@ def turning_stages(machine: Machine) -> dict[str, str]:
     }
 
 
-_IN_EFFORT = ("gas force", "inertia", "weight", "friction")
+_IN_EFFORT = ("gas force", "piston rod", "inertia", "weight", "friction")
 """Stages of a cylinder that its turning effort is made of."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from importlib import import_module
 
+from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.quantities import OF_COMMAND, OF_WHOLE_MACHINE
 
@@ -18,20 +19,25 @@ def command_of(name: str) -> str:
     return next((command for command, names in OF_COMMAND.items() if name in names), "forces")
 
 
-def limited_values(machine: Machine, names: Iterable[str]) -> list[tuple[str, str, float]]:
-    """Return (what it belongs to, id, value in SI) of the key values with these ids.
+def limited_values(
+    machine: Machine, names: Iterable[str]
+) -> tuple[list[tuple[str, str, float]], dict[str, KurbelError]]:
+    """Return (what it belongs to, id, value in SI) of the key values with these ids, and what kept others from it.
 
-    Every report of a command has a function `limited_values` of its own. Raises UsageError where the machine has not
-    what a command needs.
+    Every report of a command has a function `limited_values` of its own.
     """
     wanted = set(names)
     found: list[tuple[str, str, float]] = []
+    errors: dict[str, KurbelError] = {}
     for command in ("motion", "forces", "flywheel", "stress"):
         asked = {name for name in wanted if command in _commands(machine, name)}
-        if asked:
-            values = import_module(f"kurbel.report.{command}").limited_values(machine)
+        try:
+            values = import_module(f"kurbel.report.{command}").limited_values(machine) if asked else []
+        except KurbelError as error:
+            errors |= dict.fromkeys(asked, error)
+        else:
             found += [value for value in values if value[1] in asked]
-    return found
+    return found, errors
 
 
 def _commands(machine: Machine, name: str) -> set[str]:

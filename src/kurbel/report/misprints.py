@@ -28,7 +28,7 @@ def _check(report: Report, formula: str) -> None:
         *(f"L/R = {one.name:g}" for one in report.parts if one.name not in PRINTED["velocity_factor"]),
         *(f"the row {column.id}" for column in part.columns[1:] if column.id not in PRINTED),
         *([] if formula == "book" else [f"--formula {formula}"]),
-        *([] if angles == tuple(range(0, 181, STEP)) else ["other angles"]),
+        *([] if list(angles) == list(range(0, 181, STEP)) else ["other angles"]),
     ]
     if wrong:
         raise UsageError(

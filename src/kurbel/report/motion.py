@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import Extreme
 from kurbel.report.left_out import motion_left_out
-from kurbel.report.shown import shown_column, shown_key_value
+from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, Part, Report
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -54,21 +54,22 @@ def _part(
     cylinder = forces.drive.cylinder
     return Part(
         cylinder.name,
-        tuple(shown_columns(forces, angles, columns, MOTION_COLUMNS, system)),
+        cylinder_columns(forces, angles, columns, MOTION_COLUMNS, system),
         tuple(shown_key_value(name, value, system) for name, value in motion_key_values(forces.motion)),
         motion_left_out(machine, cylinder),
     )
 
 
-def shown_columns(
+def cylinder_columns(
     forces: CylinderForces, angles: Sequence[float], chosen: Sequence[str] | None, known: Sequence[str], system: str
-) -> Iterable[Column]:
-    """Yield φ and the chosen columns, or all that are known, as far as the machine has them; angles (n,) in degrees."""
-    state = forces.at(angles)
-    for name in ("phi", *(name for name in dict.fromkeys(chosen or known) if name != "phi")):
-        values = getattr(state, name) if name in known else None
-        if values is not None:
-            yield shown_column(name, values, system)
+) -> tuple[Column, ...]:
+    """Return φ and the chosen columns, or all that are known, as far as the machine has them; angles (n,) in deg."""
+
+    def values_at(degrees: Any) -> Callable[[str], Any]:
+        state = forces.at(degrees)
+        return lambda name: getattr(state, name) if name in known else None
+
+    return shown_columns(chosen or known, values_at, angles, system)
 
 
 def motion_key_values(motion: Motion) -> Iterable[tuple[str, Any]]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
 from kurbel.machine import Machine
 from kurbel.quantities import SHAFT_PARTS, STRESSES
-from kurbel.report.left_out import left_out, strength_left_out, warnings
+from kurbel.report.left_out import left_out, strength_left_out
 from kurbel.report.motion import given, plain_values, refuse_absent
-from kurbel.report.shown import shown_column, shown_key_value
+from kurbel.report.notes import machine_notes, of_machine
+from kurbel.report.shown import shown_column, shown_columns, shown_key_value
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
 from kurbel.solver.strength.crankshaft import CrankshaftStrength, Strained
@@ -56,10 +57,10 @@ def stress_report(
         cool, verdict = _shell_verdict(strength)
         whole = Part(
             machine.name,
-            () if places_only else tuple(_columns(strength, angles, columns or STRESS_COLUMNS, system)),
+            () if places_only else _columns(strength, angles, columns or STRESS_COLUMNS, system),
             tuple(shown_key_value(name, value, system) for name, value in values),
             (*left_out(machine, cylinder), *strength_left_out(machine)),
-            (*warnings(cylinder), *(() if cool else verdict)),
+            (*of_machine(machine_notes(machine, case), machine), *(() if cool else verdict)),
             tuple(_place_tables(strength, system)),
         )
     notes = (*_NOTES, *((_TURNING_ROD,) if strength.rod_pull else ()), *(verdict if cool else ()))
@@ -83,12 +84,12 @@ _TURNING_ROD = (
 
 def _columns(
     strength: CrankshaftStrength, angles: Sequence[float], columns: Sequence[str], system: str
-) -> Iterable[Column]:
-    at = strength.at(angles)
-    for name in ("phi", *(name for name in dict.fromkeys(columns) if name != "phi")):
-        values = getattr(at, name) if name in STRESS_COLUMNS else None
-        if values is not None:
-            yield shown_column(name, values, system)
+) -> tuple[Column, ...]:
+    def values_at(degrees: Any) -> Callable[[str], Any]:
+        at = strength.at(degrees)
+        return lambda name: getattr(at, name) if name in STRESS_COLUMNS else None
+
+    return shown_columns(columns, values_at, angles, system)
 
 
 def _place_tables(strength: CrankshaftStrength, system: str) -> Iterable[PlaceTable]:

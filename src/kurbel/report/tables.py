@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple, Union
 
 Value = Union[float, int, None]
@@ -10,6 +11,7 @@ Value = Union[float, int, None]
 class Column(NamedTuple):
     """One quantity over the crank angle, already in the unit in which it is shown; None where it has no value.
 
+    values: a tuple, or an array of doubles, which takes a quarter of the memory;
     decimals: fixed number of decimals in printed tables, where the digits of a source are to be kept;
     marked: indices of the values that the printed table marks with an asterisk; alone: each value has a scale of its
     own, since they run over many powers of ten, as errors do.
@@ -19,7 +21,7 @@ class Column(NamedTuple):
     symbol: str
     ascii_symbol: str
     unit: str
-    values: tuple[Value, ...]
+    values: Sequence[Value]
     text: str = ""
     decimals: int | None = None
     marked: tuple[int, ...] = ()

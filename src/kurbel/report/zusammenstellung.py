@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from array import array
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from kurbel.crank_angle import CrankAngle
@@ -77,7 +78,7 @@ _OTHER_SYMBOLS = {
 def zusammenstellung(
     ratios: tuple[float, ...] = RATIOS,
     rows: tuple[str, ...] = ("b", "c"),
-    angles: tuple[float, ...] = tuple(range(0, 181, 10)),
+    angles: Sequence[float] = tuple(range(0, 181, 10)),
     formula: str = "book",
     compare: bool = False,
 ) -> Report:
@@ -111,24 +112,25 @@ def _row_id(row: str) -> str:
     raise UsageError(f"--rows: no row '{row}'{did_you_mean(row, (*known, *ROWS.values()))} (known: {', '.join(known)})")
 
 
-def _part(ratio: float, ids: tuple[str, ...], angles: tuple[float, ...], formula: str) -> Part:
+def _part(ratio: float, ids: tuple[str, ...], angles: Sequence[float], formula: str) -> Part:
     if not ratio > 1:
         raise UsageError(f"--ratio: L/R must be larger than 1 for the crank to turn, got {ratio:g}")
     rod = _Rod(1 / ratio, 1.0 if math.isinf(ratio) else (ratio - 1) / ratio * ((ratio + 1) / ratio))
-    crank_angles = [CrankAngle.of(degrees) for degrees in angles]
-    columns = [_column(COLUMNS["phi"], tuple(angles), formula)]
-    for id in ids:
-        factor = _FACTORS[formula][id]
-        columns.append(_column(FACTORS[id], tuple(factor(angle, rod) for angle in crank_angles), formula))
-    return Part(ratio, tuple(columns))
+    factors = [_FACTORS[formula][id] for id in ids]
+    values = [array("d") for _ in ids]
+    for angle in map(CrankAngle.of, angles):
+        for column, factor in zip(values, factors):
+            column.append(factor(angle, rod))
+    columns = (_column(FACTORS[id], column, formula) for id, column in zip(ids, values))
+    return Part(ratio, (_column(COLUMNS["phi"], angles, formula), *columns))
 
 
-def _column(quantity: Quantity, values: tuple[Value, ...], formula: str) -> Column:
+def _column(quantity: Quantity, values: Sequence[Value], formula: str) -> Column:
     symbols = _OTHER_SYMBOLS.get((formula, quantity.id), (quantity.symbol, quantity.ascii_symbol))
     return Column(quantity.id, *symbols, "deg" if quantity.kind == "angle" else "", values, quantity.text)
 
 
-def _mirrored(part: Part, angles: tuple[float, ...]) -> str:
+def _mirrored(part: Part, angles: Sequence[float]) -> str:
     if min(angles) < 0 or max(angles) > 180:
         return ""
     odd = [column.symbol for column in part.columns if column.id in _ODD]

@@ -29,7 +29,12 @@ class State(Members):
         self.drive = drive
         self.angle = angle
         self.within = angle.degrees if within is None else within
-        self._inside = self if within is None else State(drive, CrankAngle.of(once_each(within)))
+        self._beside = None if within is None else State(drive, CrankAngle.of(once_each(within)))
+
+    @property
+    def _inside(self) -> State:
+        """The state asked for within the piece; not kept as an attribute, or no state would be freed after use."""
+        return self if self._beside is None else self._beside
 
     @property
     def phi(self) -> Array:

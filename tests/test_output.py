@@ -1,0 +1,234 @@
+"""Where results go: files that are replaced whole or not at all, never what is read; statuses whatever stderr does."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tracemalloc
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from kurbel import loads
+from kurbel.cli import COMMANDS, kurbel
+from kurbel.errors import UsageError
+from kurbel.render import FORMATS, Look, json_text, pieces, render
+from kurbel.render.output import write_file
+from kurbel.report import shown
+from kurbel.report.angles import MOST_ROWS, check_rows, stepped
+from kurbel.report.forces import forces_report
+from kurbel.solver.case import Case
+
+POSIX_ONLY = pytest.mark.skipif(os.name != "posix", reason="needs POSIX files and signals")
+MACHINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
+PRESSURE = "indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}\n"
+
+
+def run(*arguments: str, **extra: object) -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run([sys.executable, "-m", "kurbel", *arguments], check=False, **extra)  # type: ignore[call-overload,no-any-return]
+
+
+# files that are read
+
+
+def links(folder: Path) -> Iterator[str]:
+    """Yield the names under which the file m.yaml of a folder may be written over."""
+    machine = folder / "m.yaml"
+    (folder / "soft.yaml").symlink_to(machine)
+    (folder / "hard.yaml").hardlink_to(machine)
+    yield from (str(machine), "m.yaml", "./m.yaml", f"../{folder.name}/m.yaml", "soft.yaml", "hard.yaml")
+
+
+@POSIX_ONLY
+@pytest.mark.parametrize("command", ["motion", "forces", "flywheel"])
+def test_the_machine_file_is_never_written_over(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = MACHINE + PRESSURE
+    (tmp_path / "m.yaml").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    for name in links(tmp_path):
+        result = CliRunner().invoke(kurbel, [command, "m.yaml", "-o", name])
+        assert (result.exit_code, (tmp_path / "m.yaml").read_text()) == (2, text), name
+        assert "would overwrite m.yaml, which is read" in result.stderr
+
+
+def test_no_trace_that_is_read_is_written_over(tmp_path: Path) -> None:
+    trace = "".join(f"{angle},{1 + angle / 720}\n" for angle in range(0, 361, 10))
+    (tmp_path / "p.csv").write_text(trace)
+    (tmp_path / "m.yaml").write_text(MACHINE + "indicator: {head_end: {trace: {file: p.csv, unit: bar}}}\n")
+    for command in ("forces", "accuracy"):
+        result = CliRunner().invoke(kurbel, [command, str(tmp_path / "m.yaml"), "-o", str(tmp_path / "p.csv")])
+        assert (result.exit_code, (tmp_path / "p.csv").read_text()) == (2, trace)
+        assert "p.csv, which is read" in result.stderr
+
+
+@POSIX_ONLY
+def test_standard_input_is_a_file_that_is_read_too(tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(MACHINE)
+    with open(tmp_path / "m.yaml", "rb") as machine:
+        result = run("motion", "-", "-o", str(tmp_path / "m.yaml"), stdin=machine, capture_output=True)
+    assert (result.returncode, (tmp_path / "m.yaml").read_text()) == (2, MACHINE)
+    assert b"would overwrite standard input" in result.stderr
+
+
+# files that are written
+
+
+def test_what_fails_half_way_leaves_the_old_file_and_nothing_beside_it(tmp_path: Path) -> None:
+    def interrupted() -> Iterator[str]:
+        yield "half"
+        raise KeyboardInterrupt
+
+    (tmp_path / "out.csv").write_text("old")
+    for name in ("out.csv", "new.csv"):
+        with pytest.raises(KeyboardInterrupt):
+            write_file(str(tmp_path / name), interrupted())
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("out.csv", "old")]
+
+
+@POSIX_ONLY
+def test_a_full_disk_leaves_the_old_file_whole(tmp_path: Path) -> None:
+    limited = (
+        "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN); "
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (512, 512)); from kurbel.cli import main; main()"
+    )
+    (tmp_path / "out.csv").write_text("old")
+    arguments = [sys.executable, "-c", limited, "table", "-f", "csv", "-o", str(tmp_path / "out.csv")]
+    result = subprocess.run(arguments, capture_output=True, check=False)
+    assert (result.returncode, b"cannot write" in result.stderr) == (2, True)
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("out.csv", "old")]
+
+
+@POSIX_ONLY
+def test_a_replaced_file_keeps_its_mode_and_a_link_stays_one(tmp_path: Path) -> None:
+    target, link = tmp_path / "out.csv", tmp_path / "link.csv"
+    target.write_text("old")
+    target.chmod(0o640)
+    link.symlink_to(target)
+    write_file(str(link), ("new",))
+    assert (target.read_text(), target.stat().st_mode & 0o777, link.is_symlink()) == ("new", 0o640, True)
+
+
+def test_a_file_that_may_not_be_written_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "out.csv"
+    target.write_text("old")
+    monkeypatch.setattr(os, "access", lambda *_: False)  # root may write even what is read-only
+    with pytest.raises(UsageError, match="Permission denied"):
+        write_file(str(target), ("new",))
+    assert target.read_text() == "old"
+
+
+@POSIX_ONLY
+def test_output_to_what_is_no_file(tmp_path: Path) -> None:
+    printed = run("table", "-f", "csv", capture_output=True).stdout
+    assert run("table", "-f", "csv", "-o", "/dev/stdout", capture_output=True).stdout == printed
+    with open(tmp_path / "out.csv", "wb") as out:
+        assert run("table", "-f", "csv", "-o", "/dev/stdout", stdout=out).returncode == 0
+    assert (tmp_path / "out.csv").read_bytes() == printed
+    os.mkfifo(tmp_path / "fifo")
+    with subprocess.Popen(["cat", str(tmp_path / "fifo")], stdout=subprocess.PIPE) as reader:
+        assert run("table", "-f", "csv", "-o", str(tmp_path / "fifo")).returncode == 0
+        assert reader.stdout is not None
+        assert reader.stdout.read() == printed
+
+
+# statuses
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+@pytest.mark.parametrize("stderr", ["2>/dev/full", "2>&-"])
+@pytest.mark.parametrize(
+    ("arguments", "status"),
+    [
+        ("check missing.yaml", 2),  # KurbelError
+        ("table --ratio 5,4", 2),  # click's usage error
+        ("check m.yaml", 2),  # MachineFileError
+        ("table >/dev/full", 2),  # OSError
+        ("flywheel stalls.yaml", 3),
+    ],
+)
+def test_no_status_hangs_on_standard_error(arguments: str, status: int, stderr: str, tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text("crank: 400\n")
+    (tmp_path / "stalls.yaml").write_text(MACHINE + PRESSURE + "flywheel: {inertia: 1e-3 kg m2}\n")
+    command = f"{sys.executable} -m kurbel {arguments} {stderr}"
+    assert subprocess.run(["bash", "-c", command], cwd=tmp_path, check=False, stdout=-3).returncode == status
+
+
+@pytest.mark.parametrize("command", ["", *COMMANDS])
+def test_help_names_the_statuses(command: str) -> None:
+    text = " ".join(CliRunner().invoke(kurbel, [*command.split(), "--help"]).stdout.split())
+    said = text.partition("Exit status: ")[2]
+    assert said.startswith("0 done; ")
+    assert all(f" {status} " in said for status in (2, 70, 130))
+    assert (" 1 " in said) == (command in ("", "check", "accuracy"))
+    assert (" 3 " in said) == (command in ("", "forces", "flywheel", "stress", "check", "accuracy"))
+
+
+@pytest.mark.parametrize("module", ["kurbel.cli", "click", "kurbel.cli.motion", "numpy", "kurbel.report.motion"])
+def test_an_interrupt_while_importing_is_130_and_silent(module: str, tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(MACHINE)
+    code = (
+        "import runpy, sys\n"
+        "class Interrupt:\n"
+        "    def find_spec(self, name, *_):\n"
+        f"        if name == {module!r}: raise KeyboardInterrupt\n"
+        "sys.meta_path.insert(0, Interrupt())\n"
+        f"sys.argv = ['kurbel', 'motion', {str(tmp_path / 'm.yaml')!r}]\n"
+        "runpy.run_module('kurbel', run_name='__main__')"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert (result.returncode, result.stdout, result.stderr) == (130, b"", b"")
+
+
+# long tables
+
+
+def peak(work: Callable[[], object]) -> tuple[object, int]:
+    """Return what some work answers, and the bytes that it needed at most, the answer included."""
+    tracemalloc.start()
+    try:
+        return work(), tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_columns_are_computed_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shown, "_AT_ONCE", 100)
+    case, angles = Case(loads(MACHINE + PRESSURE)), stepped(0.02, 360)
+    forces_report(case, [0.0], ("P", "T"), "si")  # the extremes, and what is imported
+    _, needed = peak(lambda: forces_report(case, angles, ("P", "T"), "si"))
+    assert needed < 1.3 * 3 * len(angles) * 8  # three columns of doubles
+
+
+@pytest.mark.parametrize("layout", ["book", "rows"])
+@pytest.mark.parametrize("format", FORMATS)
+def test_rows_are_written_as_they_are_made(format: str, layout: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(json_text, "_AT_ONCE", 100)
+    case, look = Case(loads(MACHINE + PRESSURE)), Look(format, layout)
+    short, long = (forces_report(case, stepped(step, 360), ("P", "T"), "si") for step in (90, 0.1))
+    text = len(render(short, look))
+    longer, needed = peak(lambda: sum(map(len, pieces(long, look))))
+    assert longer > text + 3600 * 12
+    assert needed < 200_000  # the cells alone would take three times as much
+
+
+def test_columns_do_not_hang_on_how_many_angles_are_computed_at_once() -> None:
+    case = Case(loads(MACHINE + PRESSURE))
+    angles = stepped(0.02, 360)
+    (whole,), (some,) = (forces_report(case, list(one), None, "si").parts for one in (angles, angles[8000:8400]))
+    for column, piece in zip(whole.columns, some.columns):
+        assert column.id == piece.id
+        assert list(column.values[8000:8400]) == pytest.approx(list(piece.values), rel=1e-15, abs=1e-300)
+
+
+def test_too_many_rows_are_refused_before_anything_is_computed() -> None:
+    check_rows(MOST_ROWS, 1)
+    with pytest.raises(UsageError, match=f"800000 crank angles for each of 2 give more than {MOST_ROWS} rows"):
+        check_rows(800_000, 2)
+    for step, parts in ((1e-320, 1), (0.0001, 1), (0.0004, 2)):
+        with pytest.raises(UsageError, match="take a larger --step"):
+            stepped(step, 360, parts)
+    result = CliRunner().invoke(kurbel, ["table", "--step", "0.0004", *["--ratio", "5"] * 4])
+    assert (result.exit_code, f"more than {MOST_ROWS} rows" in result.stderr) == (2, True)
