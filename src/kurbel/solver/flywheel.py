@@ -15,7 +15,7 @@ from kurbel.solver.effort_machine import MachineTurning
 from kurbel.solver.excess import Excess
 from kurbel.solver.grid import Grid
 from kurbel.solver.radau import Standstill, Unsettled
-from kurbel.solver.roots import falling_root
+from kurbel.solver.roots import rising_root
 from kurbel.solver.speed import (
     ConstantLoad,
     Inertia,
@@ -24,6 +24,7 @@ from kurbel.solver.speed import (
     SpeedDependentLoad,
     SpeedLaw,
     SpeedLine,
+    Turning,
     floquet,
 )
 from kurbel.solver.torques import Sum
@@ -126,11 +127,14 @@ class MachineSpeed(MachineTurning):
     @cached_property
     def _mean_of_masses(self) -> float:
         """Mean of what the moving masses add to the inertia over the turn, in kg m²."""
-        if not self.masses:
-            return 0.0
-        grid = Grid(Sum([(1.0, mass) for mass in self.masses]).breaks)
-        inertia = Inertia(0.0, self.masses, 1.0).at(grid.degrees, grid.within)
-        return grid.integral(inertia.value) / math.radians(self.cycle)
+        grid, values = self._moving_inertia
+        return grid.integral(values) / math.radians(self.cycle)
+
+    @cached_property
+    def _moving_inertia(self) -> tuple[Grid, Array]:
+        """What the moving masses add to the inertia in kg m², on a grid."""
+        grid = Grid(Sum([(1.0, mass) for mass in self.masses]).breaks if self.masses else np.array([0.0, self.cycle]))
+        return grid, Inertia(0.0, self.masses, 1.0).at(grid.degrees, grid.within).value
 
     @property
     def _load_slope(self) -> float:
@@ -193,17 +197,20 @@ class MachineSpeed(MachineTurning):
 
     def _without_coupling(self, flywheel: float) -> SpeedLine:
         assert self.omega
-        driven = self.machine.coupling.inertia if self.machine.coupling else 0.0
-        inertia = Inertia(flywheel + driven, self.masses, self.omega)
-        self._refuse_no_inertia(inertia)
+        turned = flywheel + (self.machine.coupling.inertia if self.machine.coupling else 0.0)
+        self._refuse_no_inertia(turned)
         if self._law is not None:
-            return SpeedDependentLoad(self._true_excess, self._law, inertia)
-        return ConstantLoad(self._true_excess, inertia)
+            return SpeedDependentLoad(self._true_excess, self._law, Inertia(turned, self.masses, self.omega))
+        return ConstantLoad(self._turning, turned)
 
-    def _refuse_no_inertia(self, inertia: Inertia) -> None:
-        grid = self._true_excess.grid
-        values = inertia.at(grid.degrees, grid.within).value
-        if values.min() <= 1e-12 * values.max():
+    @cached_property
+    def _turning(self) -> Turning:
+        assert self.omega
+        return Turning(self._true_excess, self.masses, self.omega)
+
+    def _refuse_no_inertia(self, flywheel: float) -> None:
+        grid, values = self._moving_inertia
+        if values.min() + flywheel <= 1e-12 * (values.max() + flywheel):
             angle = float(grid.degrees.ravel()[np.argmin(values)])
             raise UsageError(f"nothing that turns has any inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
 
@@ -276,20 +283,20 @@ class MachineSpeed(MachineTurning):
         if not self.misses_the_wish or not self.J_needed:
             return None
         assert self.machine.flywheel
-        assert self.machine.flywheel.fluctuation
-        wanted = math.log(self.machine.flywheel.fluctuation)
+        wanted = self.machine.flywheel.fluctuation
+        assert wanted
 
-        def surplus(logarithm: float) -> float:
-            delta = self._delta_with(math.exp(logarithm))
-            return math.log(delta) - wanted if delta else -math.inf
+        def surplus(flywheel: float) -> float:
+            delta = self._delta_with(flywheel)
+            return wanted / delta - 1 if delta else math.inf
 
-        found = falling_root(surplus, math.log(self.J_needed))
-        return None if found is None else math.exp(found)
+        return rising_root(surplus, self.J_needed)
 
     def _delta_with(self, flywheel: float) -> float:
         """Return δ of the speed line with another flywheel in kg m²; inf where it stalls."""
         try:
-            return self._line_with(flywheel).delta
+            line = self.speed if flywheel == self.J else None
+            return (line or self._line_with(flywheel)).delta
         except (Unsettled, NoSolutionError, UsageError):
             return math.inf
 
