@@ -10,7 +10,6 @@ import numpy as np
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.mechanisms import Extreme
-from kurbel.solver.coupling import RIGID_ABOVE, ElasticCoupling, Shaft, natural_frequency
 from kurbel.solver.effort_machine import MachineTurning
 from kurbel.solver.excess import Excess
 from kurbel.solver.grid import Grid
@@ -32,9 +31,12 @@ from kurbel.units import show
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.solver.coupling import ElasticCoupling
 
 _MISSED = 1e-3
 """By what δ may miss the wanted one, relatively, before it is told."""
+_RIGID_ABOVE = 100.0
+"""Natural order from which on a coupling counts as rigid: it transmits what a rigid one would but for 1 in 10⁴."""
 _DOUBLINGS = 30
 """How many doublings of the flywheel are tried for one that turns."""
 
@@ -85,8 +87,10 @@ class MachineSpeed(MachineTurning):
     def _coupled_to(self, flywheel: float) -> ElasticCoupling | None:
         """Return the elastic coupling to a flywheel in kg m²; None where there is none, or one as good as rigid."""
         coupling = self.machine.coupling
-        if not coupling or (self._natural_order_with(flywheel) or self.natural_order or 0.0) > RIGID_ABOVE:
+        if not coupling or (self._natural_order_with(flywheel) or self.natural_order or 0.0) > _RIGID_ABOVE:
             return None
+        from kurbel.solver.coupling import ElasticCoupling, Shaft
+
         assert self.omega
         own = flywheel + self._mean_of_masses
         if not own:
@@ -103,6 +107,8 @@ class MachineSpeed(MachineTurning):
         return self._natural_order_with(given if given is not None else self._needed_in_all)
 
     def _natural_order_with(self, flywheel: float) -> float | None:
+        from kurbel.solver.coupling import natural_frequency
+
         assert self.machine.coupling
         assert self.omega
         inertia = self._mean_of_masses + flywheel
@@ -111,7 +117,7 @@ class MachineSpeed(MachineTurning):
     @property
     def rigid(self) -> bool:
         """Whether the coupling is so stiff that it counts as rigid."""
-        return self.natural_order is not None and self.natural_order > RIGID_ABOVE
+        return self.natural_order is not None and self.natural_order > _RIGID_ABOVE
 
     @property
     def _needed_in_all(self) -> float:

@@ -66,7 +66,8 @@ def rising_root(function: Callable[[float], float], start: float) -> float | Non
             return x
         low, high = (x, high) if f < 0 else (low, x)
         if not low or math.isinf(high):
-            following, step = max(x - step * start * min(f, 1.0), x / 4), 2 * step
+            step *= 2.0 if x != before and abs(f) > abs(f_before) / 2 else 1.0
+            following = max(x - step * start * min(f, 1.0), x / 4)
         else:
             following = x - f * (x - before) / (f - f_before) if math.isfinite(f - f_before) else low
             if not low < following < high:
