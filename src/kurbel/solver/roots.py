@@ -49,13 +49,14 @@ def _next_part(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array) ->
 
 
 _TRIALS = 20
-_CLOSE = 1e-10
+_CLOSE = 1e-9
 _FAR = 1000.0
 
 
 def rising_root(function: Callable[[float], float], start: float) -> float | None:
-    """Return an argument at which the function was found to be zero within 1e-10, or None; start: positive.
+    """Return an argument at which the function is zero within 1e-9, or None; start: positive.
 
+    It was found to be so there, or all but so at the end of a secant whose remainder, a product of both ends, is less.
     It is sought from a thousandth of the start to a thousand times it. The function rises, by about 1 over `start`; it
     may jump, and be infinite.
     """
@@ -64,6 +65,8 @@ def rising_root(function: Callable[[float], float], start: float) -> float | Non
     for _ in range(_TRIALS):
         if abs(f) <= _CLOSE:
             return x
+        if abs(f * f_before) <= _CLOSE and f != f_before:
+            return x - f * (x - before) / (f - f_before)
         low, high = (x, high) if f < 0 else (low, x)
         if not low or math.isinf(high):
             step *= 2.0 if x != before and abs(f) > abs(f_before) / 2 else 1.0
