@@ -23,8 +23,9 @@ COMMANDS = {
     "kurbel table": [BIN / "kurbel", "table"],
     "kurbel check": [BIN / "kurbel", "check", CONFIGS / "waterworks.yaml"],
     "kurbel forces -f csv": [BIN / "kurbel", "forces", CONFIGS / "waterworks.yaml", "-f", "csv"],
+    "kurbel flywheel": [BIN / "kurbel", "flywheel", CONFIGS / "waterworks-two-cranks.yaml"],
 }
-BUDGET = {"kurbel --help": 0.65, "kurbel table": 0.7, "kurbel forces -f csv": 1.5}
+BUDGET = {"kurbel --help": 0.65, "kurbel table": 0.7, "kurbel forces -f csv": 1.5, "kurbel flywheel": 2.0}
 
 
 def measure(rounds: int) -> dict[str, list[float]]:

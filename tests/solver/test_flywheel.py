@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
+from random import Random
 
 import pytest
 from click.testing import CliRunner, Result
@@ -95,6 +97,76 @@ def test_a_stall_is_exit_3_and_names_angle_and_flywheel() -> None:
     assert "stops near φ = " in answer.stderr
     assert "GD2 = " in answer.stderr
     assert answer.stdout == ""
+
+
+LIGHT = """\
+speed: 4 1/s
+crank: 1 m
+rod: 1.4 m
+bore: 1.2 m
+flywheel: {inertia: 1 kg m2}
+indicator:
+  pressures: absolute
+  head_end: {steam: {admission: 1.6 bar, exhaust: 0.26 bar, cut_off: 0.1, clearance: 0.26, compression: 0.25}}
+  crank_end:
+    steam:
+      {admission: 0.5 bar, exhaust: 0.06 bar, cut_off: 0.63, clearance: 0.03, release: 0.95, compression: 0.08}
+masses: {piston: 100 kg, connecting_rod: {mass: 65 kg, center_of_gravity: 0.2 m, inertia: 10 kg m2}}
+"""
+
+
+def advised(text: str, message: str) -> str:
+    """The machine with the flywheel that the message advises."""
+    return re.sub(
+        r"flywheel: {.*}", f"flywheel: {{inertia: {message.partition('from J = ')[2].split()[0]} kg m2}}", text
+    )
+
+
+def test_a_speed_that_falls_to_zero_between_two_nodes_is_a_stall() -> None:
+    """The kinetic energy is positive at every node of the grid and negative between two of them."""
+    answer = run(LIGHT)
+    assert answer.exit_code == 3
+    assert "stops near φ = " in answer.stderr
+    assert run(advised(LIGHT, answer.stderr)).exit_code == 0
+
+
+def random_light_machine(random: Random) -> str:
+    """A steam engine with a light flywheel, an exact rod, and a load that may hang on the speed."""
+    crank = 10 ** random.uniform(-1, 0)
+    rod = crank * random.choice([1.1, 1.4, 3.0, 5.0])
+    cards = [
+        f"{{steam: {{admission: {high:.4g} bar, exhaust: {high * random.uniform(0.05, 0.6):.4g} bar, "
+        f"cut_off: {random.uniform(0.05, 0.75):.3g}, clearance: {random.uniform(0.02, 0.3):.3g}, "
+        f"compression: {random.uniform(0.02, 0.4):.3g}}}}}"
+        for high in (10 ** random.uniform(-0.5, 1) for _ in range(2))
+    ]
+    mass = crank**2 * 10 ** random.uniform(1, 3)
+    exact = f", center_of_gravity: {rod / 3:.4g} m, inertia: {mass * rod**2 * random.uniform(0.05, 0.2):.4g} kg m2"
+    slip, power = 10 ** random.uniform(-4, 0), random.choice([-3, -1, -0.5, 0.5, 1, 2, 10])
+    loads = ["", f"load: {{slip: {slip:.4g}}}", f"load: {{power_law: {power}}}"]
+    lines = [
+        f"speed: {10 ** random.uniform(-0.3, 1.5):.4g} 1/s",
+        f"crank: {crank:.4g} m",
+        f"rod: {rod:.4g} m",
+        f"bore: {crank * random.uniform(0.4, 1.6):.4g} m",
+        f"flywheel: {{inertia: {10 ** random.uniform(-3, 3):.4g} kg m2}}",
+        f"indicator: {{head_end: {cards[0]}, crank_end: {cards[1]}}}",
+        f"masses: {{piston: {mass:.4g} kg, connecting_rod: {{mass: {mass:.4g} kg{random.choice(['', exact])}}}}}",
+        random.choice(loads),
+    ]
+    if random.random() < 0.2:
+        lines.append("coupling: {stiffness: 1e5 N m/rad, inertia: 10 kg m2, damping: 100 N m s/rad}")
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("seed", [*range(5), *(pytest.param(n, marks=pytest.mark.slow) for n in range(5, 300))])
+def test_a_light_machine_turns_or_stalls_with_advice_that_holds(seed: int) -> None:
+    text = random_light_machine(Random(seed))
+    answer = run(text, "--step", "90")
+    if answer.exit_code == 3:
+        assert "resonance" in answer.stderr or "it turns with a flywheel" in answer.stderr
+        answer = run(advised(text, answer.stderr), "--step", "90")
+    assert answer.exit_code == 0
 
 
 def warnings(text: str) -> str:

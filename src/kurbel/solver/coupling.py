@@ -25,8 +25,6 @@ from kurbel.solver.torques import Sum, Torque
 if TYPE_CHECKING:
     from kurbel.arrays import Array, ComplexArray
 
-RIGID_ABOVE = 100.0
-"""Natural order from which on a coupling counts as rigid: it transmits what a rigid one would but for 1 in 10⁴."""
 _SWING = 120.0
 """Degrees of a natural oscillation that one element may hold at first; …"""
 _TOLERANCE = 1e-10

@@ -10,12 +10,11 @@ import numpy as np
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.mechanisms import Extreme
-from kurbel.solver.coupling import RIGID_ABOVE, ElasticCoupling, Shaft, natural_frequency
 from kurbel.solver.effort_machine import MachineTurning
 from kurbel.solver.excess import Excess
 from kurbel.solver.grid import Grid
 from kurbel.solver.radau import Standstill, Unsettled
-from kurbel.solver.roots import falling_root
+from kurbel.solver.roots import rising_root
 from kurbel.solver.speed import (
     ConstantLoad,
     Inertia,
@@ -24,6 +23,7 @@ from kurbel.solver.speed import (
     SpeedDependentLoad,
     SpeedLaw,
     SpeedLine,
+    Turning,
     floquet,
 )
 from kurbel.solver.torques import Sum
@@ -31,9 +31,12 @@ from kurbel.units import show
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.solver.coupling import ElasticCoupling
 
 _MISSED = 1e-3
 """By what δ may miss the wanted one, relatively, before it is told."""
+_RIGID_ABOVE = 100.0
+"""Natural order from which on a coupling counts as rigid: it transmits what a rigid one would but for 1 in 10⁴."""
 _DOUBLINGS = 30
 """How many doublings of the flywheel are tried for one that turns."""
 
@@ -84,8 +87,10 @@ class MachineSpeed(MachineTurning):
     def _coupled_to(self, flywheel: float) -> ElasticCoupling | None:
         """Return the elastic coupling to a flywheel in kg m²; None where there is none, or one as good as rigid."""
         coupling = self.machine.coupling
-        if not coupling or (self._natural_order_with(flywheel) or self.natural_order or 0.0) > RIGID_ABOVE:
+        if not coupling or (self._natural_order_with(flywheel) or self.natural_order or 0.0) > _RIGID_ABOVE:
             return None
+        from kurbel.solver.coupling import ElasticCoupling, Shaft
+
         assert self.omega
         own = flywheel + self._mean_of_masses
         if not own:
@@ -102,6 +107,8 @@ class MachineSpeed(MachineTurning):
         return self._natural_order_with(given if given is not None else self._needed_in_all)
 
     def _natural_order_with(self, flywheel: float) -> float | None:
+        from kurbel.solver.coupling import natural_frequency
+
         assert self.machine.coupling
         assert self.omega
         inertia = self._mean_of_masses + flywheel
@@ -110,7 +117,7 @@ class MachineSpeed(MachineTurning):
     @property
     def rigid(self) -> bool:
         """Whether the coupling is so stiff that it counts as rigid."""
-        return self.natural_order is not None and self.natural_order > RIGID_ABOVE
+        return self.natural_order is not None and self.natural_order > _RIGID_ABOVE
 
     @property
     def _needed_in_all(self) -> float:
@@ -126,11 +133,14 @@ class MachineSpeed(MachineTurning):
     @cached_property
     def _mean_of_masses(self) -> float:
         """Mean of what the moving masses add to the inertia over the turn, in kg m²."""
-        if not self.masses:
-            return 0.0
-        grid = Grid(Sum([(1.0, mass) for mass in self.masses]).breaks)
-        inertia = Inertia(0.0, self.masses, 1.0).at(grid.degrees, grid.within)
-        return grid.integral(inertia.value) / math.radians(self.cycle)
+        grid, values = self._moving_inertia
+        return grid.integral(values) / math.radians(self.cycle)
+
+    @cached_property
+    def _moving_inertia(self) -> tuple[Grid, Array]:
+        """What the moving masses add to the inertia in kg m², on a grid."""
+        grid = Grid(Sum([(1.0, mass) for mass in self.masses]).breaks if self.masses else np.array([0.0, self.cycle]))
+        return grid, Inertia(0.0, self.masses, 1.0).at(grid.degrees, grid.within).value
 
     @property
     def _load_slope(self) -> float:
@@ -193,17 +203,20 @@ class MachineSpeed(MachineTurning):
 
     def _without_coupling(self, flywheel: float) -> SpeedLine:
         assert self.omega
-        driven = self.machine.coupling.inertia if self.machine.coupling else 0.0
-        inertia = Inertia(flywheel + driven, self.masses, self.omega)
-        self._refuse_no_inertia(inertia)
+        turned = flywheel + (self.machine.coupling.inertia if self.machine.coupling else 0.0)
+        self._refuse_no_inertia(turned)
         if self._law is not None:
-            return SpeedDependentLoad(self._true_excess, self._law, inertia)
-        return ConstantLoad(self._true_excess, inertia)
+            return SpeedDependentLoad(self._true_excess, self._law, Inertia(turned, self.masses, self.omega))
+        return ConstantLoad(self._turning, turned)
 
-    def _refuse_no_inertia(self, inertia: Inertia) -> None:
-        grid = self._true_excess.grid
-        values = inertia.at(grid.degrees, grid.within).value
-        if values.min() <= 1e-12 * values.max():
+    @cached_property
+    def _turning(self) -> Turning:
+        assert self.omega
+        return Turning(self._true_excess, self.masses, self.omega)
+
+    def _refuse_no_inertia(self, flywheel: float) -> None:
+        grid, values = self._moving_inertia
+        if values.min() + flywheel <= 1e-12 * (values.max() + flywheel):
             angle = float(grid.degrees.ravel()[np.argmin(values)])
             raise UsageError(f"nothing that turns has any inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
 
@@ -276,20 +289,20 @@ class MachineSpeed(MachineTurning):
         if not self.misses_the_wish or not self.J_needed:
             return None
         assert self.machine.flywheel
-        assert self.machine.flywheel.fluctuation
-        wanted = math.log(self.machine.flywheel.fluctuation)
+        wanted = self.machine.flywheel.fluctuation
+        assert wanted
 
-        def surplus(logarithm: float) -> float:
-            delta = self._delta_with(math.exp(logarithm))
-            return math.log(delta) - wanted if delta else -math.inf
+        def surplus(flywheel: float) -> float:
+            delta = self._delta_with(flywheel)
+            return wanted / delta - 1 if delta else math.inf
 
-        found = falling_root(surplus, math.log(self.J_needed))
-        return None if found is None else math.exp(found)
+        return rising_root(surplus, self.J_needed)
 
     def _delta_with(self, flywheel: float) -> float:
         """Return δ of the speed line with another flywheel in kg m²; inf where it stalls."""
         try:
-            return self._line_with(flywheel).delta
+            line = self.speed if flywheel == self.J else None
+            return (line or self._line_with(flywheel)).delta
         except (Unsettled, NoSolutionError, UsageError):
             return math.inf
 

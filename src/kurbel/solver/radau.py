@@ -103,6 +103,7 @@ _HEAVIEST = 12
 _STEP = 0.1
 _SHORTEST = 0.998
 """Largest and smallest cut of the inertia, on the way down."""
+_MOST_STEPS = 60
 _STANDING = 0.05
 """z − floor, over that of z = 0, that is taken for standing still where the way down ends."""
 
@@ -112,7 +113,9 @@ def _lightened(equation: Equation, guess: _Guess) -> Periodic:
     own = -float(equation.floor(guess.elements.prepared(equation)).max())
     found, inertia = _heavy(equation, guess, own)
     factor = _STEP
-    while inertia > own:
+    for _ in range(_MOST_STEPS):
+        if inertia <= own:
+            return found
         lighter = max(inertia * factor, own)
         try:
             found = _settled(equation.heavier(lighter - own), _Guess(found.elements, found.start, found.values))
@@ -120,8 +123,8 @@ def _lightened(equation: Equation, guess: _Guess) -> Periodic:
         except Unsettled:
             factor = math.sqrt(factor)
             if factor > _SHORTEST:
-                raise _end_of(equation.heavier(inertia - own), found, inertia - own) from None
-    return found
+                break
+    raise _end_of(equation.heavier(inertia - own), found, inertia - own)
 
 
 def _heavy(equation: Equation, guess: _Guess, own: float) -> tuple[Periodic, float]:

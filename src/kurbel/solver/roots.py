@@ -49,28 +49,33 @@ def _next_part(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array) ->
 
 
 _TRIALS = 20
-_CLOSE = 1e-10
-_FAR = 7.0
+_CLOSE = 1e-9
+_FAR = 1000.0
 
 
-def falling_root(function: Callable[[float], float], start: float) -> float | None:
-    """Return an argument within 7 of `start` at which the function was found to be zero within 1e-10, or None.
+def rising_root(function: Callable[[float], float], start: float) -> float | None:
+    """Return an argument at which the function is zero within 1e-9, or None; start: positive.
 
-    The function falls, with a slope of about −1; it may jump, and be infinite.
+    It was found to be so there, or all but so at the end of a secant whose remainder, a product of both ends, is less.
+    It is sought from a thousandth of the start to a thousand times it. The function rises, by about 1 over `start`; it
+    may jump, and be infinite.
     """
-    low, high, step = -math.inf, math.inf, 1.0
+    low, high, step = 0.0, math.inf, 1.0
     x, f = before, f_before = start, function(start)
     for _ in range(_TRIALS):
         if abs(f) <= _CLOSE:
             return x
-        low, high = (x, high) if f > 0 else (low, x)
-        if math.isinf(low) or math.isinf(high):
-            following, step = x + step * min(max(f, -1.0), 1.0), 2 * step
+        if abs(f * f_before) <= _CLOSE and f != f_before:
+            return x - f * (x - before) / (f - f_before)
+        low, high = (x, high) if f < 0 else (low, x)
+        if not low or math.isinf(high):
+            step *= 2.0 if x != before and abs(f) > abs(f_before) / 2 else 1.0
+            following = max(x - step * start * min(f, 1.0), x / 4)
         else:
-            following = x - f * (x - before) / (f - f_before)
+            following = x - f * (x - before) / (f - f_before) if math.isfinite(f - f_before) else low
             if not low < following < high:
                 following = (low + high) / 2
-        if abs(following - start) > _FAR:
+        if not start / _FAR < following < start * _FAR:
             break
         before, f_before = x, f
         x, f = following, function(following)

@@ -105,10 +105,12 @@ class SpeedLine(ABC):
 
     def _ratio(self, degrees: Array, within: Array) -> Sampled:
         """Return (ω/ω_n)² − 1 with its slope by φ."""
-        z, energy = self.z(degrees, within), self.inertia.energy(degrees, within)
+        torque = self.excess.torque(degrees, within).value
+        return self._sampled(self.z(degrees, within), self.inertia.energy(degrees, within), torque)
+
+    def _sampled(self, z: Array, energy: Jet, torque: Array) -> Sampled:
         ratio = z / energy.value
-        slope = self.excess.torque(degrees, within).value - self._rise(ratio)
-        return Sampled(ratio, (slope - ratio * energy.slope) / energy.value)
+        return Sampled(ratio, (torque - self._rise(ratio) - ratio * energy.slope) / energy.value)
 
     @cached_property
     def _samples(self) -> Sampled:
@@ -156,6 +158,29 @@ class SpeedLine(ABC):
         return self.inertia.omega**2 * squares / ((self.omega_max.value + self.omega_min.value) * self.omega_mean)
 
 
+class Turning:
+    """What a speed under a constant load hangs on whatever the flywheel, on a grid: computed once for all flywheels."""
+
+    def __init__(self, excess: Excess, masses: Sequence[InertiaEffort], omega: float) -> None:
+        self.excess, self.masses, self.omega = excess, tuple(masses), omega
+        self.grid = _split_at_dips(excess)
+
+    @cached_property
+    def work(self) -> Array:
+        """E in J."""
+        return self.excess.at(self.grid.degrees.ravel()).reshape(self.grid.degrees.shape)
+
+    @cached_property
+    def torque(self) -> Array:
+        """Excess torque in N m."""
+        return np.asarray(self.excess.torque.torque(self.grid.degrees, self.grid.within).value)
+
+    @cached_property
+    def energy(self) -> Jet:
+        """½ J ω_n² in J of the masses alone."""
+        return Inertia(0.0, self.masses, self.omega).energy(self.grid.degrees, self.grid.within)
+
+
 class ConstantLoad(SpeedLine):
     """ω under a load that does not depend on speed: z = E + C, closed.
 
@@ -165,25 +190,24 @@ class ConstantLoad(SpeedLine):
 
     SLOWEST = 0.01
 
-    def __init__(self, excess: Excess, inertia: Inertia) -> None:
-        super().__init__(excess.torque, inertia, _split_at_dips(excess))
-        self._closed = excess
+    def __init__(self, turning: Turning, flywheel: float) -> None:
+        inertia = Inertia(flywheel, turning.masses, turning.omega)
+        super().__init__(turning.excess.torque, inertia, turning.grid)
+        self._turning = turning
+        self._energy = turning.energy + flywheel * turning.omega**2 / 2
         self.constant = self._constant()
 
     def z(self, degrees: Array, within: Array) -> Array:
         """Return E + C in J; see `SpeedLine`."""
-        if degrees is self.grid.degrees:
-            return self._on_grid + self.constant
-        return self._closed.at(degrees.ravel()).reshape(degrees.shape) + self.constant
+        return self._turning.excess.at(degrees.ravel()).reshape(degrees.shape) + self.constant
 
     @cached_property
-    def _on_grid(self) -> Array:
-        return self._closed.at(self.grid.degrees.ravel()).reshape(self.grid.degrees.shape)
+    def _samples(self) -> Sampled:
+        return self._sampled(self._turning.work + self.constant, self._energy, self._turning.torque)
 
     def _constant(self) -> float:
         """C in J, from ∫ dφ/ω = 2π/ω_n: the mean of 1/√(1 + r) is 1. That falls and is convex: Newton from below."""
-        energy = self.inertia.energy(self.grid.degrees, self.grid.within).value
-        excess = self._on_grid
+        energy, excess = self._energy.value, self._turning.work
         least = -excess + (self.SLOWEST**2 - 1) * energy
         constant = float(least.max())
         whole = math.radians(self.cycle)
