@@ -212,5 +212,5 @@ def test_every_prefix_of_a_machine(name: str) -> None:
 @pytest.mark.parametrize(
     "sign", ["[", "{", "- ", "? ", "a: ", "'", '"', "&a ", "*a ", "!", "a:\n", "[],", "#", "%", "\t", "|\n"]
 )
-def test_no_sign_repeated_is_too_much(sign: str, size: int) -> None:
+def test_no_sign_repeated_is_a_fault_of_kurbel(sign: str, size: int) -> None:
     read((sign * (size // len(sign))).encode())

@@ -42,7 +42,7 @@ class Mistake(NamedTuple):
     message: str
 
 
-class _StopReading(Exception):
+class StopReading(Exception):
     """The rest of the file cannot be read."""
 
 
@@ -88,7 +88,7 @@ def run(text: str, builder: Builder) -> bool:
             handler = handlers.get(type(event))
             if handler is not None:
                 handler(event)
-    except _StopReading:
+    except StopReading:
         return False
     except yaml.MarkedYAMLError as error:
         builder.mistakes.append(explain(error, text))
@@ -174,14 +174,14 @@ class Builder:
         self._documents += 1
         if self._documents > 1:
             self._report(event, (), "a second document begins here; a file describes one machine, leave out '---'")
-            raise _StopReading
+            raise StopReading
 
     def _begin(self, container: dict[str, Any] | list[Any], event: Any) -> None:
         if event.tag is not None or event.anchor is not None:
             self._guard(event)
         if len(self._open) >= DEPTH_LIMIT:
             self._report(event, (), f"nested deeper than {DEPTH_LIMIT} levels; no machine needs that")
-            raise _StopReading
+            raise StopReading
         step: Step = ""
         if self._open:
             step = self._step()
@@ -243,4 +243,4 @@ class Builder:
             self.mistakes[-1] = self.mistakes[-1]._replace(
                 message=f"{message} (reading stopped after {FAULT_LIMIT} faults)"
             )
-            raise _StopReading
+            raise StopReading

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from kurbel.errors import Path
-from kurbel.machine_file.events import Builder, run
+from kurbel.machine_file.events import Builder, StopReading, run
 from kurbel.machine_file.source import Place
 
 
@@ -46,4 +46,8 @@ class _Locator(Builder):
             # an empty value is pointed at by its key, as is a mapping or a list; items of a list have no key
             noted = self._values if not is_key and isinstance(value, str) and value else self._keys
             noted.setdefault(path, Place(event.start_mark.line, event.start_mark.column))
+            if not is_key:
+                self._wanted.discard(path)
+        if not self._wanted:
+            raise StopReading
         super()._place(value, event)

@@ -1,0 +1,181 @@
+"""What a machine file may hold has bounds; every message has, too; no file is quoted that is none of figures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.bounds import SIZES
+from kurbel.cli import kurbel
+from kurbel.errors import KurbelError, MachineFileError
+from kurbel.machine import trace_samples
+from kurbel.machine_file import load, loads
+from kurbel.machine_file.schema import json_schema
+from kurbel.units import SI
+
+ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod_ratio: 5\n"
+GAS = "bore: 300 mm\nindicator: {head_end: {constant: {expansion: 1 bar, compression: 2 bar}}}\n"
+TRACE = "bore: 1 m\nindicator: {{head_end: {{trace: {{file: {file}, unit: bar, angle_zero: {zero}{more}}}}}}}\n"
+
+
+def run(command: str, text: str) -> Result:
+    return CliRunner().invoke(kurbel, [command, "-"], input=text)
+
+
+@pytest.mark.parametrize("command", ["check", "motion", "forces", "flywheel"])
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (ENGINE + GAS.replace("300 mm", "1e-200 m"), "1e-200 m is too small; a length in a machine file is 0 or at"),
+        (ENGINE + GAS + "flywheel: {inertia: 1e-300 kg m2}", "1e-300 kg m2 is too small; an inertia in a machine file"),
+        (
+            ENGINE.replace("60 rpm", "1e160 rpm") + GAS,
+            "1e160 rpm is too large; a speed in a machine file is at most 1e",
+        ),
+        (
+            ENGINE + "bore: 1 m\nindicator: {head_end: {trace: {points: [[0, 1], [180, 2], [360, 1]], unit: bar, "
+            "angle_zero: 3.6e102 deg}}}",
+            "3.6e102 deg is too large; an angle in a machine file is at most 1e+06 deg",
+        ),
+        (
+            ENGINE + "bore: 1 m\nindicator: {head_end: {trace: {points: [[0, 1], [180, 2], [360, 1]], unit: bar, "
+            "angle_zero: 36000000000000360 deg}}}",
+            "36000000000000360 deg is too large; an angle in a machine file is at most 1e+06 deg",
+        ),
+        (
+            ENGINE + "bore: 1 m\nindicator: {head_end: {trace: {points: [[1e9, 1], [1000000180, 2], [1000000360, 1]], "
+            "unit: bar}}}",
+            "an angle in a machine file is at most 1e+06 deg",
+        ),
+        (ENGINE.replace("5", "1e16"), "1e16 is too large; a bare number in a machine file is at most 1e+15"),
+    ],
+)
+def test_absurd_values_are_refused_by_name(command: str, text: str, message: str) -> None:
+    result = run(command, text)
+    assert result.exit_code == 2
+    assert message in result.stderr
+
+
+@pytest.mark.parametrize("kind", SIZES)
+def test_every_kind_has_sizes_that_can_be_squared_and_divided(kind: str) -> None:
+    smallest, largest = SIZES[kind]
+    assert 0 <= smallest < 1 <= largest
+    assert largest**6 < 1e300
+    assert kind in SI
+    assert smallest == 0 or smallest**6 > 1e-300
+
+
+def test_bounds_are_those_of_the_file_not_of_python() -> None:
+    from kurbel.machine.piston import Piston
+
+    assert Piston(1e-200).bore == 1e-200
+
+
+def test_the_schema_states_the_sizes() -> None:
+    schema = json_schema()
+    assert schema["definitions"]["quantity_length"]["description"] == "in size 0 or 1e-09 to 1e+09 m"
+    ratio = schema["properties"]["rod_ratio"]
+    jsonschema.validate(1e15, ratio)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(1.1e15, ratio)
+
+
+@pytest.mark.parametrize(
+    ("text", "note"),
+    [
+        (ENGINE + "bore: 450 m\n", "a bore of 450000 mm is beyond anything built; is its unit right?"),
+        (ENGINE.replace("60 rpm", "1e6 rpm"), "a speed of 1e+06 rpm is beyond anything built; is its unit right?"),
+        (ENGINE + "masses: {piston: 300000 t}\n", "a mass of 3e+08 kg in moving parts is beyond anything built"),
+    ],
+)
+def test_what_was_never_built_gets_a_note(text: str, note: str) -> None:
+    result = run("check", text)
+    assert result.exit_code == 0
+    assert note in " ".join(result.stdout.split())
+
+
+def test_nothing_that_was_built_gets_one() -> None:
+    """The Cruquius engine: 144 inches; a large two-stroke diesel: 20 t; a model engine: 30,000 rpm."""
+    built = "speed: 30000 rpm\ncrank: 1 m\nrod_ratio: 5\nbore: 3658 mm\nmasses: {piston: 20 t}\n"
+    assert "beyond anything built" not in run("check", built).output
+
+
+def test_an_overflow_that_no_bound_keeps_off_is_an_error_without_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
+    import numpy as np
+
+    from kurbel.report import check
+
+    monkeypatch.setattr(check, "speed_notes", lambda *_: [str(np.array([1e300]) * 1e300)])
+    result = run("check", ENGINE)
+    assert result.exit_code == 2
+    assert "lead beyond what can be computed with (overflow" in result.stderr
+    assert "RuntimeWarning" not in result.output
+
+
+LONG = 100_000
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "masses: " + "x" * LONG,
+        "x" * LONG + ": 1",
+        "crank: " + "a_" * LONG,
+        "crank: " + "ab:c" * LONG,
+        "crank: 1 m\n" + "bore" * LONG + ":4",
+        "crank: " + "9" * LONG + " m",
+        "rod_ratio: " + "1," * LONG,
+        f"limits: {{{'x' * LONG}: 1}}",
+        f"effort: {{unit: N m, points: [[0 {'1' * LONG}], [1, 2]]}}",
+        f"effort: {{unit: N m, points: [[{'1, ' * 10_000}], [1, 2]]}}",
+        f"effort: {{unit: {'N m ' * LONG}, points: [[0, 1], [360, 1]]}}",
+        "cylinders:\n" + "- {crank: 1 m, rod_ratio: 5}\n" * 1000,
+    ],
+    ids=lambda text: text[:12],
+)
+def test_a_message_is_bounded_however_long_a_word_is(text: str) -> None:
+    with pytest.raises(MachineFileError) as caught:
+        loads(text)
+    assert max(map(len, caught.value.pretty().split("\n"))) < 500
+
+
+SECRET = "root:x:0:0:root:/root:/bin/bash\n"
+
+
+@pytest.mark.parametrize("delimiter", ["comma", "space", "tab"])
+@pytest.mark.parametrize("content", [SECRET, f"0,{SECRET}", f"0 1\n{SECRET}", "-----BEGIN KEY-----\nMIIEpAIBAAKC\n"])
+def test_no_text_of_a_file_is_quoted_that_is_no_trace(tmp_path: Path, delimiter: str, content: str) -> None:
+    (tmp_path / "passwd").write_text(content)
+    keys = TRACE.format(file="passwd", zero="0 deg", more=f", delimiter: {delimiter}")
+    (tmp_path / "m.yaml").write_text(ENGINE + keys)
+    with pytest.raises(MachineFileError) as caught:
+        load(tmp_path / "m.yaml")
+    for word in ("root", "bash", "BEGIN", "MII"):
+        assert word not in caught.value.faults[0].message
+
+
+def test_rows_beyond_the_limit_are_not_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "p.csv").write_text("".join(f"{angle / 10},1\n" for angle in range(3601)))
+    (tmp_path / "m.yaml").write_text(ENGINE + TRACE.format(file="p.csv", zero="0 deg", more=""))
+    read = []
+    lines = trace_samples._lines
+    monkeypatch.setattr(trace_samples, "MOST_POINTS", 100)
+    monkeypatch.setattr(trace_samples, "_lines", lambda file: (read.append(line) or line for line in lines(file)))
+    with pytest.raises(KurbelError, match="has more than 100 samples; thin them out"):
+        load(tmp_path / "m.yaml")
+    assert len(read) <= 102
+
+
+def test_a_line_without_end_is_not_loaded(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text("1" * 1_000_000)
+    (tmp_path / "m.yaml").write_text(ENGINE + TRACE.format(file="p.csv", zero="0 deg", more=""))
+    with pytest.raises(KurbelError, match="has a line of more than 10000 characters"):
+        load(tmp_path / "m.yaml")
+
+
+def test_json_of_the_schema_is_finite() -> None:
+    assert json.loads(json.dumps(json_schema(), allow_nan=False))

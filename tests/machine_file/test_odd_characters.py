@@ -1,0 +1,85 @@
+"""White space and signs that word processors put in the place of ours: read as what they look like, or refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from kurbel.errors import MachineFileError, UnitError
+from kurbel.machine_file import load, loads
+from kurbel.numerals import parse_number
+from kurbel.units import parse_quantity
+
+# all of Unicode's white space but the line ends of YAML and the control characters that it refuses
+SPACES = [c for c in map(chr, range(0x80, 0x110000)) if c.isspace() and c not in "\x85\u2028\u2029"]
+
+
+@pytest.mark.parametrize("space", SPACES, ids=ascii)
+def test_any_white_space_is_a_space(space: str) -> None:
+    text = (
+        "crank: 400 mm\nrod_ratio: 5\nspeed: 50 rpm\nbore: 300 mm\n"
+        "indicator:\n  head_end: {unit: kgf / cm2, expansion: [[0, 5], [1, 2]], compression: [[1, 1], [0, 1]]}\n"
+    )
+    odd = loads(text.replace(" ", space))
+    assert repr(odd.cylinders[0].mechanism) == "SliderCrank(crank=0.4, rod=2.0, offset=0.0)"
+    assert odd.speed == 50 / 60
+    head = odd.cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
+    assert head.lines[0].pressures == (5 * 98066.5, 2 * 98066.5)  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("\u22125 mm", -0.005),
+        ("5e\u22123\u202fm", 0.005),
+        ("\uff15\uff10\u3000\uff4d\uff4d", 0.05),
+        ("\uff0d1\uff0e5 m", -1.5),
+        ("450\u00a0\u00b5m", 450e-6),
+    ],
+)
+def test_signs_that_look_like_ours(text: str, value: float) -> None:
+    assert parse_quantity(text, "length") == value
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [("3 kgf\u2215cm\u00b2", "pressure"), ("3 kg\u22c5m\u00b2", "inertia"), ("90\u00ba", "angle")],
+)
+def test_units_that_look_like_ours(text: str, kind: str) -> None:
+    plain = {"pressure": "3 kgf/cm2", "inertia": "3 kg m2", "angle": "90 deg"}
+    assert parse_quantity(text, kind) == parse_quantity(plain[kind], kind)
+
+
+@pytest.mark.parametrize(
+    "text", ["\u0665", "5\u00b2", "\u00bd", "1\u00d710", "\u2163", "4\u200b5", "\ufeff5\u2060", "5\u0301"]
+)
+def test_what_may_mean_something_else_is_no_number(text: str) -> None:
+    with pytest.raises(UnitError, match="expected a number"):
+        parse_number(text)
+    with pytest.raises(UnitError):
+        parse_quantity(f"{text} mm", "length")
+    with pytest.raises(MachineFileError, match=r"points\[0\]\[1\]"):
+        loads(f"effort: {{unit: N m, points: [[0, {text}], [360, 1]]}}")
+
+
+def test_spaces_between_thousands_are_named() -> None:
+    with pytest.raises(MachineFileError) as caught:
+        loads("crank: 1\u2009400 mm\nrod_ratio: 1\u202f005")
+    assert "'1 400 mm' has spaces between thousands; leave them out" in str(caught.value)
+    with pytest.raises(UnitError, match="write it without spaces between thousands"):
+        parse_number("1\u202f005")
+
+
+def test_an_escaped_no_break_space_is_shown() -> None:
+    with pytest.raises(MachineFileError, match=r"got '400\\u00a0mm'"):
+        loads('crank: "400\\_mm"\nrod_ratio: 5')
+
+
+def test_odd_spaces_in_a_trace(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text("0,\u00a01\n180,\u20092\n360\u202f,1\n", encoding="utf-8")
+    (tmp_path / "m.yaml").write_text(
+        "crank: 1 m\nrod_ratio: 5\nbore: 1 m\nindicator: {head_end: {trace: {file: p.csv, unit: bar}}}"
+    )
+    trace = load(tmp_path / "m.yaml").cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
+    assert trace.samples.pressures.tolist() == [1e5, 2e5, 1e5]  # type: ignore[union-attr]
