@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from kurbel.report.motion import (
     shown_columns,
 )
 from kurbel.report.shown import shown_key_value
-from kurbel.report.tables import LeftOut, Part, Report
+from kurbel.report.tables import KeyValue, Later, LeftOut, Part, Report
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.units import show
@@ -70,10 +71,20 @@ def _part(
     return Part(
         cylinder.name,
         tuple(shown_columns(forces, angles, columns or fitting, _ALL_COLUMNS, system)),
-        tuple(shown_key_value(name, value, system) for name, value in key_values(forces)),
-        (*left_out(case.machine, cylinder), *_no_loss(forces)),
-        (*warnings(cylinder), *_balance_warnings(forces), *_pin_warnings(forces), *measured_warnings(case, forces)),
+        Later(lambda: _shown_key_values(forces, system)),
+        Later(lambda: (*left_out(case.machine, cylinder), *_no_loss(forces))),
+        Later(lambda: _warnings(case, forces)),
     )
+
+
+def _shown_key_values(forces: CylinderForces, system: str) -> tuple[KeyValue, ...]:
+    with np.errstate(all="ignore"):  # what overflows is refused by name
+        return tuple(shown_key_value(name, value, system) for name, value in key_values(forces))
+
+
+def _warnings(case: Case, forces: CylinderForces) -> tuple[str, ...]:
+    said = (warnings(forces.drive.cylinder), _balance_warnings(forces), _pin_warnings(forces))
+    return (*chain.from_iterable(said), *measured_warnings(case, forces))
 
 
 def measured_warnings(case: Case, forces: CylinderForces) -> Iterable[str]:
