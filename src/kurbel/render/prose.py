@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.quantities import NOISE_POWER
@@ -39,7 +39,7 @@ def _of_part(name: str, part: Part, look: Look) -> Iterator[list[Line]]:
         yield [line(f"Warnings{said}", "name"), *warnings]
 
 
-def _left_out(left_out: tuple[LeftOut, ...], look: Look) -> Iterator[Line]:
+def _left_out(left_out: Collection[LeftOut], look: Look) -> Iterator[Line]:
     column = max(width(look.charset.text(one.what)) for one in left_out)
     for one in left_out:
         yield from _sentence(f"  {left(look.charset.text(one.what), column)}  ", one.why, look)
@@ -56,7 +56,7 @@ class _Shown(NamedTuple):
     text: str
 
 
-def key_value_lines(key_values: tuple[KeyValue, ...], look: Look) -> Iterator[Line]:
+def key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Line]:
     """Yield a line for each key value: symbol, value, unit, where it stands, what it is; decimal points in one line."""
     shown = [_shown(one, look) for one in key_values]
     symbol, unit, place = (max(width(s[field]) for s in shown) for field in (0, 3, 4))

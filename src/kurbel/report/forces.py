@@ -22,7 +22,7 @@ from kurbel.report.motion import (
 )
 from kurbel.report.notes import Note, machine_notes, of_cylinder
 from kurbel.report.shown import shown_key_value
-from kurbel.report.tables import LeftOut, Part, Report
+from kurbel.report.tables import KeyValue, Later, LeftOut, Part, Report
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.units import show
@@ -77,10 +77,20 @@ def _part(
     return Part(
         cylinder.name,
         cylinder_columns(forces, angles, columns or fitting, _ALL_COLUMNS, system),
-        tuple(shown_key_value(name, value, system) for name, value in key_values(forces)),
-        (*left_out(case.machine, cylinder), *_no_loss(forces)),
-        (*of_cylinder(found, case.machine, cylinder), *_balance_warnings(forces), *_pin_warnings(forces)),
+        Later(lambda: _shown_key_values(forces, system)),
+        Later(lambda: (*left_out(case.machine, cylinder), *_no_loss(forces))),
+        Later(lambda: _warnings(case.machine, forces, found)),
     )
+
+
+def _shown_key_values(forces: CylinderForces, system: str) -> tuple[KeyValue, ...]:
+    with np.errstate(all="ignore"):  # what overflows is refused by name
+        return tuple(shown_key_value(name, value, system) for name, value in key_values(forces))
+
+
+def _warnings(machine: Machine, forces: CylinderForces, found: Iterable[Note]) -> tuple[str, ...]:
+    of_this = of_cylinder(found, machine, forces.drive.cylinder)
+    return (*of_this, *_balance_warnings(forces), *_pin_warnings(forces))
 
 
 _CLOSED = 1e-9

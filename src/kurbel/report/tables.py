@@ -2,10 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple, Union
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from functools import cached_property
+from typing import NamedTuple, TypeVar, Union
 
 Value = Union[float, int, None]
+Item = TypeVar("Item")
+
+
+class Later(Collection[Item]):
+    """Lines of a report that are computed when they are first read: csv shows none of them."""
+
+    def __init__(self, make: Callable[[], Iterable[Item]]) -> None:
+        self._make = make
+
+    @cached_property
+    def _items(self) -> tuple[Item, ...]:
+        return tuple(self._make())
+
+    def __iter__(self) -> Iterator[Item]:
+        return iter(self._items)
+
+    def __contains__(self, item: object) -> bool:
+        return item in self._items
+
+    def __len__(self) -> int:
+        return len(self._items)
 
 
 class Column(NamedTuple):
@@ -75,9 +97,9 @@ class Part(NamedTuple):
 
     name: str | float
     columns: tuple[Column, ...]
-    key_values: tuple[KeyValue, ...] = ()
-    left_out: tuple[LeftOut, ...] = ()
-    warnings: tuple[str, ...] = ()
+    key_values: Collection[KeyValue] = ()
+    left_out: Collection[LeftOut] = ()
+    warnings: Collection[str] = ()
     place_tables: tuple[PlaceTable, ...] = ()
 
 
