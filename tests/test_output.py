@@ -166,17 +166,20 @@ def test_help_names_the_statuses(command: str) -> None:
     assert (" 3 " in said) == (command in ("", "forces", "flywheel", "stress", "check", "accuracy"))
 
 
-@pytest.mark.parametrize("module", ["kurbel.cli", "click", "kurbel.cli.motion", "numpy", "kurbel.report.motion"])
+@pytest.mark.parametrize(
+    "module", ["typing", "kurbel.cli", "click", "kurbel.cli.motion", "numpy", "kurbel.report.motion"]
+)
 def test_an_interrupt_while_importing_is_130_and_silent(module: str, tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text(MACHINE)
     code = (
-        "import runpy, sys\n"
+        "import sys\n"
         "class Interrupt:\n"
         "    def find_spec(self, name, *_):\n"
         f"        if name == {module!r}: raise KeyboardInterrupt\n"
         "sys.meta_path.insert(0, Interrupt())\n"
         f"sys.argv = ['kurbel', 'motion', {str(tmp_path / 'm.yaml')!r}]\n"
-        "runpy.run_module('kurbel', run_name='__main__')"
+        "from kurbel.__main__ import main\n"
+        "main()"
     )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
     assert (result.returncode, result.stdout, result.stderr) == (130, b"", b"")

@@ -19,8 +19,6 @@ Values are SI floats and arrays; crank angles are in degrees. Names below are im
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 __version__ = "0.1.0"
 
 __all__ = [
@@ -36,7 +34,10 @@ __all__ = [
     "solve",
 ]
 
+TYPE_CHECKING = False  # as in typing, whose import an interrupt could hit before anything guards it
 if TYPE_CHECKING:
+    from typing import Any
+
     from kurbel.errors import KurbelError as KurbelError
     from kurbel.machine import Cylinder as Cylinder
     from kurbel.machine import Machine as Machine

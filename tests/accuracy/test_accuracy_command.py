@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from kurbel import loads
+from kurbel.accuracy.inexact import data_errors, model_errors
 from kurbel.cli import kurbel
 
 MOTION = "{name: plain, speed: 50 rpm, crank: 400 mm, rod_ratio: 5}"
@@ -185,3 +187,32 @@ def test_ascii_output() -> None:
     assert done.returncode == 0, done.stderr.decode()
     assert b"dE " in done.stdout
     assert b"?" not in done.stdout
+
+
+IDLE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
+CONSTANT = "{constant: {expansion: %s, compression: %s}}"
+WORKLESS = {
+    "zero": f"indicator: {{head_end: {CONSTANT % ('0 bar', '0 bar')}}}\n",
+    "equal": f"indicator: {{head_end: {CONSTANT % ('3 bar', '3 bar')}}}\n",
+    "both ends": f"indicator: {{head_end: {CONSTANT % ('3 bar', '3 bar')}, crank_end: mirrored}}\n",
+    "one line": "indicator: {head_end: {unit: bar, expansion: [[0, 5], [1, 1]], compression: [[1, 1], [0, 5]]}}\n",
+}
+
+
+@pytest.mark.parametrize("text", WORKLESS.values(), ids=WORKLESS)
+def test_no_error_is_relative_to_zero(text: str) -> None:
+    """Such cards do no work; what a quadrature makes of that is a rounding, to which nothing is relative."""
+    for more in ("", "masses: {piston: 100 kg}\nfriction: {crosshead: 0.1}\n"):
+        machine = loads(IDLE + text + more)
+        found = [*model_errors(machine), *data_errors(machine)]
+        assert "A_i" not in [one.quantity for one in found]
+        assert all(one.error < 2 for one in found)
+
+
+def test_a_quantity_that_is_zero_is_not_examined_and_that_is_told(tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(IDLE + WORKLESS["zero"], encoding="utf-8")
+    result = CliRunner().invoke(kurbel, ["accuracy", str(tmp_path / "m.yaml"), "--quick", "-f", "json"])
+    assert result.exit_code == 0, result.stderr
+    (scene,) = json.loads(result.stdout)["scenes"]
+    assert [one["what"] for one in scene["left_out"]] == ["A_i", "T_max, T_min", "ΔE"]
+    assert {one["why"] for one in scene["left_out"]} == {"it is zero, and no error is relative to that"}

@@ -69,28 +69,43 @@ def _has_torque(machine: Machine, cylinder: Cylinder) -> bool:
 
 def _of_torque(machine: Machine, cylinder: Cylinder) -> Iterator[Difference]:
     phi = _turn(machine)
-
-    def largest(formula: str) -> float:
-        return float(TextbookCylinder(machine, cylinder, formula).torque(phi).max())
-
-    def excess(formula: str) -> float:
-        return summed_excess(TextbookMachine(machine, formula), _COUNT)
-
-    for quantity, value in (("T_max", largest), ("ΔE", excess)):
-        exact = value("exact")
-        for cause, formula in _FORMULAS:
-            yield Difference(quantity, cause, abs(value(formula) / exact - 1))
+    for formula in _FORMULAS:
+        approximate = TextbookCylinder(machine, cylinder, formula[1]).torque(phi)
+        yield from _of_largest(formula[0], approximate, TextbookCylinder(machine, cylinder).torque(phi))
+    for formula in _FORMULAS:
+        yield from _of_excess(formula[0], TextbookMachine(machine, formula[1]), TextbookMachine(machine), phi)
 
 
 def _massless(machine: Machine) -> Iterator[Difference]:
     phi = _turn(machine)
-    first = machine.cylinders[0]
-    with_masses, without = (
-        float(TextbookCylinder(machine, first, massless=massless).torque(phi).max()) for massless in (False, True)
-    )
-    yield Difference("T_max", "inertia left out", abs(without / with_masses - 1))
-    swings = [summed_excess(TextbookMachine(machine, massless=massless), _COUNT) for massless in (False, True)]
-    yield Difference("ΔE", "inertia left out", abs(swings[1] / swings[0] - 1))
+    first, cause = machine.cylinders[0], "inertia left out"
+    without = TextbookCylinder(machine, first, massless=True).torque(phi)
+    yield from _of_largest(cause, without, TextbookCylinder(machine, first).torque(phi))
+    yield from _of_excess(cause, TextbookMachine(machine, massless=True), TextbookMachine(machine), phi)
+
+
+def _of_largest(cause: str, torque: Array, exact: Array) -> Iterator[Difference]:
+    largest = float(exact.max())
+    yield from _relative("T_max", cause, float(torque.max()) - largest, largest, float(np.abs(exact).max()))
+
+
+def _of_excess(cause: str, textbook: TextbookMachine, exact: TextbookMachine, phi: Array) -> Iterator[Difference]:
+    swing = summed_excess(exact, _COUNT)
+    yield from _relative("ΔE", cause, summed_excess(textbook, _COUNT) - swing, swing, _turnover(exact.torque(phi)))
+
+
+_ZERO = 1e-12
+
+
+def _relative(quantity: str, cause: str, missed: float, exact: float, scale: float) -> Iterator[Difference]:
+    """Yield a relative error; none where the exact value, beside what it is the sum of, is but a rounding of zero."""
+    if abs(exact) > _ZERO * scale:
+        yield Difference(quantity, cause, abs(missed / exact))
+
+
+def _turnover(torque: Array) -> float:
+    """Return the work that goes to and fro at most in a turn, in J."""
+    return 2 * math.pi * float(np.abs(torque).max())
 
 
 def _of_friction(machine: Machine, cylinder: Cylinder) -> Iterator[Difference]:
@@ -130,14 +145,18 @@ def data_errors(machine: Machine) -> Iterator[Difference]:
     def excess(**disturbed: Any) -> float:
         return summed_excess(TextbookMachine(machine), _COUNT, **disturbed)
 
-    for quantity, value in (("A_i", work), ("T_max", largest), ("ΔE", excess)):
+    textbook, torque = TextbookCylinder(machine, first), TextbookMachine(machine).torque(phi)
+    for quantity, value, scale in (
+        ("A_i", work, _turnover(textbook.gas_power(phi))),
+        ("T_max", largest, float(np.abs(textbook.torque(phi)).max())),
+        ("ΔE", excess, _turnover(torque)),
+    ):
         exact = value()
-        if not exact:
-            continue
-        yield Difference(quantity, f"dead centre {SHIFT:g}° late", abs(value(shift=math.radians(SHIFT)) / exact - 1))
+        late = value(shift=math.radians(SHIFT)) - exact
+        yield from _relative(quantity, f"dead centre {SHIFT:g}° late", late, exact, scale)
         scattered = [value(noise=_noise(seed)) for seed in range(_DRAWS)]
         spread = math.sqrt(float(np.mean((np.array(scattered) - exact) ** 2)))
-        yield Difference(quantity, f"noise {NOISE:.1%} of the pressure", spread / abs(exact))
+        yield from _relative(quantity, f"noise {NOISE:.1%} of the pressure", spread, exact, scale)
 
 
 def _noise(seed: int) -> Callable[[Array], Array]:

@@ -24,6 +24,10 @@ IN_ULP = 1e-12
 """Relative errors below this are also given in units of the last place."""
 
 
+_ZERO = Decimal("1e-30")
+"""In SI; a reference of 40 digits that is no larger is zero but for its rounding."""
+
+
 class Row(NamedTuple):
     """One method: evaluations of the motion (None: not counted), relative error and ulp (None: no answer, or large).
 
@@ -158,6 +162,8 @@ def _once(make: Callable[[], Any], ask: Callable[[Any], Any]) -> Callable[[], Se
 def rows(question: Question, machine: Machine, patience: Patience) -> Iterator[Row]:
     """Yield the rows of one quantity, kurbel's own method first. Raises NoReference, KurbelError."""
     reference = question.reference()
+    if all(abs(truth) <= _ZERO for truth in reference):
+        raise NoReference("it is zero, and no error is relative to that")
     own_median = 0.0
     for method in question.methods(machine):
         with np.errstate(all="ignore"):
@@ -190,7 +196,7 @@ def _evaluations(question: Question, machine: Machine) -> int:
 def errors(values: Sequence[float], reference: Sequence[Decimal]) -> tuple[float | None, float | None]:
     """Return the largest relative error, and the same in units of the last place where it is below 1e-12.
 
-    Where the reference is zero, the error counts relative to the largest reference. None for what is not finite.
+    Where a reference is zero, the error counts relative to the largest one, which is not. None for what is not finite.
     """
     if not all(map(math.isfinite, values)):
         return None, None
@@ -201,7 +207,7 @@ def errors(values: Sequence[float], reference: Sequence[Decimal]) -> tuple[float
         for value, truth in zip(values, reference):
             missed = abs(Decimal(value) - truth)
             base = scale if abs(truth) <= zero else abs(truth)
-            worst = max(worst, missed / base if base else missed)
+            worst = max(worst, missed / base)
             places = max(places, float(missed / Decimal(math.ulp(float(base)))))
         error = float(worst)
     return error, places if error < IN_ULP else None

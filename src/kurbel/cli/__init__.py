@@ -10,6 +10,8 @@ import gc
 import os
 import sys
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, NoReturn
 
 import click
@@ -49,11 +51,13 @@ class _Kurbel(click.Group):
 
         raise click.UsageError(f"no command '{name}'{did_you_mean(name, COMMANDS)}", ctx)
 
+    def make_context(self, *args: Any, **extra: Any) -> click.Context:
+        with _silent_interrupt():
+            return super().make_context(*args, **extra)
+
     def invoke(self, ctx: click.Context) -> Any:
-        try:
+        with _silent_interrupt():
             return super().invoke(ctx)
-        except KeyboardInterrupt:  # before click writes an empty line, which may fail
-            raise click.Abort from None
 
     def main(self, *args: Any, **extra: Any) -> NoReturn:
         _survive_missing_characters()
@@ -84,6 +88,15 @@ class _Kurbel(click.Group):
                 INTERNAL,
             )
         sys.exit(status if isinstance(status, int) else 0)
+
+
+@contextmanager
+def _silent_interrupt() -> Iterator[None]:
+    """End with an interrupt before click answers it with an empty line, which may fail."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise click.Abort from None
 
 
 def _survive_missing_characters() -> None:
