@@ -85,3 +85,9 @@ def test_more_points_than_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(points, "MOST_POINTS", 500)
     with pytest.raises(KurbelError, match="501 points; more than 500 are not taken, thin them out"):
         loads(FLOW)
+
+
+def test_more_values_than_any_machine_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(events, "_MOST_SCALARS", 500)
+    with pytest.raises(KurbelError, match="more than 500 values; put measurements into a file"):
+        loads(f"name: [{'1,' * 501}]")

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from kurbel.bounds import MOST_POINTS
 from kurbel.errors import Path, Step
 from kurbel.machine_file.runs import Run, without_runs
 from kurbel.machine_file.source import Place, shown
 
 DEPTH_LIMIT = 32
+_MOST_SCALARS = 3 * MOST_POINTS
 FAULT_LIMIT = 100
 """A file with more faults than this is not read on: it is no machine file, and suggestions cost time."""
 
@@ -135,9 +137,15 @@ class Builder:
         self._brackets: list[bool] = []  # whether each open list stands in brackets
         self._key: str | None = None  # of the innermost mapping, while its value is due
         self._documents = 0
+        self._scalars = 0
 
     def scalar(self, event: Any) -> None:
         """Take a scalar: a key or a value."""
+        self._scalars += 1
+        if self._scalars > _MOST_SCALARS:
+            what = f"more than {_MOST_SCALARS} values; put measurements into a file and name it under 'trace'"
+            self._report(event, (), what)
+            raise StopReading
         if event.tag is not None or event.anchor is not None:
             self._guard(event)
         self._place(event.value if event.style else Plain(event.value), event)

@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from kurbel.bounds import MOST_POINTS
 from kurbel.numerals import NUMBER
 
 _SHORTEST = 100  # pairs worth the trouble
@@ -35,7 +36,7 @@ def without_runs(text: str, scalar: Callable[[str], str]) -> tuple[str, dict[int
     pieces: list[str] = []
     runs: dict[int, Run] = {}
     done = 0
-    if len(text) < 10 * _SHORTEST:
+    if len(text) < 10 * _SHORTEST or text.count("[") > 2 * MOST_POINTS:
         return text, runs
     for first, run, end in _found(text, scalar):
         if len(run.pairs) >= _SHORTEST:
