@@ -220,3 +220,9 @@ def test_a_load_without_a_speed_of_its_own_has_no_multiplier() -> None:
 
 def test_what_is_damped_is_no_resonance() -> None:
     assert coupled(2.05, damping=1e5).elastic.resonances == ()
+
+
+def test_figures_beyond_floats_are_refused_by_name() -> None:
+    too_far = pytest.raises(NoSolutionError, match="stiffness, damping and inertia of the coupling are too far apart")
+    with np.errstate(all="ignore"), too_far:
+        _ = of_points(POINTS, RPM, inertia=1e-9, coupling=Coupling(1e-9, 1.0, 1e305)).delta

@@ -70,7 +70,7 @@ class ElasticCoupling:
 
     The unknowns, (…, 3), are S − M_m over the natural order, and what J₁ and J₂ gain over ω_n times their momentum: all
     in N m, of one size.
-    Raises NoSolutionError in a resonance that nothing damps.
+    Raises NoSolutionError in a resonance that nothing damps, and where floats do not hold the figures.
     """
 
     def __init__(self, coupling: Coupling, shaft: Shaft, effort: Torque, load: Torque) -> None:
@@ -92,7 +92,12 @@ class ElasticCoupling:
             )
         )
         self._largest = 0.0
-        self.elements, self._coefficients = self._solution()
+        try:
+            self.elements, self._coefficients = self._solution()
+        except np.linalg.LinAlgError:
+            raise NoSolutionError(
+                "stiffness, damping and inertia of the coupling are too far apart to compute with; look at their units"
+            ) from None
 
     @cached_property
     def mean(self) -> float:

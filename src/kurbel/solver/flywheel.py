@@ -244,7 +244,7 @@ class MachineSpeed(MachineTurning):
         """
         assert self.J is not None
         assert self.omega
-        least = max(self.J, 1e-6 * self._mean_of_masses)
+        least = max(self.J, 1e-6 * self._mean_of_masses, 1e-300)
         enough = self.J + 2 * more / self.omega**2 if more else least + self.dE / self.omega**2
         for _ in range(_DOUBLINGS):
             if self._turns(_rounded_up(enough)):
@@ -258,7 +258,7 @@ class MachineSpeed(MachineTurning):
         return _rounded_up(enough)
 
     def _turns(self, flywheel: float) -> bool:
-        return math.isfinite(self._delta_with(flywheel))
+        return flywheel != self.J and math.isfinite(self._delta_with(flywheel))
 
     @property
     def delta(self) -> float | None:
