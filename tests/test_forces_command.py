@@ -14,7 +14,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
-from kurbel.quantities import COLUMNS, KEY_VALUES
+from kurbel.declared.quantities import COLUMNS, KEY_VALUES
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = str(CONFIGS / "waterworks.yaml")

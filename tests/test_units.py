@@ -6,9 +6,9 @@ import math
 
 import pytest
 
+from kurbel.declared.numerals import parse_number
+from kurbel.declared.units import SI, TECHNICAL, convert, parse_quantity, show, unit_names
 from kurbel.errors import UnitError
-from kurbel.numerals import parse_number
-from kurbel.units import SI, TECHNICAL, convert, parse_quantity, show, unit_names
 
 G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.keys import Key, Keys, Physical
+from kurbel.declared.keys import Key, Keys, Physical
 from kurbel.mechanisms import Mechanism, check_lengths
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from kurbel.machine import Machine
 from kurbel.machine.turning import Effort, Flywheel
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import MachineSpeed
+from kurbel.solver.turning.flywheel import MachineSpeed
 
 Point = tuple[float, float]
 

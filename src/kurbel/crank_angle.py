@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from kurbel.arithmetic import where
+from kurbel.numerics.arithmetic import where
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -48,6 +48,14 @@ class CrankAngle(NamedTuple):
     def vercosine(self) -> Any:
         """1 + cos φ, without cancellation beside φ = 180°."""
         return where(self.cos >= 0, 1 + abs(self.cos), self.sin * self.sin / (1 + abs(self.cos)))
+
+
+def jet_angle(degrees: Array, beyond: Array | float = 0.0) -> CrankAngle:
+    """Return the crank angles (n,) in degrees, as `CrankAngle.of`, with sine and cosine as jets."""
+    from kurbel.numerics.jet import Jet
+
+    angle = CrankAngle.of(degrees, beyond)
+    return CrankAngle(degrees, Jet(angle.sin, angle.cos), Jet(angle.cos, -angle.sin))
 
 
 def _sin_cos_scalar(degrees: float, beyond: float) -> tuple[float, float]:

@@ -23,15 +23,20 @@ FULL = """
  flywheel: {inertia: 900 kg m2}, load: {slip: 0.1}}
 """
 NOT_OF_A_BARE_MACHINE = (
-    *("kurbel.solver.pressure", "kurbel.solver.gas", "kurbel.solver.card_work", "kurbel.solver.friction"),
     *(
-        "kurbel.solver.rod",
-        "kurbel.solver.effort",
-        "kurbel.solver.excess",
-        "kurbel.solver.radau",
-        "kurbel.solver.speed",
+        "kurbel.solver.pressure",
+        "kurbel.solver.cylinder.gas",
+        "kurbel.solver.turning.card_work",
+        "kurbel.solver.cylinder.friction",
     ),
-    *("kurbel.solver.flywheel", "kurbel.solver.coupling", "kurbel.solver.strength", "kurbel.accuracy"),
+    *(
+        "kurbel.solver.cylinder.rod",
+        "kurbel.solver.turning.effort",
+        "kurbel.solver.turning.excess",
+        "kurbel.numerics.collocation",
+        "kurbel.solver.turning.speed",
+    ),
+    *("kurbel.solver.turning.flywheel", "kurbel.solver.turning.coupling", "kurbel.solver.strength", "kurbel.accuracy"),
     *("kurbel.machine.indicator", "kurbel.machine.masses", "kurbel.machine.friction", "kurbel.machine.turning"),
     *("kurbel.machine.trace", "kurbel.machine.ideal_cards", "kurbel.machine.crankshaft"),
     *("kurbel.mechanisms.four_bar", "kurbel.mechanisms.slotted_lever", "kurbel.mechanisms.scotch_yoke"),

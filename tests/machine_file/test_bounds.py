@@ -9,13 +9,13 @@ import jsonschema
 import pytest
 from click.testing import CliRunner, Result
 
-from kurbel.bounds import SIZES
 from kurbel.cli import kurbel
+from kurbel.declared.bounds import SIZES
+from kurbel.declared.units import SI
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine import trace_samples
 from kurbel.machine_file import load, loads
 from kurbel.machine_file.schema import json_schema
-from kurbel.units import SI
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod_ratio: 5\n"
 GAS = "bore: 300 mm\nindicator: {head_end: {constant: {expansion: 1 bar, compression: 2 bar}}}\n"

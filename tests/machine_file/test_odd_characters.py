@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from kurbel.declared.numerals import parse_number
+from kurbel.declared.units import parse_quantity
 from kurbel.errors import MachineFileError, UnitError
 from kurbel.machine_file import load, loads
-from kurbel.numerals import parse_number
-from kurbel.units import parse_quantity
 
 # all of Unicode's white space but the line ends of YAML and the control characters that it refuses
 SPACES = [c for c in map(chr, range(0x80, 0x110000)) if c.isspace() and c not in "\x85\u2028\u2029"]

@@ -9,9 +9,9 @@ import pytest
 import yaml
 from good_machines import ALL
 
+from kurbel.declared.units import SI, example, parse_quantity, unit_names
 from kurbel.errors import UnitError
 from kurbel.machine_file.schema import json_schema
-from kurbel.units import SI, example, parse_quantity, unit_names
 
 jsonschema = pytest.importorskip("jsonschema")
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from precise import by_radian, exact_angle
 
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import CrankAngle, jet_angle
+from kurbel.declared.keys import load
 from kurbel.errors import RuleError
-from kurbel.keys import load
 from kurbel.mechanisms import MECHANISMS
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.parallel_crank import ParallelCrank
@@ -21,7 +21,6 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
-from kurbel.solver.jet import jet_angle
 
 MACHINES = {
     "straight": SliderCrank(0.4, 2.0),

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from kurbel.machine.turning import Effort
-from kurbel.solver.excess import Excess, mean_torque
-from kurbel.solver.jet import Jet
-from kurbel.solver.torques import Diagram, Uniform
+from kurbel.numerics.jet import Jet
+from kurbel.solver.turning.excess import Excess, mean_torque
+from kurbel.solver.turning.torques import Diagram, Uniform
 from turning_machines import of_points, rectangles
 
 FOOT, POUND, POUND_FORCE, INCH = 0.3048, 0.45359237, 4.4482216152605, 0.0254

@@ -6,14 +6,14 @@ import math
 
 import pytest
 
+from kurbel.declared.units import GRAVITY
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.ideal_cards import Diesel
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.forces import CylinderForces
-from kurbel.units import GRAVITY
+from kurbel.solver.cylinder.forces import CylinderForces
 from machines import constant_pressure, one_cylinder
 
 PSI, POUND, INCH, FOOT = 0.45359237 * 9.80665 / 0.0254**2, 0.45359237 * 9.80665, 0.0254, 0.3048

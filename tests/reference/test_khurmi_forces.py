@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import pytest
 
+from kurbel.declared.units import GRAVITY
 from kurbel.machine.masses import Masses
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.units import GRAVITY
 from machines import one_cylinder, single_acting
 
 BOOK_G = 9.81

@@ -6,11 +6,11 @@ import math
 
 import pytest
 
+from kurbel.declared.units import GRAVITY
 from kurbel.machine.indicator import Constant, Indicator
 from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.units import GRAVITY
 from machines import AT, STEAM_CARD, one_cylinder
 
 TAFEL_I = SliderCrank(crank=0.4, rod=2.0)

@@ -10,11 +10,11 @@ import math
 
 import pytest
 
+from kurbel.declared.units import GRAVITY
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.units import GRAVITY
 from machines import constant_pressure, one_cylinder, single_acting
 
 BOOK_G = 9.81

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from kurbel.declared.quantities import KEY_VALUES
 from kurbel.machine_file import loads
-from kurbel.quantities import KEY_VALUES
 from kurbel.render import Look, render
 from kurbel.report.check import checked
 from kurbel.report.shown import shown_key_value

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from kurbel.machine import Machine
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.search import Evaluate, Sampled, curves, zeros
 from kurbel.solver.case import Case
-from kurbel.solver.forces import CylinderForces
-from kurbel.solver.grid import Grid
-from kurbel.solver.search import Evaluate, Sampled, curves, zeros
+from kurbel.solver.cylinder.forces import CylinderForces
 from machines import single_acting
 from random_cylinders import cylinders
 

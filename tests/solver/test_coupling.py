@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.turning import Coupling, Effort, Load
-from kurbel.solver.coupling import natural_frequency
-from kurbel.solver.flywheel import MachineSpeed
+from kurbel.solver.turning.coupling import natural_frequency
+from kurbel.solver.turning.flywheel import MachineSpeed
 from turning_machines import of_points
 
 POINTS = [(0, 100), (60, 900), (60, 500), (180, 100), (240, 700), (360, 100)]

@@ -19,9 +19,9 @@ from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.numerics.grid import Grid
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import MachineSpeed
-from kurbel.solver.grid import Grid
+from kurbel.solver.turning.flywheel import MachineSpeed
 from machines import STEAM_CARD, constant_pressure
 from turning_machines import of_points
 

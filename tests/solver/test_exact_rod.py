@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kurbel.declared.units import GRAVITY
 from kurbel.errors import MachineFileError, RuleError
 from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Indicator
@@ -18,8 +19,7 @@ from kurbel.machine.resistance import RamForce
 from kurbel.machine_file import loads
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.forces import CylinderForces
-from kurbel.units import GRAVITY
+from kurbel.solver.cylinder.forces import CylinderForces
 from machines import STEAM_CARD, one_cylinder
 
 CRANK, LENGTH, RPM = 0.3, 1.3, 140.0

@@ -12,11 +12,11 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
+from kurbel.declared.units import parse_quantity
 from kurbel.errors import MachineFileError
 from kurbel.machine_file import load, loads
 from kurbel.report.check import checked
 from kurbel.solver.case import Case
-from kurbel.units import parse_quantity
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 ENGINE = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8")

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from kurbel.declared.units import GRAVITY
 from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.friction import Friction
@@ -21,8 +22,7 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.angles import stepped
 from kurbel.report.forces import forces_report
 from kurbel.solver.case import Case
-from kurbel.solver.forces import CylinderForces
-from kurbel.units import GRAVITY
+from kurbel.solver.cylinder.forces import CylinderForces
 from machines import STEAM_CARD, constant_pressure
 
 BAR = 1e5

@@ -18,7 +18,7 @@ from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.forces import CylinderForces
+from kurbel.solver.cylinder.forces import CylinderForces
 from machines import STEAM_CARD, one_cylinder
 
 pressures = st.floats(-0.9, 30, allow_nan=False).map(lambda p: round(p, 3))

@@ -23,7 +23,7 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
-from kurbel.solver.forces import CylinderForces
+from kurbel.solver.cylinder.forces import CylinderForces
 from machines import AT, STEAM_CARD
 
 SLIDING: dict[str, Mechanism] = {

@@ -20,11 +20,11 @@ from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.machine.turning import Flywheel, Load
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.numerics.collocation import Unsettled, periodic
+from kurbel.numerics.elements import rule
 from kurbel.solver.case import Case
-from kurbel.solver.elements import rule
-from kurbel.solver.flywheel import MachineSpeed
-from kurbel.solver.radau import Unsettled, periodic
-from kurbel.solver.speed import SpeedDependentLoad, SpeedEquation
+from kurbel.solver.turning.flywheel import MachineSpeed
+from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedEquation
 from machines import STEAM_CARD
 from turning_machines import of_points
 
@@ -298,7 +298,7 @@ def test_failing_to_settle_is_not_called_a_standstill(monkeypatch: pytest.Monkey
             raise Unsettled(1000.0)
         return periodic(equation, breaks)
 
-    monkeypatch.setattr("kurbel.solver.speed.periodic", only_heavy)
+    monkeypatch.setattr("kurbel.solver.turning.speed.periodic", only_heavy)
     with pytest.raises(NoSolutionError, match="no speed line is found that repeats under this load; it turns") as stop:
         _ = machine.speed
     assert 3000 <= float(str(stop.value).partition("from J = ")[2].partition(" kg")[0]) < 6000

@@ -16,10 +16,10 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.numerics.grid import Grid
 from kurbel.solver.case import Case
-from kurbel.solver.forces import CylinderForces
-from kurbel.solver.grid import Grid
-from kurbel.solver.state import State
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
 from machines import one_cylinder
 from random_cylinders import cylinders

@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card, Indicator
@@ -23,7 +24,6 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.strength.places import PARTS, places
 from kurbel.solver.strength.statics import FreeBody, weight_in_throw
-from kurbel.units import GRAVITY
 from machines import STEAM_CARD, constant_pressure
 from shafts import body, place_at, shaft, strength
 

@@ -23,7 +23,7 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.check import checked
 from kurbel.report.plausibility import brake_warnings, trace_warnings
 from kurbel.solver.case import Case
-from kurbel.solver.forces import CylinderForces
+from kurbel.solver.cylinder.forces import CylinderForces
 from machines import one_cylinder
 
 BAR = 1e5

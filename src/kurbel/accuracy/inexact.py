@@ -16,7 +16,7 @@ from kurbel.accuracy.oracle import why_no_motion, why_not
 from kurbel.accuracy.rivals import summed_excess, trapezoid
 from kurbel.accuracy.textbook import TextbookCylinder, TextbookMachine, moved
 from kurbel.machine import Cylinder, Machine
-from kurbel.solver.friction import mean_friction_over_rod_angle, redtenbacher_logarithm, redtenbacher_loss
+from kurbel.solver.cylinder.friction import mean_friction_over_rod_angle, redtenbacher_logarithm, redtenbacher_loss
 
 Array = NDArray[np.float64]
 SHIFT = 0.1
@@ -110,7 +110,7 @@ def _turnover(torque: Array) -> float:
 
 def _of_friction(machine: Machine, cylinder: Cylinder) -> Iterator[Difference]:
     """Redtenbacher's means over the rod angle against each other, and against the work truly lost."""
-    from kurbel.solver.forces import CylinderForces
+    from kurbel.solver.cylinder.forces import CylinderForces
 
     mechanism: Any = cylinder.mechanism
     lam = getattr(mechanism, "lam", None)

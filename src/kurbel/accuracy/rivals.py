@@ -16,7 +16,7 @@ from kurbel.accuracy.textbook import TextbookCylinder, TextbookMachine, alone
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.solver.case import Case
-from kurbel.solver.forces import CylinderForces
+from kurbel.solver.cylinder.forces import CylinderForces
 
 Array = NDArray[np.float64]
 OWN = "kurbel"

@@ -38,8 +38,8 @@ class Number(_NumberType):
             return float(value)
         if value in self.words:
             return self.words[value]
+        from kurbel.declared.numerals import parse_number
         from kurbel.errors import UnitError
-        from kurbel.numerals import parse_number
 
         try:
             return parse_number(value)
@@ -75,8 +75,8 @@ class Columns(Words):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
         """Return the ids in the order given."""
+        from kurbel.declared.quantities import COLUMNS
         from kurbel.near_words import did_you_mean
-        from kurbel.quantities import COLUMNS
 
         ids = super().convert(value, param, ctx)
         for id in ids:

@@ -9,8 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from kurbel.errors import Fault, RuleError
-from kurbel.keys import (
+from kurbel.declared.keys import (
     Choice,
     Count,
     Inline,
@@ -25,6 +24,7 @@ from kurbel.keys import (
     Text,
     Variant,
 )
+from kurbel.errors import Fault, RuleError
 from kurbel.machine.fit import misfits
 from kurbel.mechanisms import MECHANISMS, Mechanism
 

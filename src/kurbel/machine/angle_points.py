@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kurbel.bounds import Point
+from kurbel.declared.bounds import Point
 from kurbel.errors import Fault, Path
 from kurbel.machine import CYCLES
 

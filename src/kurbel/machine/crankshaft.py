@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.declared.units import show
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Key, Keys, Physical
-from kurbel.units import show
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.units import show
 from kurbel.errors import Fault
-from kurbel.units import show
 
 if TYPE_CHECKING:
     from kurbel.machine import Cylinder

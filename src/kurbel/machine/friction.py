@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from kurbel.declared.keys import Count, Key, Keys, Number, Physical, Record
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Count, Key, Keys, Number, Physical, Record
 
 
 @dataclass(frozen=True, eq=False)

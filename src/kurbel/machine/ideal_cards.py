@@ -10,10 +10,10 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar, Union
 
+from kurbel.declared.keys import Key, Keys, Number, Physical
+from kurbel.declared.units import show
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Key, Keys, Number, Physical
 from kurbel.machine.indicator import CLEARANCE
-from kurbel.units import show
 
 _CLEARANCE = Key(CLEARANCE, "Clearance volume over stroke volume", "c", required=True)
 AIR_EXPONENT = 1.4

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Protocol
 
-from kurbel.bounds import Point, size_faults
+from kurbel.declared.bounds import Point, size_faults
+from kurbel.declared.keys import Choice, Key, Keyed, Keys, Number, OneOf, Physical, Points, Record, UnitName
+from kurbel.declared.units import Factor, show
 from kurbel.errors import Fault, Path, RuleError
-from kurbel.keys import Choice, Key, Keyed, Keys, Number, OneOf, Physical, Points, Record, UnitName
-from kurbel.units import Factor, show
 
 CLEARANCE = Number(least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""

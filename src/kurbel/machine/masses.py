@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from kurbel.declared.keys import Form, Key, Keys, Listing, Number, OneOf, Physical, Record, check_bounds
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Form, Key, Keys, Listing, Number, OneOf, Physical, Record, check_bounds
 
 _ONE_OR_MORE: Form = OneOf((Physical("mass", least=0), Listing(Physical("mass", least=0))))
 

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+from kurbel.declared.keys import Key, Keys, Physical, Record, Text
+from kurbel.declared.units import show
 from kurbel.errors import Fault, Path, RuleError
-from kurbel.keys import Key, Keys, Physical, Record, Text
-from kurbel.units import show
 
 if TYPE_CHECKING:
     from kurbel.machine.indicator import Indicator

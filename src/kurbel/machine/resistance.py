@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from kurbel.declared.keys import Key, Keys, Physical, check_bounds
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Key, Keys, Physical, check_bounds
 
 
 @dataclass(frozen=True, eq=False)

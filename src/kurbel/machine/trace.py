@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from kurbel.bounds import Point
+from kurbel.declared.bounds import Point
+from kurbel.declared.keys import Choice, Count, FilePath, Key, Keys, Physical, Points, UnitName
+from kurbel.declared.units import Factor
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Choice, Count, FilePath, Key, Keys, Physical, Points, UnitName
 from kurbel.machine import CYCLES
-from kurbel.units import Factor
 
 if TYPE_CHECKING:
     from kurbel.machine.trace_samples import Samples

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kurbel.bounds import MOST_POINTS, out_of_size
+from kurbel.declared.bounds import MOST_POINTS, out_of_size
+from kurbel.declared.numerals import familiar
 from kurbel.errors import Fault, RuleError
-from kurbel.numerals import familiar
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from kurbel.bounds import Point, size_faults
+from kurbel.declared.bounds import Point, size_faults
+from kurbel.declared.keys import Key, Keys, Number, Physical, Points, UnitName
+from kurbel.declared.units import Factor
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Key, Keys, Number, Physical, Points, UnitName
 from kurbel.machine.angle_points import angle_faults, beyond_cycle
-from kurbel.units import Factor
 
 _TORQUE_KEYS: Keys = {
     "unit": Key(UnitName("torque"), "Unit of the torques"),

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from kurbel.bounds import MOST_POINTS
+from kurbel.declared.bounds import MOST_POINTS
 from kurbel.errors import Path, Step
 from kurbel.machine_file.runs import Run, without_runs
 from kurbel.machine_file.source import Place, shown

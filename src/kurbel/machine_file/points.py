@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from kurbel.bounds import MOST_POINTS
+from kurbel.declared.bounds import MOST_POINTS
+from kurbel.declared.keys import Points
+from kurbel.declared.numerals import parse_number
 from kurbel.errors import Path, UnitError
-from kurbel.keys import Points
 from kurbel.machine_file.events import REFUSED, Plain
 from kurbel.machine_file.reading import Reading
 from kurbel.machine_file.source import LONGEST_VALUE, shown
 from kurbel.machine_file.words import expected, kind_of
-from kurbel.numerals import parse_number
 
 _FAULTS_SHOWN = 3  # of one list: the others are of the same sort, as when every pair has a decimal comma
 

@@ -11,8 +11,8 @@ import re
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from kurbel.bounds import MOST_POINTS
-from kurbel.numerals import NUMBER
+from kurbel.declared.bounds import MOST_POINTS
+from kurbel.declared.numerals import NUMBER
 
 _SHORTEST = 100  # pairs worth the trouble
 _PAIR = re.compile(rf"\[ *({NUMBER.pattern}) *, *({NUMBER.pattern}) *\]")

@@ -6,17 +6,17 @@ import os
 import re
 from typing import Any
 
-from kurbel import keys as forms
-from kurbel.bounds import out_of_size
+from kurbel.declared import keys as forms
+from kurbel.declared.bounds import out_of_size
+from kurbel.declared.keys import out_of_bounds
+from kurbel.declared.numerals import parse_number, plain
+from kurbel.declared.units import parse_quantity, unit_factor
 from kurbel.errors import Path, UnitError
-from kurbel.keys import out_of_bounds
 from kurbel.machine_file.events import REFUSED, Plain
 from kurbel.machine_file.reading import Reading
 from kurbel.machine_file.source import LONGEST_VALUE, shown
 from kurbel.machine_file.words import expected, kind_of, listed
 from kurbel.near_words import did_you_mean
-from kurbel.numerals import parse_number, plain
-from kurbel.units import parse_quantity, unit_factor
 
 _GLUED = re.compile(r"\b[A-Za-z_]\w*:\S")
 _NOTHING = ("", "~", "null", "Null", "NULL")
@@ -139,7 +139,7 @@ def unit_name(reading: Reading, form: forms.UnitName, value: Any, path: Path) ->
 
 def limits(reading: Reading, form: forms.Limits, value: Any, path: Path) -> Any:
     """Read bounds for key values into pairs of id and bound in the base of its quantity."""
-    from kurbel.quantities import KEY_VALUES, LISTS
+    from kurbel.declared.quantities import KEY_VALUES, LISTS
 
     if not isinstance(value, dict) or not value:
         got = "nothing" if isinstance(value, Plain) and value in _NOTHING else kind_of(value)

@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from kurbel import keys as forms
-from kurbel.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
-from kurbel.numerals import NUMBER
-from kurbel.units import example, unit_names
+from kurbel.declared import keys as forms
+from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
+from kurbel.declared.numerals import NUMBER
+from kurbel.declared.units import example, unit_names
 
 Schema = dict[str, Any]
 _ROOT = forms.Record("kurbel.machine:Machine")
@@ -193,7 +193,7 @@ def _spellings(unit: str) -> str:
 
 
 def _limits(definitions: dict[str, Schema]) -> Schema:
-    from kurbel.quantities import KEY_VALUES, LISTS
+    from kurbel.declared.quantities import KEY_VALUES, LISTS
 
     quotient = {"type": "string", "pattern": f"^\\s*{NUMBER.pattern}\\s*/\\s*{NUMBER.pattern}\\s*$"}
     ratio = {"anyOf": [{"type": "number"}, quotient]}

@@ -6,8 +6,8 @@ import os
 import re
 from typing import NamedTuple
 
+from kurbel.declared.numerals import SPACES
 from kurbel.errors import LocatedFault, MachineFileError, Path, UnreadableFileError
-from kurbel.numerals import SPACES
 
 SIZE_LIMIT = 16 * 1024 * 1024
 """Largest machine file in bytes; a longer measurement belongs into a file of its own."""

@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from kurbel import keys as forms
-from kurbel.bounds import MOST_ITEMS
+from kurbel.declared import keys as forms
+from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.machine_file import points, scalars
 from kurbel.machine_file.events import REFUSED, Plain

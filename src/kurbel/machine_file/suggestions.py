@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from kurbel import keys as forms
+from kurbel.declared import keys as forms
 
 _ROOT = forms.Record("kurbel.machine:Machine")
 _INLINE_TOO = (forms.Record("kurbel.machine:Cylinder"), forms.Record("kurbel.machine.piston:Piston"))

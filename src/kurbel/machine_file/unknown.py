@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from kurbel import keys as forms
+from kurbel.declared import keys as forms
 from kurbel.errors import Path
 from kurbel.machine_file.reading import Reading
 from kurbel.machine_file.suggestions import where_it_belongs

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from kurbel import keys as forms
-from kurbel.units import example
+from kurbel.declared import keys as forms
+from kurbel.declared.units import example
 
 
 def example_of(form: Any) -> str:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
+from kurbel.declared.keys import Keys, Record
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Keys, Record
+from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle
@@ -23,13 +24,6 @@ MECHANISMS = {
     "yoke-frame": Record("kurbel.mechanisms.yoke_frame:YokeFrame"),
 }
 """Word in the machine file -> class; imported only when a machine names it."""
-
-
-class Extreme(NamedTuple):
-    """A value and the crank angle in degrees at which it stands."""
-
-    value: float
-    degrees: float
 
 
 class Swing(NamedTuple):
@@ -105,6 +99,10 @@ class Mechanism:
     def landmarks(self) -> tuple[float, ...]:
         """Return the crank angles in degrees, besides the dead centres, at which searches should split."""
         return ()
+
+    def cuts(self) -> tuple[float, ...]:
+        """Return the crank angles in degrees at which quadratures and searches cut a turn: dead centres, landmarks."""
+        return (*self.dead_centres(), *self.landmarks())
 
     @property
     def phi_work(self) -> float:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from kurbel.arithmetic import sqrt, where
+from kurbel.numerics.arithmetic import sqrt, where
 
 
 def cos_rod_angle(sin: Any, cos: Any, rho: Any) -> Any:

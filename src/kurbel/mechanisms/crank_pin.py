@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from kurbel.declared.keys import Key, Keys, Physical
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Key, Keys, Physical
 
 PIN_KEYS: Keys = {
     "pin_diameter": Key(

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from kurbel.arithmetic import bearing, sqrt
+from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.declared.units import show
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Key, Keys, Physical
-from kurbel.mechanisms import Extreme, Mechanism, Swing, check_lengths, fan
-from kurbel.units import show
+from kurbel.mechanisms import Mechanism, Swing, check_lengths, fan
+from kurbel.numerics.arithmetic import bearing, sqrt
+from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle

@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.keys import Key, Keys, Physical, check_bounds
-from kurbel.mechanisms import Extreme, Mechanism, Swing, check_lengths
+from kurbel.declared.keys import Key, Keys, Physical, check_bounds
+from kurbel.mechanisms import Mechanism, Swing, check_lengths
+from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle

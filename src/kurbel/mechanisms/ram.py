@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from kurbel.arithmetic import bearing, sqrt
+from kurbel.numerics.arithmetic import bearing, sqrt
 
 Direction = tuple[float, float]
 """(sin θ, cos θ)."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.keys import Key, Keys, Physical
-from kurbel.mechanisms import Extreme, Mechanism, check_lengths
+from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.mechanisms import Mechanism, check_lengths
 from kurbel.mechanisms.crank_pin import NO_PIN, PIN_KEYS, projected_area
 from kurbel.mechanisms.slider_crank import CRANK_KEYS, one_of
+from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle

@@ -6,13 +6,14 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from kurbel.arithmetic import sqrt, where
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.keys import Key, Keys, Number, Physical
+from kurbel.declared.units import show
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Key, Keys, Number, Physical
-from kurbel.mechanisms import Extreme, Mechanism, fan
+from kurbel.mechanisms import Mechanism, fan
 from kurbel.mechanisms import crank_formulas as formulas
-from kurbel.units import show
+from kurbel.numerics.arithmetic import sqrt, where
+from kurbel.numerics.extreme import Extreme
 
 _INFINITE = (("infinite", math.inf),)
 CRANK_KEYS: Keys = {

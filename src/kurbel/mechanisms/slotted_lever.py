@@ -6,14 +6,15 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
-from kurbel.arithmetic import bearing, sqrt, where
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.declared.units import show
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Key, Keys, Physical
-from kurbel.mechanisms import Extreme, Mechanism, Swing, check_lengths, fan
+from kurbel.mechanisms import Mechanism, Swing, check_lengths, fan
 from kurbel.mechanisms.crank_pin import NO_PIN, PIN_KEYS, projected_area
 from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
-from kurbel.units import show
+from kurbel.numerics.arithmetic import bearing, sqrt, where
+from kurbel.numerics.extreme import Extreme
 
 
 class _Lever(NamedTuple):

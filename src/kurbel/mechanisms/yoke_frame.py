@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from kurbel.declared.keys import Key, Keys, Physical
 from kurbel.errors import Fault, RuleError
-from kurbel.keys import Key, Keys, Physical
 from kurbel.mechanisms.slider_crank import SliderCrank
 
 if TYPE_CHECKING:

@@ -6,15 +6,15 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from kurbel.declared.keys import Key, Physical
+from kurbel.declared.quantities import KEY_VALUES, NOISE_POWER
+from kurbel.declared.units import SI, show
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
-from kurbel.keys import Key, Physical
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.fit import may_lock
 from kurbel.mechanisms import Mechanism
-from kurbel.quantities import KEY_VALUES, NOISE_POWER
 from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages
 from kurbel.report.notes import Note, machine_notes, of_cylinder
-from kurbel.units import SI, show
 
 
 class Entry(NamedTuple):

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from kurbel.declared.units import convert, show
 from kurbel.machine import Machine
 from kurbel.report.left_out import flywheel_left_out
 from kurbel.report.motion import given, plain_values, refuse_absent
@@ -14,8 +15,7 @@ from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, Part, Report
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import MachineSpeed
-from kurbel.units import convert, show
+from kurbel.solver.turning.flywheel import MachineSpeed
 
 FLYWHEEL_COLUMNS = ("phi", "T", "T_inertia", "M", "E", "omega", "M_coupling")
 """Ids of the columns of `kurbel flywheel`, in the order in which they are printed."""

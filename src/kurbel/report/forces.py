@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from kurbel.declared.units import show
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.fit import may_lock
@@ -24,8 +25,7 @@ from kurbel.report.notes import Note, machine_notes, of_cylinder
 from kurbel.report.shown import shown_key_value
 from kurbel.report.tables import KeyValue, Later, LeftOut, Part, Report
 from kurbel.solver.case import Case
-from kurbel.solver.forces import CylinderForces
-from kurbel.units import show
+from kurbel.solver.cylinder.forces import CylinderForces
 
 FORCE_COLUMNS = (
     *("phi", "psi", "x", "c", "b", "p_head", "p_crank", "P_gas", "P_inertia", "P_weight", "P_ram"),

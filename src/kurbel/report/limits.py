@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from importlib import import_module
 
+from kurbel.declared.quantities import OF_COMMAND, OF_WHOLE_MACHINE
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
-from kurbel.quantities import OF_COMMAND, OF_WHOLE_MACHINE
 
 
 def command_of(name: str) -> str:

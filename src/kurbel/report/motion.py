@@ -9,13 +9,13 @@ import numpy as np
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms import Extreme
+from kurbel.numerics.extreme import Extreme
 from kurbel.report.left_out import motion_left_out
 from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, Part, Report
 from kurbel.solver.case import Case
-from kurbel.solver.forces import CylinderForces
-from kurbel.solver.motion import Motion
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.motion import Motion
 
 MOTION_COLUMNS = (
     *("phi", "psi", "x", "c", "b", "theta", "theta_dot", "theta_ddot"),

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.declared.units import show
 from kurbel.machine import Machine
-from kurbel.solver.forces import CylinderForces
-from kurbel.units import show
+from kurbel.solver.cylinder.forces import CylinderForces
 
 if TYPE_CHECKING:
     from kurbel.solver.pressure.trace import TracePressure

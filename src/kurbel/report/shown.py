@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from kurbel.declared.quantities import COLUMNS, KEY_VALUES, Quantity
+from kurbel.declared.units import SYSTEMS, convert
 from kurbel.errors import UsageError
-from kurbel.mechanisms import Extreme
-from kurbel.quantities import COLUMNS, KEY_VALUES, Quantity
+from kurbel.numerics.extreme import Extreme
 from kurbel.report.tables import Column, KeyValue
-from kurbel.units import SYSTEMS, convert
 
 _AT_ONCE = 8192
 """Crank angles computed at once: what a table of any length costs in memory beside its own numbers."""

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from kurbel.declared.quantities import SHAFT_PARTS, STRESSES
+from kurbel.declared.units import SYSTEMS, convert
 from kurbel.machine import Machine
-from kurbel.quantities import SHAFT_PARTS, STRESSES
 from kurbel.report.left_out import left_out, strength_left_out
 from kurbel.report.motion import given, plain_values, refuse_absent
 from kurbel.report.notes import machine_notes, of_machine
@@ -16,7 +17,6 @@ from kurbel.report.shown import shown_column, shown_columns, shown_key_value
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
 from kurbel.solver.strength.crankshaft import CrankshaftStrength, Strained
-from kurbel.units import SYSTEMS, convert
 
 STRESS_COLUMNS = (
     *("phi", "D", "T", "A_D", "A_T", "B_D", "B_T"),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from kurbel.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
-from kurbel.keys import (
+from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
+from kurbel.declared.keys import (
     Choice,
     Count,
     Form,
@@ -21,8 +21,8 @@ from kurbel.keys import (
     Variant,
     load,
 )
-from kurbel.quantities import COLUMNS, FACTORS, KEY_VALUES, STRESSES, Quantity
-from kurbel.units import SI, TECHNICAL, example
+from kurbel.declared.quantities import COLUMNS, FACTORS, KEY_VALUES, STRESSES, Quantity
+from kurbel.declared.units import SI, TECHNICAL, example
 
 _HEAD = """# Symbols, quantities and keys
 

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.quantities import COLUMNS, FACTORS, Quantity
 from kurbel.errors import UsageError
 from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.near_words import did_you_mean
-from kurbel.quantities import COLUMNS, FACTORS, Quantity
 from kurbel.report.tables import Column, Part, Report, Value
 
 RATIOS = (5.0, 4.5, 4.0)

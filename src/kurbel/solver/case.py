@@ -6,11 +6,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kurbel.machine import Machine
-from kurbel.solver.forces import CylinderForces
+from kurbel.solver.cylinder.forces import CylinderForces
 
 if TYPE_CHECKING:
-    from kurbel.solver.flywheel import MachineSpeed
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
+    from kurbel.solver.turning.flywheel import MachineSpeed
 
 
 class Case:
@@ -41,6 +41,6 @@ class Case:
     @cached_property
     def flywheel(self) -> MachineSpeed:
         """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
-        from kurbel.solver.flywheel import MachineSpeed
+        from kurbel.solver.turning.flywheel import MachineSpeed
 
         return MachineSpeed(self.machine, self.cylinders)

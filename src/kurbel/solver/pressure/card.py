@@ -13,7 +13,7 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.indicator import Card, Line
 from kurbel.mechanisms import fan
-from kurbel.solver.jet import once_each
+from kurbel.numerics.jet import once_each
 from kurbel.solver.pressure import Place
 from kurbel.solver.pressure.pieces import Piece, Process, Stroke, polytropic_exponent
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.trace import Trace
-from kurbel.solver.grid import Grid, cycle_breaks
-from kurbel.solver.jet import Jet, once_each
+from kurbel.numerics.grid import Grid, cycle_breaks
+from kurbel.numerics.jet import Jet, once_each
 from kurbel.solver.pressure import Place
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class TracePressure:
     @cached_property
     def straight_area(self) -> float:
         """∮ p dz in Pa with straight lines between the samples, by a Gauss rule that is exact to rounding."""
-        grid = Grid(cycle_breaks(self.place.mechanism, self.place.cycle, [self.starts]))
+        grid = Grid(cycle_breaks(self.place.mechanism.cuts(), self.place.cycle, [self.starts]))
         angle = CrankAngle.of(grid.degrees, grid.beyond)
         pressure = self(None, angle, grid.within)
         return grid.integral(pressure * self._fraction("slope", grid.degrees))

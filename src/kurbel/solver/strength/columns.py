@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kurbel.solver.state import State
+from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.places import PARTS, Place
 from kurbel.solver.strength.statics import FreeBody
 

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.crankshaft import Crankshaft, strength_obstacle
-from kurbel.mechanisms import Extreme
-from kurbel.solver.forces import CylinderForces
-from kurbel.solver.grid import Grid, Pieces, integral
-from kurbel.solver.search import Extremes, Sampled, extremes, zeros
-from kurbel.solver.state import State
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import Grid, Pieces, integral
+from kurbel.numerics.search import Extremes, Sampled, extremes, zeros
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.columns import StrengthColumns, strength_columns
 from kurbel.solver.strength.places import Place, Stresses, places
 from kurbel.solver.strength.sections import norm
 from kurbel.solver.strength.statics import FreeBody, Vector, equilibrium_residual, weight_in_throw
-from kurbel.units import GRAVITY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

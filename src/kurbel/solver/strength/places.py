@@ -22,8 +22,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from kurbel.arithmetic import where
 from kurbel.machine.crankshaft import Crankshaft
+from kurbel.numerics.arithmetic import where
 from kurbel.solver.strength.sections import (
     bach,
     bach_factor,

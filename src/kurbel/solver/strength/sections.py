@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.solver.jet import Jet
+from kurbel.numerics.jet import Jet
 
 
 def direct_stress(force: Any, thickness: float, width: float) -> Any:

@@ -9,7 +9,7 @@ class Quantity(NamedTuple):
     """One printed quantity.
 
     `id` stands in JSON and CSV, `symbol` over the printed table (`plain` where the output has no Greek letters),
-    `kind` decides the unit (see `kurbel.units`), and `text` says in one sentence what it is. A `residual` would be zero
+    `kind` decides the unit (see `units`), and `text` says in one sentence what it is. A `residual` would be zero
     without rounding: people are not shown what of it is only that.
     """
 

@@ -11,12 +11,12 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
-from kurbel.mechanisms import Extreme
-from kurbel.solver.drive import Drive
-from kurbel.solver.grid import Grid, Pieces, integral
-from kurbel.solver.motion import Motion
-from kurbel.solver.search import Curve, Evaluate, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
-from kurbel.solver.state import State
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import Grid, Pieces, integral
+from kurbel.numerics.search import Curve, Evaluate, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
+from kurbel.solver.cylinder.drive import Drive
+from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -207,7 +207,7 @@ class CylinderForces:
         """½ λ f, D 7."""
         if not self._has_crosshead:
             return None
-        from kurbel.solver.friction import redtenbacher_loss
+        from kurbel.solver.cylinder.friction import redtenbacher_loss
 
         return redtenbacher_loss(self.drive.mechanism.lam, self.drive.crosshead_friction)
 

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.arithmetic import running_sums
 from kurbel.crank_angle import CrankAngle
-from kurbel.solver.card_work import CardWork
-from kurbel.solver.drive import Drive
-from kurbel.solver.forces import CylinderForces
-from kurbel.solver.grid import Grid
-from kurbel.solver.jet import Jet
-from kurbel.solver.legendre import legendre
+from kurbel.numerics.arithmetic import running_sums
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.jet import Jet
+from kurbel.numerics.legendre import legendre
+from kurbel.solver.cylinder.drive import Drive
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.rod import ExactRod
+from kurbel.solver.cylinder.state import State
 from kurbel.solver.pressure.card import ProcessPressure
-from kurbel.solver.rod import ExactRod
-from kurbel.solver.state import State
-from kurbel.solver.torques import exact_product
+from kurbel.solver.turning.card_work import CardWork
+from kurbel.solver.turning.torques import exact_product
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from kurbel.solver.legendre import legendre, legendre_slopes
+from kurbel.numerics.legendre import legendre, legendre_slopes
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Flags, Indices

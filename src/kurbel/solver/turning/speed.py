@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from kurbel.mechanisms import Extreme
-from kurbel.solver.effort import InertiaEffort
-from kurbel.solver.excess import Excess
-from kurbel.solver.grid import Grid
-from kurbel.solver.jet import Jet
-from kurbel.solver.radau import Periodic, Standstill, periodic
-from kurbel.solver.search import Extremes, Sampled, extremes
-from kurbel.solver.torques import Torque
+from kurbel.numerics.collocation import Periodic, Standstill, periodic
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.jet import Jet
+from kurbel.numerics.search import Extremes, Sampled, extremes
+from kurbel.solver.turning.effort import InertiaEffort
+from kurbel.solver.turning.excess import Excess
+from kurbel.solver.turning.torques import Torque
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array

@@ -15,12 +15,12 @@ import numpy as np
 
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
-from kurbel.mechanisms import Extreme
-from kurbel.solver.elements import Elements, rule
-from kurbel.solver.excess import mean_torque
-from kurbel.solver.grid import Grid
-from kurbel.solver.search import Extremes, Sampled, extremes
-from kurbel.solver.torques import Sum, Torque
+from kurbel.numerics.elements import Elements, rule
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.search import Extremes, Sampled, extremes
+from kurbel.solver.turning.excess import mean_torque
+from kurbel.solver.turning.torques import Sum, Torque
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, ComplexArray

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kurbel.solver.grid import Grid
-from kurbel.solver.search import Evaluate, Extremes, Sampled, extremes, zeros
-from kurbel.solver.torques import Sum, Torque, total_work, total_works
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
+from kurbel.solver.turning.torques import Sum, Torque, total_work, total_works
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.solver.gauss import HALF_RULE
+from kurbel.numerics.gauss import HALF_RULE
 
 if TYPE_CHECKING:
     from kurbel.machine.friction import Rings

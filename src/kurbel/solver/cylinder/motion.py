@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms import Extreme, Mechanism
-from kurbel.solver.grid import Grid, ascending
-from kurbel.solver.jet import jet_angle
-from kurbel.solver.search import Evaluate, Extremes, Sampled, extremes, zeros
+from kurbel.crank_angle import CrankAngle, jet_angle
+from kurbel.mechanisms import Mechanism
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import Grid, ascending
+from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
 
 
 class Motion:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from kurbel.arithmetic import exact_sum, running_sums
 from kurbel.machine.turning import Effort
-from kurbel.solver.grid import ascending
-from kurbel.solver.jet import Jet
+from kurbel.numerics.arithmetic import exact_sum, running_sums
+from kurbel.numerics.grid import ascending
+from kurbel.numerics.jet import Jet
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices

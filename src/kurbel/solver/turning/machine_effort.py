@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.declared.units import show
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms import Extreme
-from kurbel.solver.effort import CylinderEffort, InertiaEffort
-from kurbel.solver.excess import Excess, mean_torque
-from kurbel.solver.forces import CylinderForces
-from kurbel.solver.torques import Diagram, Mean, Sum, Torque, Uniform, total_work
-from kurbel.units import show
+from kurbel.numerics.extreme import Extreme
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.turning.effort import CylinderEffort, InertiaEffort
+from kurbel.solver.turning.excess import Excess, mean_torque
+from kurbel.solver.turning.torques import Diagram, Mean, Sum, Torque, Uniform, total_work
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kurbel.mechanisms import Mechanism
-from kurbel.solver.gauss import GAUSS, LOBATTO_4, LOBATTO_16, SIMPSON, Rule
+from kurbel.numerics.gauss import GAUSS, LOBATTO_4, LOBATTO_16, SIMPSON, Rule
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Flags
@@ -158,13 +157,14 @@ def _interpolation(nodes: Array, at: Array) -> Array:
     return np.asarray(shares / shares.sum(axis=1, keepdims=True))
 
 
-def cycle_breaks(mechanism: Mechanism, cycle: float, starts: Iterable[Array]) -> Array:
-    """Return the crank angles in degrees that cut a cycle (360 or 720 deg) into smooth pieces, from 0 to its end.
+def cycle_breaks(landmarks: Iterable[float], cycle: float, starts: Iterable[Array]) -> Array:
+    """Return the angles in degrees that cut a cycle (360 or 720 deg) into smooth pieces, from 0 to its end.
 
-    starts: angles (n,) at which a pressure bends or jumps. Where they are many, the pieces between are kept narrow too.
+    landmarks: angles at which every turn should be cut; starts: angles (n,) of the cycle at which something bends or
+    jumps. Where they are many, the pieces between are kept narrow too.
     """
-    landmarks = np.array([*mechanism.dead_centres(), *mechanism.landmarks(), *np.arange(0.0, 360.0, 45.0)])
-    turns = [np.mod(landmarks, 360.0) + turn for turn in np.arange(0.0, cycle, 360.0)]
+    each = np.array([*landmarks, *np.arange(0.0, 360.0, 45.0)])
+    turns = [np.mod(each, 360.0) + turn for turn in np.arange(0.0, cycle, 360.0)]
     given = list(starts)
     if sum(map(len, given)) > _MANY:
         given.append(np.arange(0.0, cycle, _NARROW))

@@ -9,19 +9,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import CrankAngle, jet_angle
+from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.mechanisms import fan
-from kurbel.solver.grid import cycle_breaks
-from kurbel.solver.jet import jet_angle
-from kurbel.solver.state import State
-from kurbel.units import GRAVITY
+from kurbel.numerics.grid import cycle_breaks
+from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.machine.resistance import RamForce
-    from kurbel.solver.gas import PistonGas
-    from kurbel.solver.rod import ExactRod
+    from kurbel.solver.cylinder.gas import PistonGas
+    from kurbel.solver.cylinder.rod import ExactRod
 
 
 class Drive:
@@ -55,7 +54,7 @@ class Drive:
         masses = self.cylinder.masses
         if not (masses and masses.connecting_rod and masses.connecting_rod.exact):
             return None
-        from kurbel.solver.rod import ExactRod
+        from kurbel.solver.cylinder.rod import ExactRod
 
         length = self.mechanism.rod_length
         return ExactRod(masses.connecting_rod, length, self.mechanism.crank, self.omega, self._incline)
@@ -98,7 +97,7 @@ class Drive:
         return tuple(self._gas_on(number) for number in indicated)
 
     def _gas_on(self, number: int) -> PistonGas:
-        from kurbel.solver.gas import PistonGas
+        from kurbel.solver.cylinder.gas import PistonGas
 
         turns = CYCLES[self.machine.cycle_of_piston(self.cylinder, number)]
         piston, ambient = self.cylinder.pistons[number], self.machine.ambient
@@ -139,7 +138,7 @@ class Drive:
         friction = self.cylinder.friction
         if not (friction and friction.rings):
             return 0.0
-        from kurbel.solver.friction import ring_force
+        from kurbel.solver.cylinder.friction import ring_force
 
         return ring_force(friction.rings, self.cylinder.pistons[0].bore)
 
@@ -159,7 +158,7 @@ class Drive:
     def breaks(self) -> Array:
         """Return the crank angles in degrees that cut the cycle into smooth pieces, from 0 to the full cycle."""
         starts = [start for gas in self.gas for start in gas.starts]
-        return cycle_breaks(self.mechanism, self.cycle, [*starts, *self._near_locking()])
+        return cycle_breaks(self.mechanism.cuts(), self.cycle, [*starts, *self._near_locking()])
 
     def _near_locking(self) -> Iterator[Array]:
         """Yield angles, ever denser, round those at which a driven crosshead comes nearest to locking itself.

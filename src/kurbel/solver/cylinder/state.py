@@ -9,12 +9,12 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.solver.jet import once_each
-from kurbel.solver.members import Members
+from kurbel.numerics.jet import once_each
+from kurbel.solver.cylinder.members import Members
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-    from kurbel.solver.drive import Drive
+    from kurbel.solver.cylinder.drive import Drive
 
 
 class State(Members):

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kurbel.mechanisms import Extreme
-from kurbel.solver.grid import Grid
-from kurbel.solver.roots import bracketed_roots
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.roots import bracketed_roots
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Flags

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from kurbel.solver.elements import STAGES, Elements, Prepared, rule
-from kurbel.solver.legendre import legendre
+from kurbel.numerics.elements import STAGES, Elements, Prepared, rule
+from kurbel.numerics.legendre import legendre
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Flags

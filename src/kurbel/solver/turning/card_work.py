@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.arithmetic import running_sums
 from kurbel.crank_angle import CrankAngle
+from kurbel.numerics.arithmetic import running_sums
 from kurbel.solver.pressure.card import ProcessPressure
-from kurbel.solver.torques import exact_product
+from kurbel.solver.turning.torques import exact_product
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices

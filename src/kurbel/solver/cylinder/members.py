@@ -10,7 +10,7 @@ from kurbel.crank_angle import CrankAngle
 
 if TYPE_CHECKING:
     from kurbel.mechanisms import Swing
-    from kurbel.solver.drive import Drive
+    from kurbel.solver.cylinder.drive import Drive
 
 
 class Members:

@@ -12,8 +12,8 @@ from functools import cached_property
 from typing import Any
 
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.units import GRAVITY
 from kurbel.machine.masses import ConnectingRod
-from kurbel.units import GRAVITY
 
 RodAngle = tuple[Any, Any]
 

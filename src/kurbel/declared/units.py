@@ -13,8 +13,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+from kurbel.declared.numerals import NUMBER, plain
 from kurbel.errors import UnitError
-from kurbel.numerals import NUMBER, plain
 
 Factor = tuple[float, float]
 """A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""

@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.declared.units import show
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.mechanisms import Extreme
-from kurbel.solver.effort_machine import MachineTurning
-from kurbel.solver.excess import Excess
-from kurbel.solver.grid import Grid
-from kurbel.solver.radau import Standstill, Unsettled
-from kurbel.solver.roots import rising_root
-from kurbel.solver.speed import (
+from kurbel.numerics.collocation import Standstill, Unsettled
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.roots import rising_root
+from kurbel.solver.turning.excess import Excess
+from kurbel.solver.turning.machine_effort import MachineTurning
+from kurbel.solver.turning.speed import (
     ConstantLoad,
     Inertia,
     PowerLaw,
@@ -26,12 +27,11 @@ from kurbel.solver.speed import (
     Turning,
     floquet,
 )
-from kurbel.solver.torques import Sum
-from kurbel.units import show
+from kurbel.solver.turning.torques import Sum
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-    from kurbel.solver.coupling import ElasticCoupling
+    from kurbel.solver.turning.coupling import ElasticCoupling
 
 _MISSED = 1e-3
 """By what δ may miss the wanted one, relatively, before it is told."""
@@ -89,7 +89,7 @@ class MachineSpeed(MachineTurning):
         coupling = self.machine.coupling
         if not coupling or (self._natural_order_with(flywheel) or self.natural_order or 0.0) > _RIGID_ABOVE:
             return None
-        from kurbel.solver.coupling import ElasticCoupling, Shaft
+        from kurbel.solver.turning.coupling import ElasticCoupling, Shaft
 
         assert self.omega
         own = flywheel + self._mean_of_masses
@@ -107,7 +107,7 @@ class MachineSpeed(MachineTurning):
         return self._natural_order_with(given if given is not None else self._needed_in_all)
 
     def _natural_order_with(self, flywheel: float) -> float | None:
-        from kurbel.solver.coupling import natural_frequency
+        from kurbel.solver.turning.coupling import natural_frequency
 
         assert self.machine.coupling
         assert self.omega

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
+from kurbel.declared.units import SI, Factor
 from kurbel.errors import Fault, Path
-from kurbel.units import SI, Factor
 
 Point = tuple[float, float]
 

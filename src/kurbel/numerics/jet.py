@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.crank_angle import CrankAngle
-
 if TYPE_CHECKING:
     from kurbel.arrays import Array
 
@@ -96,9 +94,3 @@ class Jet:
 def once_each(within: Array) -> Array:
     """Return the angles of pieces (n, 1) that a grid has spread over its nodes, or (n,) angles as they are."""
     return within[:, :1] if within.ndim == 2 and within.strides[1] == 0 else within
-
-
-def jet_angle(degrees: Array, beyond: Array | float = 0.0) -> CrankAngle:
-    """Return the crank angles (n,) in degrees, as `CrankAngle.of`, with sine and cosine as jets."""
-    angle = CrankAngle.of(degrees, beyond)
-    return CrankAngle(degrees, Jet(angle.sin, angle.cos), Jet(angle.cos, -angle.sin))

@@ -1,0 +1,1 @@
+"""What is declared once: quantities with their symbols, keys of the machine file, units."""

@@ -1,0 +1,1 @@
+"""One cylinder with its mechanism: motion, forces, work and friction."""
