@@ -7,7 +7,8 @@ import math
 import pytest
 
 from kurbel.declared.numerals import parse_number
-from kurbel.declared.units import SI, TECHNICAL, convert, parse_quantity, show, unit_names
+from kurbel.declared.unit_systems import SI, SYSTEMS, convert, show, shown_unit
+from kurbel.declared.units import parse_quantity, unit_names
 from kurbel.errors import UnitError
 
 G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
@@ -52,6 +53,21 @@ G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
         ("-0.45 at", "pressure", -44129.925),
         (" 1e3  mm ", "length", 1.0),
         (".5 m", "length", 0.5),
+        ("2 1/4 in", "length", 2.25 * 0.0254),
+        ("2-1/4 inches", "length", 2.25 * 0.0254),
+        ("3/8 inch", "length", 0.009525),
+        ("1 lb/in2", "pressure", pytest.approx(0.45359237 * G / 0.0254**2, rel=1e-15)),
+        ("1 lbf/in2", "pressure", pytest.approx(0.45359237 * G / 0.0254**2, rel=1e-15)),
+        ("1 lb ft", "torque", pytest.approx(0.45359237 * G * 0.3048, rel=1e-15)),
+        ("1 ft lb", "torque", pytest.approx(0.45359237 * G * 0.3048, rel=1e-15)),
+        ("1 mmHg", "pressure", 133.322387415),  # conventional, 13 595.1 kg/m³ under standard gravity
+        ("1 inHg", "pressure", 25.4 * 133.322387415),
+        ("120 min-1", "speed", 2.0),
+        ("120 min⁻¹", "speed", 2.0),
+        ("120 rev/min", "speed", 2.0),
+        ("1 long ton", "mass", pytest.approx(1016.0469088, rel=1e-15)),
+        ("1 short ton", "mass", pytest.approx(907.18474, rel=1e-15)),
+        ("1 tonne", "mass", 1000.0),
     ],
 )
 def test_values_by_definition(text: str, kind: str, value: float) -> None:
@@ -73,9 +89,36 @@ def test_radians() -> None:
     ("text", "kind", "message"),
     [
         ("450", "length", "450 has no unit; write it with one, such as '450 mm'"),
+        ("0.45", "length", "0.45 has no unit; write it with one, such as '0.45 m'"),
+        ("4407368.9", "pressure", "4407368.9 has no unit; write it with one, such as '4407368.9 Pa'"),
+        ("44", "pressure", "44 has no unit; write it with one, such as '44 bar'"),
+        ("1/4", "length", "1/4 has no unit; write it with one, such as '1/4 m'"),
+        (
+            "5 kg/cm2",
+            "pressure",
+            "unknown pressure unit 'kg/cm2' (known: Pa, kPa, MPa, GPa, hPa, mbar, bar, at, …)"
+            "; kg is a mass, write 'kgf/cm2'",
+        ),
+        (
+            "2 ton",
+            "mass",
+            "unknown mass unit 'ton' (known: kg, g, t, lb, tonne, long ton, short ton)"
+            "; a ton is 't' (1000 kg), 'long ton' (2240 lb) or 'short ton' (2000 lb): write which",
+        ),
+        (
+            "2 tonf",
+            "force",
+            "unknown force unit 'tonf' (known: N, kN, MN, kgf, kp, tf, lbf, long tonf, …)"
+            "; a ton is 'tf' (1000 kgf), 'long tonf' (2240 lbf) or 'short tonf' (2000 lbf): write which",
+        ),
         ("1,5 bar", "pressure", "'1,5 bar' has a decimal comma; write 1.5 bar"),
         ("1,234.5 mm", "length", "'1,234.5 mm' has commas between thousands; leave them out"),
-        ("12 kg", "force", "unknown force unit 'kg' (known: N, kN, MN, kgf, kp, tf, lbf); kg is a unit of mass"),
+        (
+            "12 kg",
+            "force",
+            "unknown force unit 'kg' (known: N, kN, MN, kgf, kp, tf, lbf, long tonf, …)"
+            "; kg is a mass, write 'kgf'",
+        ),
         ("mm", "length", "expected a number with its unit, such as '450 mm', got 'mm'"),
         ("010 mm", "length", "expected a number with its unit, such as '450 mm', got '010 mm'"),
         ("1e400 mm", "length", "1e400 mm is too large to compute with"),
@@ -120,8 +163,9 @@ def test_hints_of_numbers(text: str, hint: str) -> None:
 
 @pytest.mark.parametrize("kind", [kind for kind in SI if kind != "ratio"])
 def test_every_shown_unit_can_be_read_back(kind: str) -> None:
-    for system in (SI, TECHNICAL):
-        assert parse_quantity(f"1 {system[kind]}", kind) > 0
+    for units in (system[kind] for system in SYSTEMS.values()):
+        for unit in (units,) if isinstance(units, str) else units:
+            assert parse_quantity(f"1 {unit}", kind) > 0
 
 
 @pytest.mark.parametrize("kind", [kind for kind in SI if kind != "ratio"])
@@ -131,10 +175,18 @@ def test_every_unit_is_positive_and_finite(kind: str) -> None:
 
 
 def test_convert_to_the_engineers_units() -> None:
-    assert convert(98066.5, "pressure", "technical") == 1.0
-    assert convert(G, "force", "technical") == 1.0
-    assert convert(0.45, "length", "technical") == 450.0
-    assert convert(0.45, "length") == 0.45
+    assert convert(98066.5, "pressure", "at") == 1.0
+    assert convert(G, "force", "kgf") == 1.0
+    assert convert(0.45, "length", "mm") == 450.0
+    assert convert(0.45, "ratio", "") == 0.45
+
+
+def test_the_size_chooses_among_metric_units() -> None:
+    found = [shown_unit("length", "metric", size) for size in (0.0, 0.4, 9.9, 12.0)]
+    assert found == ["mm", "mm", "mm", "m"]
+    assert [shown_unit("pressure", "metric", size) for size in (50.0, -931632.0)] == ["mbar", "bar"]
+    assert [shown_unit("force", "metric", size) for size in (999.0, 1e3, -2e6)] == ["N", "kN", "MN"]
+    assert [shown_unit("force", system, 1e9) for system in ("si", "technical", "imperial")] == ["N", "kgf", "lbf"]
 
 
 def test_show() -> None:

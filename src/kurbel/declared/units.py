@@ -11,7 +11,6 @@ import math
 import re
 from collections.abc import Callable
 from functools import cache
-from typing import Any
 
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.errors import UnitError
@@ -24,6 +23,7 @@ GRAVITY = 9.80665
 _INCH = 0.0254
 _POUND = 0.45359237
 _LBF = _POUND * GRAVITY
+_MMHG = 133.322387415
 
 _LENGTH: dict[str, Factor] = {
     "m": (1, 1),
@@ -71,18 +71,26 @@ _PRESSURE: dict[str, Factor] = {
     "atm": (101325, 1),
     "psi": (_LBF, _INCH * _INCH),
     "Torr": (101325, 760),
-    "mmHg": (133.322387415, 1),
+    "mmHg": (_MMHG, 1),
+    "inHg": (25.4 * _MMHG, 1),
     "mWS": (GRAVITY * 1e3, 1),
 }
 _TORQUE: dict[str, Factor] = {"Nm": (1, 1), "kNm": (1e3, 1)}
+_POUNDS_OF_FORCE = {"lb/in2": (_LBF, _INCH * _INCH), "lb/ft2": (_LBF * 1e8, 3048 * 3048)}
+"""Only a force gives a pressure or a torque: there the pound of everyday English can mean nothing else."""
+_POUND_FEET = {
+    f"{a} {b}": (_LBF * up, down)
+    for c, up, down in (("ft", 3048, 1e4), ("in", 254, 1e4))
+    for a, b in (("lb", c), (c, "lb"), (c, "lbf"))
+}
 
 _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
     "length": lambda: _LENGTH,
     "area": lambda: _AREA,
-    "mass": lambda: _MASS,
-    "force": lambda: _FORCE,
-    "pressure": lambda: {**_PRESSURE, **_product(_FORCE, _AREA, "/")},
-    "stress": lambda: {"N/mm2": (1e6, 1), **_product(_FORCE, _AREA, "/"), **_PRESSURE},
+    "mass": lambda: {**_MASS, "tonne": (1e3, 1), "long ton": (2240 * _POUND, 1), "short ton": (2e3 * _POUND, 1)},
+    "force": lambda: {**_FORCE, "long tonf": (2240 * _LBF, 1), "short tonf": (2e3 * _LBF, 1)},
+    "pressure": lambda: {**_PRESSURE, **_product(_FORCE, _AREA, "/"), **_POUNDS_OF_FORCE},
+    "stress": lambda: {"N/mm2": (1e6, 1), **_product(_FORCE, _AREA, "/"), **_PRESSURE, **_POUNDS_OF_FORCE},
     "time": lambda: _TIME,
     "angle": lambda: {"deg": (1, 1), "°": (1, 1), "rad": (180, math.pi)},
     "speed": lambda: {
@@ -90,7 +98,11 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         "rpm": (1, 60),
         "1/min": (1, 60),
         "U/min": (1, 60),
+        "rev/min": (1, 60),
+        "r/min": (1, 60),
+        "min-1": (1, 60),
         "rps": (1, 1),
+        "s-1": (1, 1),
         "Hz": (1, 1),
         "rad/s": (1, 2 * math.pi),
     },
@@ -98,7 +110,7 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
     "angular_acceleration": lambda: {"rad/s2": (1, 1)},
     "velocity": lambda: _product(_LENGTH, _TIME, "/"),
     "acceleration": lambda: _product(_LENGTH, {"s2": (1, 1)}, "/"),
-    "torque": lambda: {**_product(_FORCE, _LENGTH, " "), **_TORQUE},
+    "torque": lambda: {**_product(_FORCE, _LENGTH, " "), **_TORQUE, **_POUND_FEET},
     "energy": lambda: {"J": (1, 1), "kJ": (1e3, 1), "MJ": (1e6, 1), **_product(_FORCE, _LENGTH, " "), "Nm": (1, 1)},
     "power": lambda: {
         "W": (1, 1),
@@ -115,68 +127,24 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         "kp m2": (1, 1),
         "tf m2": (1e3, 1),
         "N m2": (1, GRAVITY),
+        "lb ft2": (_POUND * 3048 * 3048, 1e8),
     },
     "stiffness": lambda: _product(
-        {**_product(_FORCE, {"m": (1, 1), "mm": (1, 1e3)}, " "), **_TORQUE}, {"rad": (1, 1)}, "/"
+        {**_product(_FORCE, {"m": (1, 1), "mm": (1, 1e3), "ft": (3048, 1e4)}, " "), **_TORQUE}, {"rad": (1, 1)}, "/"
     ),
     "damping": lambda: (
         _product({**_product(_FORCE, {"m": (1, 1)}, " "), **_TORQUE}, {"rad/s": (1, 1), "s/rad": (1, 1)}, " ")
         | {"N m s/rad": (1, 1), "Nm s/rad": (1, 1), "kN m s/rad": (1e3, 1)}
-        | {"N m s": (1, 1), "Nm s": (1, 1), "kN m s": (1e3, 1)}
+        | {"N m s": (1, 1), "Nm s": (1, 1), "kN m s": (1e3, 1), "lbf ft s/rad": (_LBF * 3048, 1e4)}
     ),
-    "pressure_velocity": lambda: {"W/m2": (1, 1), "kgf m/s/cm2": (GRAVITY * 1e4, 1)},
+    "pressure_velocity": lambda: {
+        "W/m2": (1, 1),
+        "N/mm2 m/s": (1e6, 1),
+        "kgf m/s/cm2": (GRAVITY * 1e4, 1),
+        "psi ft/s": (_LBF * 3048, _INCH * _INCH * 1e4),
+    },
 }
 """Kind -> its units. `gd2` counts in kg m2 of GD2 = 4J: a weight of 1 kgf is that of 1 kg."""
-
-SI = {
-    "length": "m",
-    "area": "m^2",
-    "mass": "kg",
-    "force": "N",
-    "pressure": "Pa",
-    "stress": "Pa",
-    "time": "s",
-    "angle": "deg",
-    "speed": "1/s",
-    "angular_velocity": "rad/s",
-    "angular_acceleration": "rad/s^2",
-    "velocity": "m/s",
-    "acceleration": "m/s^2",
-    "torque": "N m",
-    "energy": "J",
-    "power": "W",
-    "inertia": "kg m^2",
-    "gd2": "kg m^2",
-    "stiffness": "N m/rad",
-    "damping": "N m s/rad",
-    "pressure_velocity": "W/m^2",
-    "ratio": "",
-}
-TECHNICAL = SI | {
-    "length": "mm",
-    "area": "cm^2",
-    "force": "kgf",
-    "pressure": "at",
-    "stress": "kgf/cm^2",
-    "speed": "rpm",
-    "torque": "kgf m",
-    "energy": "kgf m",
-    "power": "PS",
-    "gd2": "kgf m^2",
-    "pressure_velocity": "kgf m/s/cm^2",
-}
-SYSTEMS = {"si": SI, "technical": TECHNICAL}
-"""Unit system -> kind -> the unit in which results are shown."""
-
-_IN_MESSAGES = TECHNICAL | {
-    "force": "N",
-    "pressure": "bar",
-    "stress": "N/mm2",
-    "torque": "N m",
-    "energy": "J",
-    "power": "W",
-    "area": "mm^2",
-}
 
 
 @cache
@@ -187,8 +155,9 @@ def _units_of(kind: str) -> dict[str, Factor]:
 def _normal(unit: str) -> str:
     """Write `kg·m²`, `kg*m^2` and `kg  m2` alike."""
     unit = plain(unit)
-    for sign, ours in (("²", "2"), ("^", ""), ("·", " "), ("*", " "), ("µ", "u"), ("μ", "u")):
+    for sign, ours in (("⁻¹", "-1"), ("²", "2"), ("^", ""), ("·", " "), ("*", " "), ("µ", "u"), ("μ", "u")):
         unit = unit.replace(sign, ours)
+    unit = re.sub(r"\binch(es)?\b", "in", re.sub(r"\b(foot|feet)\b", "ft", unit))
     return re.sub(r"\s*/\s*", "/", " ".join(unit.split()))
 
 
@@ -221,6 +190,12 @@ def _unit_hint(unit: str, kind: str) -> str:
         return f"; write the unit alone, without {number.group()}"
     if name in ("barg", "bara", "atu", "atü", "ata", "psig", "psia"):
         return "; whether a pressure is gauge or absolute is said by the key 'pressures'"
+    if name in ("ton", "tonf"):
+        f = name.removeprefix("ton")
+        return f"; a ton is 't{f}' (1000 kg{f}), 'long ton{f}' (2240 lb{f}) or 'short ton{f}' (2000 lb{f}): write which"
+    weight = re.sub(r"\bkg\b", "kgf", name)
+    if weight != name and weight in _units_of(kind):
+        return f"; kg is a mass, write '{weight}'"
     alike = [known for known in _units_of(kind) if known.lower() == name.lower()]
     if alike:
         return f"; did you mean '{alike[0]}'?"
@@ -237,12 +212,13 @@ def parse_quantity(text: str, kind: str) -> float:
     Raises UnitError when there is no number, no unit, or a unit of another kind.
     """
     stripped = plain(text)
-    number = NUMBER.match(stripped)
+    number = _INCHES.match(stripped) or NUMBER.match(stripped)
     if not number:
         raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
     unit = stripped[number.end() :].strip()
     if not unit:
-        raise UnitError(f"{stripped} has no unit; write it with one, such as '{stripped} {_unit_example(kind)}'")
+        fitting = f"{stripped} {_fitting_unit(_value(number), kind)}"
+        raise UnitError(f"{stripped} has no unit; write it with one, such as '{fitting}'")
     if re.match(r",[0-9]+(?![0-9.,])", unit):
         raise UnitError(f"'{stripped}' has a decimal comma; write {stripped.replace(',', '.', 1)}")
     if re.match(r",[0-9]", unit):
@@ -252,10 +228,40 @@ def parse_quantity(text: str, kind: str) -> float:
     if re.match(r"[0-9._:]", unit) and not unit.startswith("1/"):
         raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
     up, down = unit_factor(unit, kind)
-    value = float(number.group()) * up / down
+    value = _value(number) * up / down
     if not math.isfinite(value):
         raise UnitError(f"{stripped} is too large to compute with")
     return value
+
+
+_INCHES = re.compile(r"([-+]?)(?:([0-9]{1,4})[ -])?([0-9]{1,4})/([1-9][0-9]{0,3})(?=\s*[A-Za-z]|$)")
+"""A number as drawings in inches have it: 2 1/4, 2-1/4, 3/8."""
+
+
+def _value(number: re.Match[str]) -> float:
+    """Return the float of a match of NUMBER or _INCHES."""
+    if number.re is not _INCHES:
+        return float(number.group())
+    sign, whole, above, below = number.groups()
+    return float(f"{sign}1") * (int(whole or 0) * int(below) + int(above)) / int(below)
+
+
+def _fitting_unit(value: float, kind: str) -> str:
+    """Return the unit that a bare number of this size was probably meant in."""
+    for fitting, least in _FITTING.get(kind, ()):
+        if abs(value) >= least:
+            return fitting
+    return _unit_example(kind)
+
+
+_FITTING = {
+    "length": (("mm", 10), ("m", 0)),
+    "pressure": (("Pa", 1e4), ("kPa", 500), ("bar", 0)),
+    "stress": (("Pa", 1e5), ("N/mm2", 0)),
+    "power": (("W", 1e3), ("kW", 0)),
+    "speed": (("rpm", 10), ("1/s", 0)),
+}
+"""Kind -> units with the bare numbers from which on they are likely, the largest first."""
 
 
 def _unit_example(kind: str) -> str:
@@ -277,28 +283,11 @@ def example(kind: str) -> str:
     return f"{numbers.get(kind, '10')} {_unit_example(kind)}"
 
 
+def kinds() -> tuple[str, ...]:
+    """Return the kinds of quantities that have units."""
+    return tuple(_BUILDERS)
+
+
 def unit_names(kind: str) -> tuple[str, ...]:
     """Return the units of a kind in the spelling that messages and the schema use."""
     return tuple(_units_of(kind))
-
-
-def convert(value: Any, kind: str, system: str = "si") -> Any:
-    """Return base values, a number or an array, in the unit in which the system shows this kind."""
-    unit = SYSTEMS[system][kind]
-    if not unit or system == "si":
-        return value
-    up, down = unit_factor(unit, kind)
-    return value if up == down else value / up * down
-
-
-def show(value: float, kind: str) -> str:
-    """Write a base value for a message, in the unit that engineers use.
-
-    >>> show(0.3, "length")
-    '300 mm'
-    """
-    unit = _IN_MESSAGES[kind]
-    if not unit:
-        return f"{value:.6g}"
-    up, down = unit_factor(unit, kind)
-    return f"{value / up * down:.6g} {unit}"
