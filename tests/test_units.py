@@ -116,8 +116,7 @@ def test_radians() -> None:
         (
             "12 kg",
             "force",
-            "unknown force unit 'kg' (known: N, kN, MN, kgf, kp, tf, lbf, long tonf, …)"
-            "; kg is a mass, write 'kgf'",
+            "unknown force unit 'kg' (known: N, kN, MN, kgf, kp, tf, lbf, long tonf, …); kg is a mass, write 'kgf'",
         ),
         ("mm", "length", "expected a number with its unit, such as '450 mm', got 'mm'"),
         ("010 mm", "length", "expected a number with its unit, such as '450 mm', got '010 mm'"),

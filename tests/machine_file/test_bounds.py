@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 from kurbel.declared.bounds import SIZES
-from kurbel.declared.units import SI
+from kurbel.declared.unit_systems import SI
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine import trace_samples
 from kurbel.machine_file import load, loads

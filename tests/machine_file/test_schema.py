@@ -9,7 +9,8 @@ import pytest
 import yaml
 from good_machines import ALL
 
-from kurbel.declared.units import SI, example, parse_quantity, unit_names
+from kurbel.declared.unit_systems import SI
+from kurbel.declared.units import example, parse_quantity, unit_names
 from kurbel.errors import UnitError
 from kurbel.machine_file.schema import json_schema
 

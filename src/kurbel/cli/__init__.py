@@ -52,6 +52,10 @@ class _Kurbel(click.Group):
         raise click.UsageError(f"no command '{name}'{did_you_mean(name, COMMANDS)}", ctx)
 
     def make_context(self, *args: Any, **extra: Any) -> click.Context:
+        from shutil import get_terminal_size
+
+        # click itself fills no less than 50 columns
+        extra.setdefault("terminal_width", max(30, min(get_terminal_size().columns, 80)))
         with _silent_interrupt():
             return super().make_context(*args, **extra)
 

@@ -24,14 +24,17 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks > engine.yaml
       kurbel example waterworks | kurbel forces -
     """
-    from kurbel.render.output import stdout_charset, write_stdout, write_text
+    from kurbel.render import Look
+    from kurbel.render.listing import entries
+    from kurbel.render.output import stdout_charset, stdout_width, write_stdout, write_text
 
     if name is not None:
         write_text(_read(_known(name)), file_name)
     elif file_name is not None:
-        write_text("".join(line + "\n" for line in _listing()), file_name)
+        write_text("".join(line + "\n" for line in entries(_listing(), Look())), file_name)
     else:
-        write_stdout(stdout_charset().text(line) + "\n" for line in _listing())
+        look = Look(encoding=stdout_charset().encoding, width=stdout_width())
+        write_stdout(line + "\n" for line in entries(_listing(), look))
 
 
 def _folder() -> str:
@@ -57,8 +60,8 @@ def _read(name: str) -> str:
         return file.read()
 
 
-def _listing() -> list[str]:
-    """Return a line for each machine: its name and the first comment line of its file."""
+def _listing() -> list[tuple[str, str]]:
+    """Return the name of each machine, filled up to the longest, and the first comment line of its file."""
     names = _names()
     longest = max(map(len, names))
-    return [f"{name:<{longest}}  {_read(name).partition(chr(10))[0].lstrip('# ')}" for name in names]
+    return [(f"{name:<{longest}}  ", _read(name).partition("\n")[0].lstrip("# ")) for name in names]

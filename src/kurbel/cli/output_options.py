@@ -125,7 +125,10 @@ columns_option = click.option(
     "--columns", type=Columns(), metavar="ID,ID,...", help="Only these columns, in this order."
 )
 units_option = click.option(
-    "--units", type=click.Choice(["si", "technical"]), default="si", help="technical: mm, kgf, at, as the old books."
+    "--units",
+    type=click.Choice(["si", "metric", "technical", "imperial"]),
+    help="metric: mm, bar, kN, the default of tables and markdown; technical: mm, kgf, at, as the old books; "
+    "imperial: in, lbf, psi; si: the default of csv and json.",
 )
 _look_options = _stacked(
     click.option(
@@ -142,19 +145,28 @@ _look_options = _stacked(
     click.option(
         "--digits", type=click.IntRange(1, 17), help="Significant digits; if not given 4, and all in csv and json."
     ),
+    click.option(
+        "--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill; a terminal's own if not given."
+    ),
 )
 
 
 def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command --layout, --format, --output, --decimal and --digits, which reach it as one `output: Output`."""
+    """Give a command the options of what it prints, which reach it as one `output: Output`."""
 
     @wraps(command)
     def with_output(
-        layout: str, format: str, file_name: str | None, decimal: str, digits: int | None, **others: Any
+        layout: str,
+        format: str,
+        file_name: str | None,
+        decimal: str,
+        digits: int | None,
+        width: int | None,
+        **others: Any,
     ) -> Any:
         if decimal == "comma" and format == "json":
             raise click.UsageError("--decimal comma: JSON has the decimal point only.")
-        return command(output=Output(Look(format, layout, decimal == "comma", digits), file_name), **others)
+        return command(output=Output(Look(format, layout, decimal == "comma", digits, width), file_name), **others)
 
     return _look_options(with_output)
 
@@ -210,10 +222,11 @@ def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
         step: float,
         angles: tuple[float, ...] | None,
         columns: tuple[str, ...] | None,
-        units: str,
+        units: str | None,
         output: Output,
         **others: Any,
     ) -> None:
-        command(asked=Asked(file, step, angles, columns, units, output), **others)
+        system = units or ("si" if output.look.format in ("csv", "json") else "metric")
+        command(asked=Asked(file, step, angles, columns, system, output), **others)
 
     return _stacked(machine_file, angle_options, columns_option, units_option)(output_options(with_asked))

@@ -47,7 +47,7 @@ def table(
     compare: bool,
     step: float,
     angles: tuple[float, ...] | None,
-    units: str,  # factors and degrees are the same in all of them
+    units: str | None,  # factors and degrees are the same in all of them
     output: Output,
 ) -> None:
     """Print Zusammenstellung 112: factors of the straight slider-crank over the crank angle.

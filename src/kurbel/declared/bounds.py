@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 
-from kurbel.declared.units import SI, Factor
+from kurbel.declared.unit_systems import SI
+from kurbel.declared.units import Factor
 from kurbel.errors import Fault, Path
 
 Point = tuple[float, float]

@@ -55,7 +55,7 @@ def out_of_bounds(value: float, form: Physical | Number) -> str:
 
 
 def _bound(value: float, kind: str) -> str:
-    from kurbel.declared.units import show
+    from kurbel.declared.unit_systems import show
 
     return "0" if value == 0 else show(value, kind)
 

@@ -43,7 +43,8 @@ TECHNICAL = SI | {
     "gd2": "kgf m^2",
     "pressure_velocity": "kgf m/s/cm^2",
 }
-_METRIC: dict[str, str | tuple[str, ...]] = SI | {
+_METRIC: dict[str, Any] = {
+    **SI,
     "length": ("mm", "m"),
     "area": "cm^2",
     "mass": ("kg", "t"),
@@ -56,7 +57,8 @@ _METRIC: dict[str, str | tuple[str, ...]] = SI | {
     "power": ("W", "kW", "MW"),
     "pressure_velocity": "N/mm^2 m/s",
 }
-_IMPERIAL: dict[str, str | tuple[str, ...]] = SI | {
+_IMPERIAL: dict[str, Any] = {
+    **SI,
     "length": "in",
     "area": "in^2",
     "mass": "lb",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.keys import Key, Keys, Physical
-from kurbel.declared.units import show
+from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Union
 
 from kurbel.declared.keys import Key, Keys, Number, Physical
-from kurbel.declared.units import show
+from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.machine.indicator import CLEARANCE
 

@@ -7,7 +7,8 @@ from typing import ClassVar, NamedTuple, Protocol
 
 from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.keys import Choice, Key, Keyed, Keys, Number, OneOf, Physical, Points, Record, UnitName
-from kurbel.declared.units import Factor, show
+from kurbel.declared.unit_systems import show
+from kurbel.declared.units import Factor
 from kurbel.errors import Fault, Path, RuleError
 
 CLEARANCE = Number(least=1e-6, most=1e5)

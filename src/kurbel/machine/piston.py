@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from kurbel.declared.keys import Key, Keys, Physical, Record, Text
-from kurbel.declared.units import show
+from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, RuleError
 
 if TYPE_CHECKING:

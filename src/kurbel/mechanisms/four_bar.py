@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from kurbel.declared.keys import Key, Keys, Physical
-from kurbel.declared.units import show
+from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, Swing, check_lengths, fan
 from kurbel.numerics.arithmetic import bearing, sqrt

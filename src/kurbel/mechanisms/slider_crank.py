@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.keys import Key, Keys, Number, Physical
-from kurbel.declared.units import show
+from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, fan
 from kurbel.mechanisms import crank_formulas as formulas

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.keys import Key, Keys, Physical
-from kurbel.declared.units import show
+from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, Swing, check_lengths, fan
 from kurbel.mechanisms.crank_pin import NO_PIN, PIN_KEYS, projected_area

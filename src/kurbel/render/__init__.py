@@ -18,7 +18,7 @@ class Look(NamedTuple):
     """How a report is to look.
 
     format, layout: of FORMATS and LAYOUTS; comma: decimal comma; digits: significant digits, where None means four in
-    print and all of them in csv and json; width: columns of the terminal, None for a pipe or a file;
+    print and all of them in csv and json; width: columns to fill, None for nine angles to a block and nothing folded;
     encoding: of the output.
     """
 

@@ -22,20 +22,24 @@ class Scale(NamedTuple):
     exponent: int = 0
 
 
-def scale_of(values: Iterable[Value], digits: int = DIGITS) -> Scale:
-    """Return the scale that shows `digits` significant digits of the largest value; whole numbers keep all of theirs.
+def scale_of(values: Iterable[Value], digits: int | None = None) -> Scale:
+    """Return the scale that shows so many significant digits of the largest value.
 
-    >>> scale_of([1.2, -0.014])
-    Scale(decimals=3, exponent=0)
+    Where no digits are asked for there are four, and whole numbers keep all of theirs; else they are rounded too.
+
+    >>> scale_of([1.2, -0.014]), scale_of([81134.0]), scale_of([81134.0], 2)
+    (Scale(decimals=3, exponent=0), Scale(decimals=0, exponent=0), Scale(decimals=-3, exponent=0))
     >>> scale_of([2.4e7, 1.0])
     Scale(decimals=2, exponent=6)
     """
+    least = 0 if digits is None else -_LARGE
+    digits = digits or DIGITS
     largest = max((abs(value) for value in values if value is not None), default=0.0)
     if largest == 0:
         return Scale(0)
     power = _power(largest, digits)
     exponent = 3 * math.floor(power / 3) if power >= _LARGE or power < _SMALL else 0
-    return Scale(max(0, digits - 1 - power + exponent), exponent)
+    return Scale(max(least, digits - 1 - power + exponent), exponent)
 
 
 def _power(value: float, digits: int) -> int:
@@ -54,12 +58,14 @@ def cell(value: Value, scale: Scale, comma: bool = False) -> str:
 
     >>> cell(-0.0142, Scale(3)), cell(-0.0001, Scale(3)), cell(0.0, Scale(3)), cell(0.5, Scale(3), comma=True)
     ('-0.014', '0.000', '0', '0,500')
+    >>> cell(81134.0, Scale(-3))
+    '81000'
     """
     if value is None:
         return ""
     if value == 0:
         return "0"
-    return _decimal(f"{_rounded(_over(value, scale.exponent), scale.decimals):.{scale.decimals}f}", comma)
+    return _decimal(f"{_rounded(_over(value, scale.exponent), scale.decimals):.{max(0, scale.decimals)}f}", comma)
 
 
 def _over(value: float, exponent: int) -> float:
@@ -81,7 +87,7 @@ def _shortest(value: float, decimals: int) -> str:
     return text.rstrip("0").rstrip(".")
 
 
-def single(value: float, digits: int = DIGITS, comma: bool = False) -> tuple[str, int]:
+def single(value: float, digits: int | None = None, comma: bool = False) -> tuple[str, int]:
     """Return a value that stands alone, and the power of ten that belongs behind it.
 
     >>> single(0.8), single(2.4e7), single(-1.1e-16)
@@ -91,7 +97,7 @@ def single(value: float, digits: int = DIGITS, comma: bool = False) -> tuple[str
         return str(value), 0
     scale = scale_of((value,), digits)
     if scale.exponent:
-        scale = Scale(digits - 1, _power(abs(value), digits))
+        scale = Scale((digits or DIGITS) - 1, _power(abs(value), digits or DIGITS))
     return cell(value, scale, comma), scale.exponent
 
 

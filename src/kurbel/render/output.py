@@ -25,19 +25,15 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
     """Write the report to a file (as UTF-8), or to standard output in the encoding of that.
 
     A terminal gets as many angles to a block as fit its width, and colours where they are wanted; a pipe gets plain
-    text. Raises UsageError where it cannot be written.
+    text, of a width only where it is asked for. Raises UsageError where it cannot be written.
     """
     if file_name is not None and file_name != "-":
-        write_file(file_name, pieces(report, look._replace(encoding="utf-8", width=None)))
+        write_file(file_name, pieces(report, look._replace(encoding="utf-8")))
         return
-    stdout = _stdout()
-    look = look._replace(encoding=stdout_charset().encoding)
-    if look.format != "table" or not stdout.isatty():
-        write_stdout(pieces(report, look))
+    look = look._replace(encoding=stdout_charset().encoding, width=look.width or stdout_width())
+    if look.format == "table" and _stdout().isatty() and _coloured(report, look):
         return
-    look = look._replace(width=_terminal_width())
-    if not _coloured(report, look):
-        write_stdout(pieces(report, look))
+    write_stdout(pieces(report, look))
 
 
 def _coloured(report: Report, look: Look) -> bool:
@@ -54,7 +50,10 @@ def _coloured(report: Report, look: Look) -> bool:
     return write_lines(lines, look)
 
 
-def _terminal_width() -> int:
+def stdout_width() -> int | None:
+    """Return the columns of the terminal; of a pipe what COLUMNS says, or None: it has no width."""
+    if not _stdout().isatty() and not os.environ.get("COLUMNS", "").isdecimal():
+        return None
     from shutil import get_terminal_size
 
     return get_terminal_size().columns

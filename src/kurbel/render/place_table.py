@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import Line, Piece, line
-from kurbel.render.numbers import DIGITS, alone, angle, cell, scale_of
+from kurbel.render.numbers import alone, angle, cell, scale_of
 
 if TYPE_CHECKING:
     from kurbel.render import Look
@@ -32,7 +32,7 @@ def cells_of(table: PlaceTable, look: Look) -> Cells:
     blank = "_" if table.headed else " "
     names = tuple(tuple(look.charset.text(name.replace("_", blank)) for name in row) for row in table.names)
     scales = {
-        unit: scale_of((v for c in table.columns if c.unit == unit for v in c.values), look.digits or DIGITS)
+        unit: scale_of((v for c in table.columns if c.unit == unit for v in c.values), look.digits)
         for unit in {column.unit for column in table.columns if not column.alone}
     }
 

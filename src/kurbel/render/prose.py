@@ -9,21 +9,22 @@ from typing import TYPE_CHECKING, NamedTuple
 from kurbel.declared.quantities import NOISE_POWER
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import Line, Piece, line
-from kurbel.render.numbers import DIGITS, angle, single
+from kurbel.render.numbers import angle, single
 from kurbel.render.sheet import part_name
 
 if TYPE_CHECKING:
     from kurbel.render import Look
     from kurbel.report.tables import KeyValue, LeftOut, Part, Report
 
-_LONGEST_LIST = 40
+_LONGEST = 16  # of a number, or two angles; a longer list stands out, its sentence on the next line
+_MOST_LISTED = 12
 _LEAST_BESIDE = 24  # narrower than this a sentence is folded below its head instead
 
 
 def prose(report: Report, look: Look) -> Iterator[list[Line]]:
     """Yield the paragraphs below the tables."""
     if notes := [note for note in (report.mirrored, *report.notes) if note]:
-        yield [one for note in notes for one in _sentence("", note, look)]
+        yield [one for note in notes for one in sentence("", note, look)]
     for part in report.all_parts:
         yield from _of_part(part_name(report, part, look), part, look)
 
@@ -35,14 +36,14 @@ def _of_part(name: str, part: Part, look: Look) -> Iterator[list[Line]]:
     if part.left_out:
         yield [line(f"Left out{said}", "name"), *_left_out(part.left_out, look)]
     if part.warnings:
-        warnings = (one for warning in part.warnings for one in _sentence("  ", warning, look))
+        warnings = (one for warning in part.warnings for one in sentence("  ", warning, look))
         yield [line(f"Warnings{said}", "name"), *warnings]
 
 
 def _left_out(left_out: Collection[LeftOut], look: Look) -> Iterator[Line]:
     column = max(width(look.charset.text(one.what)) for one in left_out)
     for one in left_out:
-        yield from _sentence(f"  {left(look.charset.text(one.what), column)}  ", one.why, look)
+        yield from sentence(f"  {left(look.charset.text(one.what), column)}  ", one.why, look)
 
 
 class _Shown(NamedTuple):
@@ -62,11 +63,15 @@ def key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Li
     symbol, unit, place = (max(width(s[field]) for s in shown) for field in (0, 3, 4))
     whole = max((width(s.whole) for s in shown if s.fraction), default=0)
     # a long list stands out beyond the column of numbers instead of pushing everything aside
-    number = max((w for s in shown if (w := width(_aligned(s, whole))) <= _LONGEST_LIST), default=0)
+    number = max((w for s in shown if (w := width(_aligned(s, whole))) <= _LONGEST), default=0)
     for one in shown:
-        value = left(_aligned(one, whole), number)
-        head = f"  {left(one.symbol, symbol)}  {value}  {left(one.unit, unit)}  "
-        yield from _sentence(head + (f"{left(one.place, place)}  " if place else ""), one.text, look)
+        value = _aligned(one, whole)
+        head = f"  {left(one.symbol, symbol)}  {left(value, number)}  {left(one.unit, unit)}  "
+        head += f"{left(one.place, place)}  " if place else ""
+        if width(value) > number:
+            yield line(f"  {left(one.symbol, symbol)}  {value}  {one.unit}", "cell")
+            head = " " * (4 + symbol + number + 2 + unit + 2 + (place + 2 if place else 0))
+        yield from sentence(head, one.text, look)
 
 
 def _aligned(one: _Shown, whole: int) -> str:
@@ -97,15 +102,18 @@ def _number(one: KeyValue, look: Look) -> tuple[str, str]:
 
 
 def list_text(one: KeyValue, look: Look) -> str:
-    """Return a list of values in one line, angles with two decimals at most."""
+    """Return a list of values in one line, angles with two decimals at most; of a long one, how many there are."""
     assert isinstance(one.value, tuple)
+    if len(one.value) > _MOST_LISTED:
+        low, high = (_in_list(value, one.unit, look) for value in (min(one.value), max(one.value)))
+        return f"{len(one.value)} from {low} to {high}"
     return ("; " if look.comma else ", ").join(_in_list(value, one.unit, look) for value in one.value)
 
 
 def _in_list(value: float, unit: str, look: Look) -> str:
     if unit == "deg":
         return angle(value, look.comma)
-    text, exponent = single(value, look.digits or DIGITS, look.comma)
+    text, exponent = single(value, look.digits, look.comma)
     return text + (look.charset.times_power(exponent) if exponent else "")
 
 
@@ -116,7 +124,7 @@ def value_text(one: KeyValue, look: Look) -> tuple[str, int]:
         return look.charset.below(NOISE_POWER), 0
     if one.unit == "deg" and look.digits is None:
         return angle(one.value, look.comma), 0
-    return single(one.value, look.digits or DIGITS, look.comma)
+    return single(one.value, look.digits, look.comma)
 
 
 def sentence_text(text: str, look: Look) -> str:
@@ -125,17 +133,23 @@ def sentence_text(text: str, look: Look) -> str:
     return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if look.comma else text
 
 
-def _sentence(head: str, text: str, look: Look) -> Iterator[Line]:
+def folded_text(text: str, cells: int) -> list[str]:
+    """Return a text in lines of so many cells; no word is broken."""
+    from textwrap import wrap
+
+    return wrap(text, cells, break_long_words=False, break_on_hyphens=False)
+
+
+def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
     """Yield head and sentence; on a terminal the sentence is folded beside its head, or below it if that is narrow."""
     text = sentence_text(text, look)
     if look.width is None or width(head) + width(text) <= look.width:
         yield (Piece(head, "cell"), Piece(text))
         return
-    from textwrap import wrap
-
     indent = width(head)
     if look.width - indent < _LEAST_BESIDE:
-        yield line(head, "cell")
+        if head.strip():
+            yield line(head, "cell")
         head, indent = "", 6
-    for index, folded in enumerate(wrap(text, max(look.width - indent, _LEAST_BESIDE))):
+    for index, folded in enumerate(folded_text(text, max(look.width - indent, _LEAST_BESIDE))):
         yield (Piece(head if head and index == 0 else " " * indent, "cell"), Piece(folded))

@@ -7,7 +7,7 @@ from functools import cached_property
 from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
-from kurbel.render.numbers import DIGITS, Scale, angle_scale, cell, scale_of, whole_if_integral
+from kurbel.render.numbers import Scale, angle_scale, cell, scale_of, whole_if_integral
 
 if TYPE_CHECKING:
     from kurbel.render import Look
@@ -114,7 +114,7 @@ def ratio_text(part: Part, look: Look) -> str:
 
 
 def _row(column: Column, look: Look, pad: str) -> Row:
-    scale = scale_of(column.values, look.digits or DIGITS)
+    scale = scale_of(column.values, look.digits)
     if column.decimals is not None:
         scale = scale._replace(decimals=column.decimals, exponent=0)
     return _scaled(column, scale, look, pad)

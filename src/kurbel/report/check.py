@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from kurbel.declared.keys import Key, Physical
 from kurbel.declared.quantities import KEY_VALUES, NOISE_POWER
-from kurbel.declared.units import SI, show
+from kurbel.declared.unit_systems import SI, show
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.fit import may_lock

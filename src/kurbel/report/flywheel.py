@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.declared.units import convert, show
+from kurbel.declared.unit_systems import show
 from kurbel.machine import Machine
 from kurbel.report.left_out import flywheel_left_out
 from kurbel.report.motion import given, plain_values, refuse_absent
@@ -151,7 +151,7 @@ def _coupling_warnings(turning: MachineSpeed) -> Iterable[str]:
         return
     for near in turning.elastic.resonances:
         yield (
-            f"resonance: harmonic {near.order:g} of the torque ({convert(near.amplitude, 'torque'):.4g} N m) lies "
+            f"resonance: harmonic {near.order:g} of the torque ({near.amplitude:.4g} N m) lies "
             f"{100 * abs(near.distance):.2g} % from the natural order {turning.elastic.natural_order:.4g} and is "
             f"amplified {near.amplification:.3g} times"
         )

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.declared.units import show
+from kurbel.declared.unit_systems import show
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.fit import may_lock

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.declared.units import show
+from kurbel.declared.unit_systems import show
 from kurbel.machine import Machine
 from kurbel.solver.cylinder.forces import CylinderForces
 

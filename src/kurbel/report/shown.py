@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.declared.quantities import COLUMNS, KEY_VALUES, Quantity
-from kurbel.declared.units import SYSTEMS, convert
+from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.errors import UsageError
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.tables import Column, KeyValue
@@ -35,25 +35,28 @@ def shown_columns(
         for name in wanted:
             values = degrees if name == "phi" else value_of(name)
             if values is not None:
-                found.setdefault(name, array("d")).frombytes(_shown(name, values, system).tobytes())
-    return tuple(_column(name, values, system) for name, values in found.items())
+                found.setdefault(name, array("d")).frombytes(np.asarray(values, dtype=float).tobytes())
+    return tuple(shown_column(COLUMNS[name], values, system) for name, values in found.items())
 
 
-def shown_column(name: str, values: Any, system: str) -> Column:
-    """Return the column of this id; values: array (n,) in SI. Raises UsageError where one is not finite."""
-    return _column(name, tuple(_shown(name, values, system).tolist()), system)
+def shown_column(quantity: Quantity, values: Sequence[float | None], system: str) -> Column:
+    """Return the column of a quantity; values (n,) in SI, None where there is none.
 
-
-def _shown(name: str, values: Any, system: str) -> Any:
-    shown = convert(np.asarray(values, dtype=float), COLUMNS[name].kind, system)
-    if not np.isfinite(shown).all():
-        raise too_large(COLUMNS[name])
-    return shown + 0.0
-
-
-def _column(name: str, values: Sequence[float], system: str) -> Column:
-    quantity = COLUMNS[name]
-    return Column(name, quantity.symbol, quantity.ascii_symbol, SYSTEMS[system][quantity.kind], values, quantity.text)
+    Raises UsageError where one is not finite.
+    """
+    if isinstance(values, array):
+        numbers = np.frombuffer(values)
+        if not np.isfinite(numbers).all():
+            raise too_large(quantity)
+        unit = shown_unit(quantity.kind, system, float(np.abs(numbers).max(initial=0.0)))
+        shown: Any = array("d", (convert(numbers, quantity.kind, unit) + 0.0).tobytes())
+    else:
+        given = [abs(value) for value in values if value is not None]
+        if not all(map(math.isfinite, given)):
+            raise too_large(quantity)
+        unit = shown_unit(quantity.kind, system, max(given, default=0.0))
+        shown = tuple(None if value is None else convert(value, quantity.kind, unit) + 0.0 for value in values)
+    return Column(quantity.id, quantity.symbol, quantity.ascii_symbol, unit, shown, quantity.text)
 
 
 def shown_key_value(name: str, value: Any, system: str) -> KeyValue:
@@ -61,10 +64,10 @@ def shown_key_value(name: str, value: Any, system: str) -> KeyValue:
     quantity = KEY_VALUES[name]
     at, raw = (value.degrees, value.value) if isinstance(value, Extreme) else (None, value)
     each: tuple[float, ...] = raw if isinstance(raw, tuple) else (raw,)
-    shown = [float(convert(one, quantity.kind, system)) + 0.0 for one in each]
-    if not all(math.isfinite(one) for one in shown):
+    if not all(math.isfinite(one) for one in each):
         raise too_large(quantity)
-    unit = SYSTEMS[system][quantity.kind]
+    unit = shown_unit(quantity.kind, system, max(map(abs, each), default=0.0))
+    shown = [float(convert(one, quantity.kind, unit)) + 0.0 for one in each]
     number = tuple(shown) if isinstance(raw, tuple) else shown[0]
     noise = any(map(quantity.is_noise, shown))
     return KeyValue(name, quantity.symbol, quantity.ascii_symbol, unit, number, quantity.text, at, noise)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from kurbel.declared.units import show
+from kurbel.declared.unit_systems import show
 from kurbel.machine import Cylinder, Machine
 
 _LARGEST_BORE = 5.0  # m; the widest cylinder built, of the Cruquius engine of 1849, has 3.66 m

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.declared.quantities import SHAFT_PARTS, STRESSES
-from kurbel.declared.units import SYSTEMS, convert
+from kurbel.declared.quantities import COLUMNS, SHAFT_PARTS, STRESSES
+from kurbel.declared.unit_systems import convert
 from kurbel.machine import Machine
 from kurbel.report.left_out import left_out, strength_left_out
 from kurbel.report.motion import given, plain_values, refuse_absent
@@ -100,11 +100,10 @@ def _place_tables(strength: CrankshaftStrength, system: str) -> Iterable[PlaceTa
 
 
 def _place_columns(strained: tuple[Strained, ...], system: str) -> Iterable[Column]:
-    yield shown_column("phi", [one.degrees for one in strained], system)
+    yield shown_column(COLUMNS["phi"], [one.degrees for one in strained], system)
     for name, quantity in STRESSES.items():
-        values = (getattr(one if name in ("combined", "von_mises") else one.stresses, name) for one in strained)
-        shown = tuple(None if value is None else convert(value, quantity.kind, system) + 0.0 for value in values)
-        yield Column(name, quantity.symbol, quantity.ascii_symbol, SYSTEMS[system][quantity.kind], shown, quantity.text)
+        values = [getattr(one if name in ("combined", "von_mises") else one.stresses, name) for one in strained]
+        yield shown_column(quantity, values, system)
 
 
 def key_values(strength: CrankshaftStrength) -> Iterable[tuple[str, Any]]:
@@ -138,7 +137,7 @@ def _shell_verdict(strength: CrankshaftStrength) -> tuple[bool, tuple[str, ...]]
     found = strength.pressure_velocity("pin")
     if found is None:
         return True, ()
-    shown = convert(found, "pressure_velocity", "technical")
+    shown = convert(found, "pressure_velocity", "kgf m/s/cm2")
     bound, verdict = next((shell for shell in _SHELLS if shown <= shell[0]), _SHELLS[-1])
     return bound == _SHELLS[0][0], (f"Crank pin: p_m v = {shown:.3g} kgf m/(cm² s); {verdict}.",)
 

@@ -22,7 +22,8 @@ from kurbel.declared.keys import (
     load,
 )
 from kurbel.declared.quantities import COLUMNS, FACTORS, KEY_VALUES, STRESSES, Quantity
-from kurbel.declared.units import SI, TECHNICAL, example
+from kurbel.declared.unit_systems import SI, TECHNICAL
+from kurbel.declared.units import example
 
 _HEAD = """# Symbols, quantities and keys
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kurbel.declared.units import show
+from kurbel.declared.unit_systems import show
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
