@@ -122,10 +122,24 @@ def test_quick_commands_import_nothing_heavy(arguments: list[str]) -> None:
     assert result.returncode == 0, result.stderr
 
 
+def test_a_width_is_filled_where_it_is_asked_for() -> None:
+    """COLUMNS in a pipe, --width everywhere; no line is longer, and no word is broken."""
+    machine = str(Path(__file__).parent.parent / "configs" / "waterworks.yaml")
+    for arguments in (["table"], ["forces", machine], ["forces", machine, "--layout", "rows"], ["check", machine]):
+        plain = process(*arguments).stdout.decode()
+        for columns in (80, 40):
+            narrow = process(*arguments, COLUMNS=str(columns)).stdout.decode()
+            assert max(map(len, narrow.splitlines())) <= max(columns, 44), arguments
+            words = {word for word in narrow.split() if word.strip("─")}
+            assert words <= set(plain.split()), arguments
+            if arguments[0] != "check":
+                assert process(*arguments, "--width", str(columns)).stdout.decode() == narrow
+
+
 def test_a_pipe_gets_plain_text_whatever_the_environment_says() -> None:
     plain = process("table").stdout
     assert ESCAPE not in plain
-    for environment in ("FORCE_COLOR=1", "COLUMNS=40", "TERM=dumb FORCE_COLOR=1", "NO_COLOR=1", "TTY_COMPATIBLE=1"):
+    for environment in ("FORCE_COLOR=1", "COLUMNS=", "TERM=dumb FORCE_COLOR=1", "NO_COLOR=1", "TTY_COMPATIBLE=1"):
         assert process("table", **dict(pair.split("=") for pair in environment.split())).stdout == plain
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 import pytest
+from click.testing import CliRunner
 
+from kurbel.cli import kurbel
 from kurbel.declared.numerals import parse_number
 from kurbel.declared.unit_systems import SI, SYSTEMS, convert, show, shown_unit
-from kurbel.declared.units import parse_quantity, unit_names
+from kurbel.declared.units import kinds, parse_quantity, unit_names
 from kurbel.errors import UnitError
 
 G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
@@ -191,3 +193,13 @@ def test_the_size_chooses_among_metric_units() -> None:
 def test_show() -> None:
     assert show(0.3, "length") == "300 mm"
     assert show(5.4e5, "pressure") == "5.4 bar"
+
+
+def test_kurbel_units_lists_every_unit_that_can_be_read() -> None:
+    lines = CliRunner().invoke(kurbel, ["units"]).stdout.splitlines()
+    assert len(lines) == len(kinds())
+    for kind, line in zip(kinds(), lines):
+        named = line.removeprefix(kind.replace("_", " ")).strip().split(", ")
+        assert {"length": "mm", "pressure": "at", "speed": "rpm"}.get(kind, named[0]) in named
+        for unit in named:
+            assert parse_quantity(f"1 {unit}", kind) > 0

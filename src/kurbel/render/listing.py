@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from kurbel.render import Look
 from kurbel.render.charset import left, width
 from kurbel.render.lines import plain
-from kurbel.render.prose import sentence
+from kurbel.render.prose import folded, sentence
 from kurbel.report.check import Checked
 
 
 def listing(checked: Checked, look: Look) -> str:
     """Return the check as plain text in the characters and the width of the output."""
     charset = look.charset
-    lines = [charset.text(checked.title)]
+    lines = folded(charset.text(checked.title), look.width)
     for section in checked.sections:
         lines += ["", charset.text(section.title)]
         column = max(width(charset.text(entry.what)) for entry in section.entries)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from kurbel.render.lines import BLANK, Line, line
-from kurbel.render.prose import prose
+from kurbel.render.prose import folded, prose
 from kurbel.render.sheet import sheets
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ def page(report: Report, look: Look) -> Iterator[Line]:
         from kurbel.render.rows import table
     else:
         from kurbel.render.book import table
-    yield line(look.charset.text(report.title), "title")
-    yield from (line(look.charset.text(one)) for one in report.head)
+    yield from (line(one, "title") for one in folded(look.charset.text(report.title), look.width))
+    yield from (line(one) for text in report.head for one in folded(look.charset.text(text), look.width))
     for sheet in sheets(report, look):
         yield BLANK
         yield from table(sheet, look)

@@ -133,8 +133,10 @@ def sentence_text(text: str, look: Look) -> str:
     return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if look.comma else text
 
 
-def folded_text(text: str, cells: int) -> list[str]:
-    """Return a text in lines of so many cells; no word is broken."""
+def folded(text: str, cells: int | None) -> list[str]:
+    """Return a text in lines of so many cells, where they are given; no word is broken."""
+    if cells is None or width(text) <= cells:
+        return [text]
     from textwrap import wrap
 
     return wrap(text, cells, break_long_words=False, break_on_hyphens=False)
@@ -151,5 +153,5 @@ def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
         if head.strip():
             yield line(head, "cell")
         head, indent = "", 6
-    for index, folded in enumerate(folded_text(text, max(look.width - indent, _LEAST_BESIDE))):
-        yield (Piece(head if head and index == 0 else " " * indent, "cell"), Piece(folded))
+    for index, one in enumerate(folded(text, max(look.width - indent, _LEAST_BESIDE))):
+        yield (Piece(head if head and index == 0 else " " * indent, "cell"), Piece(one))

@@ -44,19 +44,20 @@ def shown_column(quantity: Quantity, values: Sequence[float | None], system: str
 
     Raises UsageError where one is not finite.
     """
-    if isinstance(values, array):
-        numbers = np.frombuffer(values)
-        if not np.isfinite(numbers).all():
-            raise too_large(quantity)
-        unit = shown_unit(quantity.kind, system, float(np.abs(numbers).max(initial=0.0)))
-        shown: Any = array("d", (convert(numbers, quantity.kind, unit) + 0.0).tobytes())
-    else:
-        given = [abs(value) for value in values if value is not None]
-        if not all(map(math.isfinite, given)):
-            raise too_large(quantity)
-        unit = shown_unit(quantity.kind, system, max(given, default=0.0))
-        shown = tuple(None if value is None else convert(value, quantity.kind, unit) + 0.0 for value in values)
+    given = np.frombuffer(values) if isinstance(values, array) else np.array([v for v in values if v is not None])
+    if not np.isfinite(given).all():
+        raise too_large(quantity)
+    unit = shown_unit(quantity.kind, system, max(given.max(initial=0.0), -given.min(initial=0.0)))
+    given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
+    given += 0.0
+    shown = values if isinstance(values, array) else _filled(values, given.tolist())
     return Column(quantity.id, quantity.symbol, quantity.ascii_symbol, unit, shown, quantity.text)
+
+
+def _filled(values: Sequence[float | None], given: list[float]) -> tuple[float | None, ...]:
+    """Return the given values in the places of those that are not None."""
+    following = iter(given)
+    return tuple(None if value is None else next(following) for value in values)
 
 
 def shown_key_value(name: str, value: Any, system: str) -> KeyValue:
