@@ -11,7 +11,7 @@ from kurbel.cli.exit_status import exit_statuses
 def units() -> None:
     """List the units that a machine file may use, a line for each kind of quantity.
 
-    Products and powers are written as people write them: N m, N*m, kg m2, kg m^2, kg m².
+    Products and powers are written as people write them: N m or N*m, kg m2 or kg m^2.
     """
     from kurbel.declared.units import kinds, unit_names
     from kurbel.render import Look

@@ -133,7 +133,7 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         {**_product(_FORCE, {"m": (1, 1), "mm": (1, 1e3), "ft": (3048, 1e4)}, " "), **_TORQUE}, {"rad": (1, 1)}, "/"
     ),
     "damping": lambda: (
-        _product({**_product(_FORCE, {"m": (1, 1)}, " "), **_TORQUE}, {"rad/s": (1, 1), "s/rad": (1, 1)}, " ")
+        _product({**_product(_FORCE, {"m": (1, 1)}, " "), **_TORQUE}, {"s/rad": (1, 1)}, " ")
         | {"N m s/rad": (1, 1), "Nm s/rad": (1, 1), "kN m s/rad": (1e3, 1)}
         | {"N m s": (1, 1), "Nm s": (1, 1), "kN m s": (1e3, 1), "lbf ft s/rad": (_LBF * 3048, 1e4)}
     ),
