@@ -49,7 +49,7 @@ def linear_periodic(equation: Forced, elements: Elements) -> tuple[Elements, Arr
 
 
 def _answers(equation: Forced, elements: Elements) -> tuple[Array, float]:
-    """Return the unknowns at the nodes of all elements (k, m s, m + 1), under f from 0, and from unit starts; max |f|."""
+    """Return the unknowns at all nodes (k, m s, m + 1), under f from 0, and from unit starts; and the largest |f|."""
     weights, size = rule().matrix, len(equation.matrix)
     unknowns = size * len(weights)
     forcing = np.moveaxis(elements.prepared(equation), 0, -1)

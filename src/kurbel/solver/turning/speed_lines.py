@@ -33,12 +33,12 @@ _DOUBLINGS = 30
 def speed_law(turned: MachineEffort) -> SpeedLaw | None:
     """Return how the load depends on the speed; None where it does not, or is nothing on the mean."""
     load, excess = turned.machine.load, turned.excess
-    if load is None or not (load.slip or load.power):
-        return None
     largest = max(abs(extreme.value) for extreme in excess.effort_extremes)
-    if abs(excess.mean) <= 1e-12 * largest:
+    if load is None or abs(excess.mean) <= 1e-12 * largest:
         return None
-    return PowerLaw(excess.mean, load.power) if load.slip is None else SlipLaw(excess.mean, load.slip)
+    if load.slip is not None:
+        return SlipLaw(excess.mean, load.slip)
+    return PowerLaw(excess.mean, load.power) if load.power else None
 
 
 class SpeedLines:
