@@ -9,7 +9,7 @@ from typing import Any
 from kurbel.machine import Machine
 from kurbel.machine.turning import Effort, Flywheel
 from kurbel.solver.case import Case
-from kurbel.solver.turning.flywheel import MachineSpeed
+from kurbel.solver.turning.flywheel import MachineTurning
 
 Point = tuple[float, float]
 
@@ -20,7 +20,7 @@ def of_points(
     inertia: float | None = None,
     delta: float | None = None,
     **more: Any,
-) -> MachineSpeed:
+) -> MachineTurning:
     """Solve a machine with this turning-moment diagram, (degrees, N m)."""
     wheel = None if inertia is None and delta is None else Flywheel(inertia, delta)
     diagram = Effort(tuple(a for a, _ in points), tuple(m for _, m in points))

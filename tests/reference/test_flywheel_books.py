@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 
 from kurbel.machine.turning import Effort
+from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
-from kurbel.solver.turning.excess import Excess, mean_torque
+from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.torques import Diagram, Uniform
 from turning_machines import of_points, rectangles
 
@@ -25,7 +26,7 @@ EXACT = 1e-11
 class Wave:
     """M = constant + Σ (a cos kφ + b sin kφ): the torques that some books give as formulas."""
 
-    breaks = np.linspace(0, 360, 9)
+    cuts = Cuts(np.linspace(0, 360, 9))
 
     def __init__(self, constant: float, *terms: tuple[int, float, float]) -> None:
         self.constant, self.terms = constant, terms
@@ -35,14 +36,6 @@ class Wave:
         value = self.constant + sum(a * np.cos(k * phi) + b * np.sin(k * phi) for k, a, b in self.terms)
         return Jet(value, sum(k * (b * np.cos(k * phi) - a * np.sin(k * phi)) for k, a, b in self.terms))
 
-    def work(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        def upto(degrees: np.ndarray) -> np.ndarray:
-            phi = np.radians(degrees)
-            waves = sum((a * np.sin(k * phi) - b * np.cos(k * phi)) / k for k, a, b in self.terms)
-            return self.constant * phi + waves
-
-        return (upto(high) - upto(low))[None, :]
-
 
 def test_sarkar_6_10_the_swing_over_all_lobes() -> None:
     """The book prints −1370.28, its companion 19.5 kg m² for an angle taken in degrees; 15125 N m need 1724 kg m²."""
@@ -50,7 +43,7 @@ def test_sarkar_6_10_the_swing_over_all_lobes() -> None:
     assert excess.dE == pytest.approx(15125, rel=EXACT)
     omega = 200 * math.pi / 30
     assert excess.dE / (0.02 * omega**2) == pytest.approx(1724.04326541, rel=EXACT)
-    assert mean_torque(excess.effort, 360) * omega == pytest.approx(314159.265359, rel=EXACT)
+    assert excess.mean * omega == pytest.approx(314159.265359, rel=EXACT)
 
 
 def test_sarkar_6_6() -> None:
@@ -81,8 +74,8 @@ def test_khurmi_16_6_a_cycle_of_three_turns() -> None:
     """750 N m, rising to 3000 over half a turn, one turn at 3000, falling over half a turn, one turn at 750."""
     points = Effort((0.0, 180.0, 540.0, 720.0, 1080.0), (750.0, 3000.0, 3000.0, 750.0, 750.0))
     diagram = Diagram(points, 1080.0)
-    mean = mean_torque(diagram, 1080)
-    excess, omega = Excess(diagram, Uniform(mean, 1080.0)), 250 * math.pi / 30
+    excess, omega = Excess(diagram), 250 * math.pi / 30
+    mean = excess.mean
     assert mean == pytest.approx(1875, rel=EXACT)
     assert mean * omega == pytest.approx(49087.3852123, rel=EXACT)
     assert excess.dE == pytest.approx(8835.7293, rel=1e-8)

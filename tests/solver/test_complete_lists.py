@@ -59,7 +59,7 @@ def missing_reversals(forces: CylinderForces) -> int:
     assert found is not None
     assert extremes is not None
     both = extremes.largest.value > 0 > extremes.smallest.value
-    return wrong_signs(np.array(found), forces.drive.breaks(), force_along(forces)) + int(bool(found) != both)
+    return wrong_signs(np.array(found), forces.drive.cuts.grid().breaks, force_along(forces)) + int(bool(found) != both)
 
 
 def missing_crossings(forces: CylinderForces) -> int:

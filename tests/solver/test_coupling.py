@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.turning import Coupling, Effort, Load
 from kurbel.solver.turning.coupling import natural_frequency
-from kurbel.solver.turning.flywheel import MachineSpeed
+from kurbel.solver.turning.flywheel import MachineTurning
 from turning_machines import of_points
 
 POINTS = [(0, 100), (60, 900), (60, 500), (180, 100), (240, 700), (360, 100)]
@@ -22,7 +22,7 @@ Points = Sequence[tuple[float, float]]
 RPM, OMEGA = 60.0, 2 * math.pi
 
 
-def coupled(order: float, damping: float = 20.0, inertia: float = 40.0, load: Load | None = None) -> MachineSpeed:
+def coupled(order: float, damping: float = 20.0, inertia: float = 40.0, load: Load | None = None) -> MachineTurning:
     """A machine whose natural order, with 60 kg m² before the coupling, is `order`."""
     stiffness = (order * OMEGA) ** 2 / (1 / 60.0 + 1 / inertia)
     return of_points(POINTS, RPM, inertia=60.0, coupling=Coupling(stiffness, inertia, damping), load=load)
@@ -39,7 +39,7 @@ def test_natural_order() -> None:
     assert natural_frequency(Coupling(stiffness=200.0, inertia=1e12), 8.0) == pytest.approx(5.0, rel=1e-9)
 
 
-def in_time(machine: MachineSpeed, torque: Points, load: Points, own: float) -> np.ndarray:
+def in_time(machine: MachineTurning, torque: Points, load: Points, own: float) -> np.ndarray:
     """Torque in the coupling and ω₁ − ω_n at many angles, the mean of the latter taken off, by scipy.
 
     J₁ ω̇₁ = M − M_K, J₂ ω̇₂ = M_K − L, marched for a cycle from 0 and from three unit states, by which the state is found
@@ -82,8 +82,8 @@ def test_two_masses_in_time_repeat_as_the_collocation_says(order: float) -> None
     mean = machine.M_mean
     angles, torque, swing = in_time(machine, POINTS, [(0, mean), (360, mean)], 60.0)
     inside = np.abs(angles[:, None] - np.array([a for a, _ in POINTS])).min(axis=1) > 1e-6
-    assert machine.M_coupling(angles[inside]) == pytest.approx(torque[inside], abs=1e-9 * np.ptp(torque))
-    own = machine.omega_line(angles[inside]) - OMEGA
+    assert machine.at(angles[inside]).M_coupling == pytest.approx(torque[inside], abs=1e-9 * np.ptp(torque))
+    own = machine.at(angles[inside]).omega - OMEGA
     assert own - own.mean() == pytest.approx(swing[inside] - swing[inside].mean(), abs=1e-9 * np.ptp(swing))
 
 
@@ -98,9 +98,9 @@ def test_the_punch_up_to_order_100(inertia: float) -> None:
     """J = 0.255 kg m² stands for order 99.7; harmonics summed by a coarse rule once gave δ = 0.02845 there."""
     machine = of_points([(0, 120), (360, 120)], RPM, inertia=inertia, coupling=STIFF, load=load_of(PUNCH))
     angles, torque, swing = in_time(machine, [(0, 120), (360, 120)], PUNCH, inertia)
-    assert np.ptp(machine.omega_line(angles)) == pytest.approx(np.ptp(swing), rel=1e-8)
+    assert np.ptp(machine.at(angles).omega) == pytest.approx(np.ptp(swing), rel=1e-8)
     assert machine.delta == pytest.approx(np.ptp(swing) / OMEGA, rel=1e-4)  # as dense as the angles are
-    assert machine.M_coupling(angles) == pytest.approx(torque, abs=1e-8 * np.ptp(torque))
+    assert machine.at(angles).M_coupling == pytest.approx(torque, abs=1e-8 * np.ptp(torque))
     if inertia == 0.255:
         assert machine.natural_order == pytest.approx(99.69, abs=0.01)
         assert machine.delta == pytest.approx(0.025785, abs=5e-7)

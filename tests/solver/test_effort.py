@@ -21,7 +21,7 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.grid import Grid
 from kurbel.solver.case import Case
-from kurbel.solver.turning.flywheel import MachineSpeed
+from kurbel.solver.turning.flywheel import MachineTurning
 from machines import STEAM_CARD, constant_pressure
 from turning_machines import of_points
 
@@ -31,7 +31,7 @@ ENGINE = Cylinder(SliderCrank(0.4, 2.0), pistons=(STEAM,), masses=Masses(826.0))
 ANGLES = np.array([0.0, 17.3, 90.0, 123.4, 180.0, 271.0, 359.0])
 
 
-def turning(*cylinders: Cylinder, rpm: float | None = 50, **machine: Any) -> MachineSpeed:
+def turning(*cylinders: Cylinder, rpm: float | None = 50, **machine: Any) -> MachineTurning:
     named = tuple(replace(c, name=f"cylinder {i}") for i, c in enumerate(cylinders, 1))
     return Case(Machine(named, speed=None if rpm is None else rpm / 60, **machine)).flywheel
 
@@ -40,13 +40,13 @@ def test_a_crank_that_leads_by_90_degrees_is_ahead_by_90_degrees() -> None:
     """R p. 612: the torques are added, each shifted by its crank."""
     alone = turning(ENGINE)
     both = turning(ENGINE, replace(ENGINE, crank_position=-90.0))
-    assert both.M(ANGLES) == pytest.approx(alone.M(ANGLES) + alone.M(ANGLES + 90), rel=1e-12, abs=1e-9)
+    assert pytest.approx(alone.at(ANGLES).M + alone.at(ANGLES + 90).M, rel=1e-12, abs=1e-9) == both.at(ANGLES).M
 
 
 def test_the_efficiency_scales_the_turning_effort_only() -> None:
     """R p. 611."""
     whole, less = turning(ENGINE), turning(ENGINE, efficiency=0.9)
-    assert less.M(ANGLES) == pytest.approx(0.9 * whole.M(ANGLES), rel=1e-14)
+    assert pytest.approx(0.9 * whole.at(ANGLES).M, rel=1e-14) == less.at(ANGLES).M
     assert less.dE == pytest.approx(0.9 * whole.dE, rel=1e-14)
     assert pytest.approx(0.9 * Case(less.machine).cylinders[0].W, rel=1e-14) == less.W
 
@@ -64,23 +64,23 @@ def test_a_driven_machine_needs_more_than_its_card_shows(eta: float) -> None:
     assert pytest.approx(-work / (2 * math.pi * 0.2), rel=1e-13) == driven.W
     lossless = turning(pump, rpm=120)
     assert driven.lobes == pytest.approx(np.array(lossless.lobes) / eta, rel=1e-12)
-    assert driven.T_inertia(ANGLES) == pytest.approx(lossless.T_inertia(ANGLES) / eta, rel=1e-13, abs=1e-9)
+    assert driven.at(ANGLES).T_inertia == pytest.approx(lossless.at(ANGLES).T_inertia / eta, rel=1e-13, abs=1e-9)
 
 
 def test_forces_are_referred_to_crank_1() -> None:
     small = replace(ENGINE, mechanism=SliderCrank(0.2, 1.5))
     both = turning(ENGINE, small)
-    assert both.T(ANGLES) * 0.4 == pytest.approx(both.M(ANGLES), rel=1e-14)
+    assert pytest.approx(both.at(ANGLES).M, rel=1e-14) == both.at(ANGLES).T * 0.4
     assert pytest.approx(both.M_mean, rel=1e-14) == both.W * 0.4
 
 
 def test_inertia_line_of_tolle() -> None:
     """For a fixed λ the inertia T-line is one curve times G v²/(gR), and its mean is zero."""
     slow, fast = turning(ENGINE), turning(ENGINE, rpm=150)
-    assert fast.T_inertia(ANGLES) == pytest.approx(9 * slow.T_inertia(ANGLES), rel=1e-12, abs=1e-9)
+    assert fast.at(ANGLES).T_inertia == pytest.approx(9 * slow.at(ANGLES).T_inertia, rel=1e-12, abs=1e-9)
     assert fast.M_mean == pytest.approx(slow.M_mean, rel=1e-12)
     without = turning(replace(ENGINE, masses=None))
-    assert slow.T(ANGLES) - slow.T_inertia(ANGLES) == pytest.approx(without.T(ANGLES), rel=1e-12, abs=1e-8)
+    assert slow.at(ANGLES).T - slow.at(ANGLES).T_inertia == pytest.approx(without.at(ANGLES).T, rel=1e-12, abs=1e-8)
 
 
 LYING = Friction(crosshead=0.1, rings=Rings(3, 0.02, 3e4, 0.08))
@@ -156,18 +156,18 @@ PUMP_BESIDE = Cylinder(SliderCrank(0.05, 0.3), pistons=(replace(PUMP, bore=0.1),
 def test_a_pump_of_one_turn_beside_an_engine_of_two() -> None:
     machine = turning(GAS, replace(PUMP_BESIDE, cycle="two-stroke"), rpm=300, cycle="four-stroke")
     engine, pump = Case(machine.machine).cylinders
-    assert machine.cycle == 720
+    assert machine.turned.cycle == 720
     assert (engine.drive.cycle, pump.drive.cycle) == (720, 360)
     assert machine.work_shaft == pytest.approx(engine.work + 2 * pump.work, rel=1e-13)
-    at = machine.M(ANGLES + 360) - machine.M(ANGLES)
+    at = machine.at(ANGLES + 360).M - machine.at(ANGLES).M
     alone = turning(GAS, rpm=300, cycle="four-stroke")
-    assert at == pytest.approx(alone.M(ANGLES + 360) - alone.M(ANGLES), abs=1e-9)
+    assert at == pytest.approx(alone.at(ANGLES + 360).M - alone.at(ANGLES).M, abs=1e-9)
 
 
 def test_four_cylinders_that_fire_in_turn() -> None:
     positions = (0.0, 540.0, 180.0, 360.0)
     machine = turning(*(replace(GAS, crank_position=p) for p in positions), rpm=300, cycle="four-stroke")
-    assert machine.M(ANGLES + 180) == pytest.approx(machine.M(ANGLES), abs=1e-8)
+    assert pytest.approx(machine.at(ANGLES).M, abs=1e-8) == machine.at(ANGLES + 180).M
     assert machine.M_mean == pytest.approx(4 * turning(GAS, rpm=300, cycle="four-stroke").M_mean, rel=1e-13)
 
 
@@ -175,7 +175,7 @@ def test_a_diagram_of_one_turn_repeats_in_a_cycle_of_two() -> None:
     machine = of_points([(0, 5), (180, 20), (360, 5)])
     twice = replace(machine.machine, cycle="four-stroke")
     again = Case(twice).flywheel
-    assert again.M(ANGLES + 360) == pytest.approx(again.M(ANGLES), rel=1e-13)
+    assert pytest.approx(again.at(ANGLES).M, rel=1e-13) == again.at(ANGLES + 360).M
     assert again.work_shaft == pytest.approx(2 * machine.work_shaft, rel=1e-14)
 
 
@@ -317,7 +317,7 @@ def test_no_crossing_is_missed_in_random_machines() -> None:
         assert missed(machine) == 0
 
 
-def random_machine(random: np.random.Generator) -> MachineSpeed:
+def random_machine(random: np.random.Generator) -> MachineTurning:
     count = int(random.integers(1, 4))
     cylinders = []
     for _ in range(count):
@@ -344,14 +344,14 @@ def random_machine(random: np.random.Generator) -> MachineSpeed:
     return turning(*cylinders, rpm=10 ** random.uniform(1, 3))
 
 
-def missed(machine: MachineSpeed, samples: int = 200) -> int:
+def missed(machine: MachineTurning, samples: int = 200) -> int:
     """Count changes of sign of M − M_mean on a fine mesh beside no crossing, and extremes that the mesh beats."""
     breaks = machine.excess.grid.breaks
     low, high = breaks[:-1, None], breaks[1:, None]
     degrees = low + (high - low) * np.linspace(0, 1, samples)
     within = np.broadcast_to((low + high) / 2, degrees.shape)
     values = machine.excess.torque.torque(degrees, within).value.ravel()
-    total = machine.effort.torque(degrees, within).value
+    total = machine.turned.effort.torque(degrees, within).value
     size = np.abs(total).max()
     changes = np.flatnonzero(values[:-1] * values[1:] < 0)
     crossings = np.array(machine.phi_crossing)
@@ -367,17 +367,17 @@ def missed(machine: MachineSpeed, samples: int = 200) -> int:
 def test_the_excess_work_begins_at_zero_and_an_angle_answers_alike_in_any_company() -> None:
     tandem = replace(ENGINE, pistons=(STEAM, PUMP), crank_position=77.7, name="")
     machine = turning(ENGINE, tandem)
-    every = machine.E(np.arange(0.0, 361.0, 1.0))
+    every = machine.at(np.arange(0.0, 361.0, 1.0)).E
     assert every[0] == 0
     for angle in (0.0, 33.0, 180.0, 271.0, 360.0):
-        assert machine.E(np.array([angle]))[0] == every[int(angle)]
-        assert machine.E(np.array([angle, 12.0]))[0] == every[int(angle)]
+        assert machine.at(np.array([angle])).E[0] == every[int(angle)]
+        assert machine.at(np.array([angle, 12.0])).E[0] == every[int(angle)]
 
 
 def test_whole_turns_of_a_crank_position_change_nothing() -> None:
     near, far = (turning(ENGINE, replace(ENGINE, crank_position=p)) for p in (45.5, 45.5 + 360.0 * 2.0**30))
     assert (far.dE, far.M_mean) == (near.dE, near.M_mean)
-    assert (far.M(ANGLES) == near.M(ANGLES)).all()
+    assert (far.at(ANGLES).M == near.at(ANGLES).M).all()
 
 
 def test_the_work_of_very_many_points_is_the_area_under_them() -> None:

@@ -228,7 +228,7 @@ def test_tafel_i_low_pressure_leads_and_evens_the_effort() -> None:
 
 def test_four_cylinders_fire_every_180_degrees() -> None:
     turning = Case(load(CONFIGS / "four-cylinder-generator.yaml")).flywheel
-    assert turning.cycle == 720
+    assert turning.turned.cycle == 720
     assert len(turning.phi_crossing) == 16
     assert turning.multiplier < 1
 
@@ -254,7 +254,7 @@ def test_a_cylinder_has_a_cycle_of_its_own() -> None:
     """A pump beside a four-stroke engine: both of its turns are alike, and its card is held against its own cycle."""
     case = Case(loads(MIXED))
     assert [cylinder.drive.cycle for cylinder in case.cylinders] == [720, 360]
-    assert case.flywheel.cycle == 720
+    assert case.flywheel.turned.cycle == 720
     assert case.flywheel.work_shaft == pytest.approx(2 * case.cylinders[1].work, rel=1e-12)
     with pytest.raises(MachineFileError, match=r"cylinders\[1\]\.indicator\.head_end: a four-stroke cycle needs"):
         loads(MIXED.replace("two-stroke", "four-stroke"))

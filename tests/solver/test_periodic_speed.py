@@ -23,7 +23,7 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.collocation import Unsettled, periodic
 from kurbel.numerics.elements import rule
 from kurbel.solver.case import Case
-from kurbel.solver.turning.flywheel import MachineSpeed
+from kurbel.solver.turning.flywheel import MachineTurning
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedEquation
 from machines import STEAM_CARD
 from turning_machines import of_points
@@ -47,7 +47,7 @@ def steam(
     delta: float | None = None,
     cylinder: Cylinder = CYLINDER,
     **machine: Any,
-) -> MachineSpeed:
+) -> MachineTurning:
     cylinders = tuple(replace(c, name=f"cylinder {i}") for i, c in enumerate((cylinder, *more), 1))
     return Case(Machine(cylinders, speed=rpm / 60, flywheel=Flywheel(inertia, delta), load=load, **machine)).flywheel
 
@@ -114,8 +114,8 @@ def test_scipy_marches_to_the_same_state(slip: float, inertia: float) -> None:
     def slope(phi: float, energy: Any) -> Any:
         angle = np.array([min(max(math.degrees(phi), low), high)])
         middle = np.array([(low + high) / 2])
-        state = machine.effort.torque(angle, middle).value
-        inertial = sum(mass.torque(angle, middle).value for mass in machine.masses)
+        state = machine.turned.effort.torque(angle, middle).value
+        inertial = sum(mass.torque(angle, middle).value for mass in machine.turned.masses)
         omega = np.sqrt(energy / kinetic(angle))
         load = machine.M_mean * (1 + (omega / omega_n - 1) / slip)
         return state - inertial - load  # the masses are in E already
@@ -145,7 +145,7 @@ def test_a_stiff_generator_turns_the_torque_into_a_speed() -> None:
     slip = 1e-9
     machine = steam(50000, Load(slip=slip), replace(CYLINDER, crank_position=90.0))
     angles = np.array([10.0, 77.0, 150.0, 260.0])
-    expected = slip * (machine.M(angles) / machine.M_mean - 1)
+    expected = slip * (machine.at(angles).M / machine.M_mean - 1)
     assert machine.speed.z(angles, angles) / machine.speed.inertia.energy(angles, angles).value / 2 == pytest.approx(
         expected, rel=1e-2
     )
@@ -266,7 +266,7 @@ def test_an_unstable_line_is_where_marching_backward_ends() -> None:
 
     def slope(phi: float, energy: Any, low: float, high: float) -> Any:
         angle = np.array([min(max(math.degrees(phi), low), high)])
-        effort = machine.effort.torque(angle, np.array([(low + high) / 2])).value
+        effort = machine.turned.effort.torque(angle, np.array([(low + high) / 2])).value
         return effort - machine.M_mean * 150.0 * machine.omega**2 / energy
 
     energy = np.array([150.0 * 25.0])

@@ -16,7 +16,6 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.numerics.grid import Grid
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.state import State
@@ -64,7 +63,7 @@ def friction_power(forces: CylinderForces) -> Function:
 
 
 def error_of_friction(forces: CylinderForces) -> float:
-    precise = precise_integral(friction_power(forces), forces.drive.breaks())
+    precise = precise_integral(friction_power(forces), forces.drive.cuts.grid().breaks)
     assert forces.crosshead_work is not None
     return abs(forces.crosshead_work / precise - 1)
 
@@ -81,7 +80,7 @@ def errors_of_bearings(forces: CylinderForces) -> list[float]:
     machine = forces.drive.machine
     strength = Case(Machine((forces.drive.cylinder,), speed=machine.speed, crankshaft=shaft())).strength
     turn = math.radians(forces.drive.cycle)
-    breaks = forces.drive.breaks()
+    breaks = forces.drive.cuts.grid().breaks
     if forces.drive.has_friction:  # where the guide changes sides, every force has a kink
         breaks = with_least(friction_power(forces), breaks)
     errors = []
@@ -119,10 +118,10 @@ def test_friction_where_the_guide_changes_sides_twice_at_once() -> None:
 
 def test_the_residual_shows_gauss_across_a_kink(monkeypatch: pytest.MonkeyPatch) -> None:
     """A planted fault: the pieces of the grid are not cut where the guide changes sides."""
-    monkeypatch.setattr(CylinderForces, "grid", property(lambda forces: Grid(forces.drive.breaks())))
+    monkeypatch.setattr(CylinderForces, "grid", property(lambda forces: forces.drive.cuts.grid()))
     forces = rubbing_diesel()
-    precise = precise_integral(friction_power(forces), forces.drive.breaks())
-    turnover = precise_integral(lambda degrees: np.abs(forces.at(degrees).M), forces.drive.breaks())
+    precise = precise_integral(friction_power(forces), forces.drive.cuts.grid().breaks)
+    turnover = precise_integral(lambda degrees: np.abs(forces.at(degrees).M), forces.drive.cuts.grid().breaks)
     assert forces.crosshead_work is not None
     error = (forces.crosshead_work - precise) / turnover
     assert abs(error) > 1e-6

@@ -185,7 +185,7 @@ def speed_methods(machine: Machine, quick: bool) -> Iterator[Method]:
     turns = _QUICK_TURNS if quick else _TURNS
     angles = np.arange(0.0, 360.0 * machine.revolutions, SAMPLE_STEP)
 
-    yield Method(OWN, "1e-13", lambda: Case(machine).flywheel.omega_line(angles))
+    yield Method(OWN, "1e-13", lambda: Case(machine).flywheel.at(angles).omega)
     mean = Case(machine).flywheel.M_mean
 
     def problem() -> marching.SpeedProblem:

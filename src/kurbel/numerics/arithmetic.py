@@ -45,26 +45,16 @@ def bearing(sin: Any, cos: Any) -> Any:
     return np.degrees(np.arctan2(sin, cos))
 
 
-def exact_sum(terms: Iterable[float]) -> float:
-    """Return the sum of floats, rounded once; inf where it, or anything on the way, is beyond the range of floats."""
-    try:
-        return math.fsum(terms)
-    except (OverflowError, ValueError):
-        return math.inf
+def running_sums(terms: Iterable[float]) -> Iterator[float]:
+    """Yield the sum of the first one, two, … terms, each rounded once (Shewchuk).
 
-
-def running_sums(groups: Iterable[Iterable[float]]) -> Iterator[tuple[float, float]]:
-    """Yield the sum of the terms of the first one, two, … groups, rounded once, and what the rounding took (Shewchuk).
-
-    >>> list(running_sums([(1.0, 1e-20), (-1.0,)]))
-    [(1.0, 1e-20), (1e-20, 0.0)]
+    >>> list(running_sums([1e20, 1.0, -1e20]))
+    [1e+20, 1e+20, 1.0]
     """
     parts: list[float] = []  # they do not overlap, and their sum is exact
-    for group in groups:
-        for term in group:
-            parts = [*_joined(parts, term)]
-        total = exact_sum(parts)
-        yield total, exact_sum((*parts, -total)) if math.isfinite(total) else 0.0
+    for term in terms:
+        parts = [*_joined(parts, term)]
+        yield math.fsum(parts) if math.isfinite(parts[-1]) else parts[-1]
 
 
 def _joined(parts: list[float], term: float) -> Iterator[float]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from kurbel.numerics.elements import STAGES, Elements, Prepared, rule
 from kurbel.numerics.legendre import legendre
+from kurbel.numerics.linear_collocation import around
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Flags
@@ -36,8 +37,8 @@ class Equation(Prepared, Protocol):
         """Return what z must stay above."""
         ...
 
-    def heavier(self, inertia: float) -> Equation:
-        """Return the equation with more inertia, whose floor is lower by so much: the more, the tamer it is."""
+    def eased(self, by: float) -> Equation:
+        """Return the equation made tamer, from 0 on without end: its floor is lower by so much, and z moves it less."""
         ...
 
 
@@ -62,7 +63,8 @@ class Periodic(NamedTuple):
 def periodic(equation: Equation, breaks: Array) -> Periodic:
     """Return the solution of z′ = f(φ, z) with the period of the breaks (n + 1,) in degrees.
 
-    Newton's method starts from z = 0; where that leads nowhere, from a solution with more inertia, which is taken off.
+    Newton's method starts from z = 0; where that leads nowhere, from a solution of an eased equation, which is followed
+    back to the given one.
     Raises Standstill where z falls to its floor on that way, and Unsettled where the way ends before it does.
     """
     elements = Elements.over(breaks)
@@ -71,22 +73,22 @@ def periodic(equation: Equation, breaks: Array) -> Periodic:
         try:
             return _settled(equation, guess)
         except Unsettled:
-            return _lightened(equation, guess)
+            return _followed(equation, guess)
 
 
 class Unsettled(Exception):
-    """No solution is found; inertia: what more would be enough, in the unit of z, or None where that is not known."""
+    """No solution is found; enough: how far to ease the equation for one, in the unit of z, or None if not known."""
 
-    def __init__(self, inertia: float | None = None) -> None:
+    def __init__(self, enough: float | None = None) -> None:
         super().__init__("no periodic solution found")
-        self.inertia = inertia
+        self.enough = enough
 
 
 class Standstill(Unsettled):
-    """z falls to its floor near a crank angle in degrees; inertia: see `Unsettled`."""
+    """z falls to its floor near an angle in degrees; enough: see `Unsettled`."""
 
-    def __init__(self, degrees: float, inertia: float | None = None) -> None:
-        super().__init__(inertia)
+    def __init__(self, degrees: float, enough: float | None = None) -> None:
+        super().__init__(enough)
         self.degrees = degrees
 
 
@@ -98,52 +100,52 @@ class _Guess(NamedTuple):
     values: Array
 
 
-_HEAVIEST = 12
-"""Hundredfolds of the inertia that are tried for a first solution."""
+_TAMEST = 12
+"""Hundredfolds of the depth of the floor that are tried for a first solution."""
 _STEP = 0.1
 _SHORTEST = 0.998
-"""Largest and smallest cut of the inertia, on the way down."""
+"""Largest and smallest cut of that depth, on the way back."""
 _MOST_STEPS = 60
 _STANDING = 0.05
-"""z − floor, over that of z = 0, that is taken for standing still where the way down ends."""
+"""z − floor, over that of z = 0, that is taken for standing still where the way back ends."""
 
 
-def _lightened(equation: Equation, guess: _Guess) -> Periodic:
-    """Follow the solution from much inertia down to that of the equation."""
+def _followed(equation: Equation, guess: _Guess) -> Periodic:
+    """Follow the solution from a deep floor up to that of the equation."""
     own = -float(equation.floor(guess.elements.prepared(equation)).max())
-    found, inertia = _heavy(equation, guess, own)
+    found, depth = _tame(equation, guess, own)
     factor = _STEP
     for _ in range(_MOST_STEPS):
-        if inertia <= own:
+        if depth <= own:
             return found
-        lighter = max(inertia * factor, own)
+        nearer = max(depth * factor, own)
         try:
-            found = _settled(equation.heavier(lighter - own), _Guess(found.elements, found.start, found.values))
-            inertia, factor = lighter, max(factor**1.5, _STEP)
+            found = _settled(equation.eased(nearer - own), _Guess(found.elements, found.start, found.values))
+            depth, factor = nearer, max(factor**1.5, _STEP)
         except Unsettled:
             factor = math.sqrt(factor)
             if factor > _SHORTEST:
                 break
-    raise _end_of(equation.heavier(inertia - own), found, inertia - own)
+    raise _end_of(equation.eased(depth - own), found, depth - own)
 
 
-def _heavy(equation: Equation, guess: _Guess, own: float) -> tuple[Periodic, float]:
-    for more in range(1, _HEAVIEST + 1):
-        inertia = own * 100.0**more
+def _tame(equation: Equation, guess: _Guess, own: float) -> tuple[Periodic, float]:
+    for hundredfolds in range(1, _TAMEST + 1):
+        depth = own * 100.0**hundredfolds
         try:
-            return _settled(equation.heavier(inertia - own), guess), inertia
+            return _settled(equation.eased(depth - own), guess), depth
         except Unsettled:
             continue
     raise Unsettled
 
 
-def _end_of(equation: Equation, found: Periodic, more: float) -> Unsettled:
-    """Return why the way down ends at this solution: because z is all but at its floor, or not."""
+def _end_of(equation: Equation, found: Periodic, enough: float) -> Unsettled:
+    """Return why the way back ends at this solution: because z is all but at its floor, or not."""
     floor = equation.floor(found.elements.prepared(equation))
     share = 1 - found.values / floor
     if share.min() > _STANDING:
-        return Unsettled(more)
-    return Standstill(float(found.elements.degrees.ravel()[np.argmin(share)]), more)
+        return Unsettled(enough)
+    return Standstill(float(found.elements.degrees.ravel()[np.argmin(share)]), enough)
 
 
 def _settled(equation: Equation, guess: _Guess) -> Periodic:
@@ -203,7 +205,7 @@ def _newton(
             break
         step_start, step = _linear_step(at)
         size = float(np.abs(step).max())
-        # with a heavy flywheel rounding moves the mean level, though by nothing beside the whole energy
+        # high above its floor z is moved as a whole by rounding, though by nothing beside that height
         near = max(1e-9 * np.ptp(at.values + step), 1e-14 * least)
         share = _allowed(at.values - floor, step)
         after = state(at.start + share * step_start, at.values + share * step)
@@ -230,25 +232,10 @@ def _linear_step(at: _State) -> tuple[Array, Array]:
         response, gain = np.moveaxis(np.linalg.solve(systems, sides), -1, 0)
     except np.linalg.LinAlgError:
         raise Unsettled from None
-    # δ_start of element k + 1 is more[k] + gains[k] δ_start(k)
-    more = response[:, -1] + np.roll(at.jump, -1)
-    step_start = np.array(_chain(more.tolist(), gain[:, -1].tolist()))
+    # δ_start of element k + 1 is more[k] + gain[k] δ_start(k)
+    more = response[:, -1:] + np.roll(at.jump, -1)[:, None]
+    step_start = around(-gain[:, -1:, None], np.ones((len(more), 1, 1)), more)[:, 0]
     return step_start, response + gain * step_start[:, None]
-
-
-def _chain(more: list[float], gains: list[float]) -> list[float]:
-    """Return the periodic solution of d(k + 1) = more(k) + gains(k) d(k), run in the direction in which errors die."""
-    # by the logarithms, as products may overflow whichever way round
-    if 0.0 in gains or not sum(math.log(abs(gain)) for gain in gains) > 1e-9:
-        offset, whole = 0.0, 1.0
-        for add, gain in zip(more, gains):
-            offset, whole = add + gain * offset, whole * gain
-        steps = [offset / (1 - whole) if whole != 1 else 0.0]
-        for add, gain in zip(more[:-1], gains):
-            steps.append(add + gain * steps[-1])
-        return steps
-    back = _chain([-add / gain for add, gain in zip(more[::-1], gains[::-1])], [1 / gain for gain in gains[::-1]])
-    return [back[0], *back[:0:-1]]
 
 
 def _allowed(room: Array, step: Array) -> float:

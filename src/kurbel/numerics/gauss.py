@@ -38,5 +38,4 @@ GAUSS = _whole((*HALF_RULE, (1.0, 0.0)))
 """16 points of Gauss, and both ends with the weight 0."""
 LOBATTO_16 = _whole(_HALF_LOBATTO)
 LOBATTO_4 = (-1.0, -0.4472135954999579, 0.4472135954999579, 1.0), (1 / 6, 5 / 6, 5 / 6, 1 / 6)
-SIMPSON = (-1.0, 0.0, 1.0), (1 / 3, 4 / 3, 1 / 3)
-"""Rules for narrow pieces, both ends included: exact for polynomials of degree 5 and of degree 3."""
+"""Both ends included: exact for polynomials of degree 5."""

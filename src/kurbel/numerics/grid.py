@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kurbel.numerics.gauss import GAUSS, LOBATTO_4, LOBATTO_16, SIMPSON, Rule
+from kurbel.numerics.gauss import GAUSS, LOBATTO_4, LOBATTO_16, Rule
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Flags
 
-_NARROW = 2.0  # degrees; on pieces no wider the rule of Lobatto integrates as exactly as Gauss
-_NARROWEST = 0.25  # and on these that of Simpson
-_MANY = 300  # pieces; where there are fewer, sixteen points cost nothing
+_MANY = 300  # jumps; where there are fewer, sixteen points a piece cost nothing
+_PARTS = 23  # of a smooth piece, 2° of 45°; on each four points integrate as exactly as sixteen on the whole
 _SAME = 1e-10  # degrees; two angles that differ by rounding only would leave a piece without width
 _HALVES = np.array([0.0, 0.5, 1.0])
 _CUTS = np.linspace(0.0, 1.0, 9)
@@ -43,29 +42,29 @@ class Pieces:
         self.beyond[:, 0] = self.beyond[:, -1] = 0.0
 
     @cached_property
-    def _half_widths(self) -> Array:
+    def half_widths(self) -> Array:
+        """Half the width of each piece in radians, (pieces,)."""
         return np.asarray(np.radians(self.high - self.low) / 2)
 
     def integral(self, value: Array) -> float:
         """Return ∫ value dφ (φ in radians) over all pieces by the rule; value (pieces, nodes)."""
-        return float(self._half_widths @ (value @ self.weights))
+        return float(self.half_widths @ (value @ self.weights))
 
     def integrals(self, value: Array) -> Array:
         """Return ∫ value dφ (φ in radians) over each piece; value (…, pieces, nodes)."""
-        return np.asarray(self._half_widths * (value @ self.weights))
+        return np.asarray(self.half_widths * (value @ self.weights))
 
 
 class Grid(Pieces):
     """Smooth pieces that follow one another between the angles `breaks` (n + 1,) in degrees.
 
-    Each has 16 Gauss points and, of weight 0, both its ends. A measured trace has thousands of pieces; on many and
-    narrow ones there are fewer points.
+    Each has 16 Gauss points and, of weight 0, both its ends, unless there is another rule; `Cuts.grid` says when.
     """
 
-    def __init__(self, breaks: Array) -> None:
-        low, high = breaks[:-1], breaks[1:]
-        super().__init__(low, high, _rule(low, high))
+    def __init__(self, breaks: Array, rule: Rule = GAUSS) -> None:
+        super().__init__(breaks[:-1], breaks[1:], rule)
         self.breaks = breaks
+        self.rule = rule
 
     def slopes(self, value: Array) -> Array:
         """Return the derivative by φ of the polynomials through values (…, pieces, nodes), of the same shape."""
@@ -74,7 +73,7 @@ class Grid(Pieces):
         matrix = products[:, None] / products / gaps
         np.fill_diagonal(matrix, 0.0)
         np.fill_diagonal(matrix, -matrix.sum(axis=1))
-        return np.asarray((value @ matrix.T) / self._half_widths[:, None])
+        return np.asarray((value @ matrix.T) / self.half_widths[:, None])
 
     def other(self) -> Grid:
         """Return the same cycle in other pieces: each cut in two unequal ones."""
@@ -82,21 +81,7 @@ class Grid(Pieces):
 
     def split_at(self, angles: Array) -> Grid:
         """Return the grid cut at further angles in degrees; two that differ by rounding only are one."""
-        if not len(angles):
-            return self
-        breaks = ascending(np.concatenate((self.breaks, angles)), apart=_SAME)
-        breaks[-1] = self.breaks[-1]
-        return Grid(breaks)
-
-
-def _rule(low: Array, high: Array) -> Rule:
-    if _few(low, high):
-        return GAUSS
-    return SIMPSON if (high - low).max() <= _NARROWEST else LOBATTO_4
-
-
-def _few(low: Array, high: Array) -> bool:
-    return len(low) < _MANY or bool((high - low).max() > _NARROW)
+        return Grid(_cycle(self.breaks, angles), self.rule) if len(angles) else self
 
 
 def _inside(low: Array, high: Array, rule: Rule) -> Pieces:
@@ -113,16 +98,15 @@ def _cut(pieces: Pieces, shares: Array, rule: Rule) -> Pieces:
     return _inside(edges[:, :-1].ravel(), edges[:, 1:].ravel(), rule)
 
 
-def integral(breaks: Array, function: Callable[[Pieces], Array]) -> Array:
-    """Return ∫ dφ (φ in radians) of quantities between the first and the last of the breaks (n,) in degrees, (…,).
+def integral(grid: Grid, function: Callable[[Pieces], Array]) -> Array:
+    """Return ∫ dφ (φ in radians) of quantities over the pieces of a grid, (…,).
 
     function: their values (…, pieces, nodes), each at its own angle. Only jumps must stand among the breaks: every
     piece is cut, and cut again until whole and parts agree, so that nothing need be known of kinks, or of poles beside
     the real axis. The nodes, those of Lobatto, are none of a grid's; being at the ends, they see a kink just there.
     """
-    low, high = breaks[:-1], breaks[1:]
-    rule = LOBATTO_16 if _few(low, high) else LOBATTO_4
-    pieces = _inside(low, high, rule)
+    rule = LOBATTO_16 if grid.rule is GAUSS else LOBATTO_4
+    pieces = _inside(grid.low, grid.high, rule)
     value = function(pieces)
     settled = np.zeros(value.shape[:-2])
     size = pieces.integrals(np.abs(value)).sum(axis=-1)
@@ -134,7 +118,7 @@ def integral(breaks: Array, function: Callable[[Pieces], Array]) -> Array:
         again = np.repeat(doubtful, len(cuts) - 1)
         settled = settled + sums[..., ~again].sum(axis=-1)
         # where rounding keeps too many from agreeing, no cut will mend it
-        if not 0 < doubtful.sum() <= len(breaks):
+        if not 0 < doubtful.sum() <= len(grid.breaks):
             break
         pieces, value = _inside(parts.low[again], parts.high[again], rule), finer[..., again, :]
     return np.asarray(settled + sums[..., again].sum(axis=-1))
@@ -157,20 +141,48 @@ def _interpolation(nodes: Array, at: Array) -> Array:
     return np.asarray(shares / shares.sum(axis=1, keepdims=True))
 
 
-def cycle_breaks(landmarks: Iterable[float], cycle: float, starts: Iterable[Array]) -> Array:
-    """Return the angles in degrees that cut a cycle (360 or 720 deg) into smooth pieces, from 0 to its end.
+class Cuts(NamedTuple):
+    """Where a cycle is cut into smooth pieces, both in degrees from 0 to its end.
 
-    landmarks: angles at which every turn should be cut; starts: angles (n,) of the cycle at which something bends or
-    jumps. Where they are many, the pieces between are kept narrow too.
+    smooth: ascending, so dense, toward a pole beside the real axis too, that sixteen points of Gauss resolve every
+    piece. jumps: further angles at which something bends or jumps, be they thousands.
     """
-    each = np.array([*landmarks, *np.arange(0.0, 360.0, 45.0)])
-    turns = [np.mod(each, 360.0) + turn for turn in np.arange(0.0, cycle, 360.0)]
-    given = list(starts)
-    if sum(map(len, given)) > _MANY:
-        given.append(np.arange(0.0, cycle, _NARROW))
-    angles = ascending(np.concatenate([*turns, *given, [cycle]]), apart=_SAME)
-    angles[-1] = cycle
-    return angles
+
+    smooth: Array
+    jumps: Array = np.array([])
+
+    @classmethod
+    def of_turns(cls, landmarks: Iterable[float], cycle: float, jumps: Iterable[Array] = ()) -> Cuts:
+        """Return the cuts of a cycle (360 or 720 deg) of which every turn is cut at the landmarks, and every 45°."""
+        each = np.mod([*landmarks, *np.arange(0.0, 360.0, 45.0)], 360.0)
+        turns = [each + turn for turn in np.arange(0.0, cycle, 360.0)]
+        return cls(_cycle(np.array([0.0, cycle]), *turns), np.concatenate([np.array([]), *jumps]))
+
+    @classmethod
+    def joined(cls, several: Sequence[Cuts]) -> Cuts:
+        """Return the cuts of several quantities over the same cycle."""
+        smooth, jumps = zip(*several, strict=True)
+        return cls(_cycle(*smooth), np.concatenate(jumps))
+
+    def shifted(self, by: float, cycle: float) -> Cuts:
+        """Return the cuts repeated over a longer cycle, and put later by an angle."""
+        turns = np.arange(0.0, cycle, self.smooth[-1])
+        smooth, jumps = (np.mod(np.add.outer(turns, part + by).ravel(), cycle) for part in self)
+        return Cuts(_cycle(np.array([0.0, cycle]), smooth), jumps)
+
+    def grid(self) -> Grid:
+        """Return the pieces. Between many jumps they have four points, and the smooth pieces are cut to suit them."""
+        if len(self.jumps) <= _MANY:
+            return Grid(_cycle(self.smooth, self.jumps))
+        parts = self.smooth[:-1, None] + np.diff(self.smooth)[:, None] * (np.arange(_PARTS) / _PARTS)
+        return Grid(_cycle(self.smooth[[0, -1]], parts.ravel(), self.jumps), LOBATTO_4)
+
+
+def _cycle(*angles: Array) -> Array:
+    """Return all angles, those of a whole cycle first, without those that differ by rounding only."""
+    kept = ascending(np.concatenate(angles), apart=_SAME)
+    end = angles[0][-1]
+    return np.append(kept[kept < end - _SAME], end)
 
 
 def ascending(angles: Array, apart: float = 0.0) -> Array:

@@ -15,7 +15,7 @@ from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, Part, Report
 from kurbel.solver.case import Case
-from kurbel.solver.turning.flywheel import MachineSpeed
+from kurbel.solver.turning.flywheel import MachineTurning
 
 FLYWHEEL_COLUMNS = ("phi", "T", "T_inertia", "M", "E", "omega", "M_coupling")
 """Ids of the columns of `kurbel flywheel`, in the order in which they are printed."""
@@ -67,17 +67,17 @@ def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] 
     return Report(title, "flywheel", machine.name, "cylinders", parts, whole, notes=tuple(_notes(machine, turning)))
 
 
-def _columns(turning: MachineSpeed, angles: Sequence[float], columns: Sequence[str], system: str) -> tuple[Column, ...]:
-    def line(name: str) -> Any:
-        return getattr(turning, {"omega": "omega_line"}.get(name, name)) if name in FLYWHEEL_COLUMNS else None
-
+def _columns(
+    turning: MachineTurning, angles: Sequence[float], columns: Sequence[str], system: str
+) -> tuple[Column, ...]:
     def values_at(degrees: Any) -> Callable[[str], Any]:
-        return lambda name: line(name)(degrees) if line(name) else None
+        at = turning.at(degrees)
+        return lambda name: getattr(at, name) if name in FLYWHEEL_COLUMNS else None
 
     return shown_columns(columns, values_at, angles, system)
 
 
-def key_values(turning: MachineSpeed, repeated: bool = False) -> Iterable[tuple[str, Any]]:
+def key_values(turning: MachineTurning, repeated: bool = False) -> Iterable[tuple[str, Any]]:
     """Yield (id, value in SI) of every key value that the machine has; the value may be an Extreme or a tuple.
 
     repeated: also the flywheel for the wanted δ where it is the flywheel.
@@ -99,14 +99,14 @@ def _cylinder_parts(case: Case, system: str) -> Iterable[Part]:
             yield Part(forces.drive.name, (), (shown_key_value("P_dead_centre", found, system),))
 
 
-def _notes(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
+def _notes(machine: Machine, turning: MachineTurning) -> Iterable[str]:
     if turning.crank is not None:
-        over = "over" if turning.efficiency > 1 else "with"
+        over = "over" if turning.turned.efficiency > 1 else "with"
         eta = f", {over} the efficiency {machine.efficiency:g}" if machine.efficiency != 1 else ""
         yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
     if turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
         yield "Such a load holds no speed of its own: the mean of ω over time is taken as the nominal speed."
-    if machine.efficiency != 1 and turning.masses and turning.speed is not None:
+    if machine.efficiency != 1 and turning.turned.masses and turning.speed is not None:
         yield "As in the book the efficiency takes its share of all of T; in ω the moving masses count in full."
     if turning.rigid:
         yield (
@@ -115,7 +115,7 @@ def _notes(machine: Machine, turning: MachineSpeed) -> Iterable[str]:
         )
 
 
-def _warnings(case: Case, turning: MachineSpeed) -> Iterable[str]:
+def _warnings(case: Case, turning: MachineTurning) -> Iterable[str]:
     machine = case.machine
     yield from of_machine(machine_notes(machine, case), machine)
     if turning.deficit is not None:
@@ -135,7 +135,7 @@ def _warnings(case: Case, turning: MachineSpeed) -> Iterable[str]:
     yield from _coupling_warnings(turning)
 
 
-def _wish_warnings(turning: MachineSpeed) -> Iterable[str]:
+def _wish_warnings(turning: MachineTurning) -> Iterable[str]:
     """Yield by how much the flywheel of the books misses the wish, which is for the speed under the true load."""
     if turning.J_needed is None or turning.delta_needed is None or not turning.misses_the_wish:
         return
@@ -146,7 +146,7 @@ def _wish_warnings(turning: MachineSpeed) -> Iterable[str]:
     )
 
 
-def _coupling_warnings(turning: MachineSpeed) -> Iterable[str]:
+def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
     if not turning.elastic:
         return
     for near in turning.elastic.resonances:

@@ -10,7 +10,7 @@ from kurbel.solver.cylinder.forces import CylinderForces
 
 if TYPE_CHECKING:
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
-    from kurbel.solver.turning.flywheel import MachineSpeed
+    from kurbel.solver.turning.flywheel import MachineTurning
 
 
 class Case:
@@ -39,8 +39,8 @@ class Case:
         return CrankshaftStrength(self.machine, self.cylinders)
 
     @cached_property
-    def flywheel(self) -> MachineSpeed:
+    def flywheel(self) -> MachineTurning:
         """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
-        from kurbel.solver.turning.flywheel import MachineSpeed
+        from kurbel.solver.turning.flywheel import MachineTurning
 
-        return MachineSpeed(self.machine, self.cylinders)
+        return MachineTurning(self.machine, self.cylinders)

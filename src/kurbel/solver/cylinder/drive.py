@@ -7,13 +7,11 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from kurbel.crank_angle import CrankAngle, jet_angle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.mechanisms import fan
-from kurbel.numerics.grid import cycle_breaks
+from kurbel.numerics.grid import Cuts
 from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
@@ -155,12 +153,13 @@ class Drive:
         """Return the state with slopes by φ at crank angles (n,), on the sides of jumps that hold `within`."""
         return State(self, jet_angle(degrees, beyond), within)
 
-    def breaks(self) -> Array:
-        """Return the crank angles in degrees that cut the cycle into smooth pieces, from 0 to the full cycle."""
-        starts = [start for gas in self.gas for start in gas.starts]
-        return cycle_breaks(self.mechanism.cuts(), self.cycle, [*starts, *self._near_locking()])
+    @cached_property
+    def cuts(self) -> Cuts:
+        """The crank angles in degrees that cut the cycle into smooth pieces."""
+        smooth = [*self.mechanism.cuts(), *self._near_locking(), *(angle for gas in self.gas for angle in gas.bends)]
+        return Cuts.of_turns(smooth, self.cycle, [gas.starts for gas in self.gas])
 
-    def _near_locking(self) -> Iterator[Array]:
+    def _near_locking(self) -> Iterator[float]:
         """Yield angles, ever denser, round those at which a driven crosshead comes nearest to locking itself.
 
         There 1/(cos ψ − f |sin ψ|) of D 3 has a pole beside the real axis, at √(2 left/((tan ψ + f) λ)) from it.
@@ -170,5 +169,4 @@ class Drive:
             left = cos_psi - self.crosshead_friction * abs(sin_psi)
             if left > 0 and sin_psi:
                 bend = (abs(sin_psi) / cos_psi + self.crosshead_friction) * self.mechanism.lam
-                near = np.array(fan(centre, math.degrees(math.sqrt(2 * left / bend))))
-                yield from (near + turn for turn in np.arange(0.0, self.cycle, 360.0))
+                yield from fan(centre, math.degrees(math.sqrt(2 * left / bend)))

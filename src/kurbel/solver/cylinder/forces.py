@@ -46,7 +46,7 @@ class CylinderForces:
     @cached_property
     def grid(self) -> Grid:
         """The cycle in smooth pieces, cut also where the guide force changes sides, if friction makes that a kink."""
-        return self._cut_at_turns(Grid(self.drive.breaks()))
+        return self._cut_at_turns(self.drive.cuts.grid())
 
     def _cut_at_turns(self, grid: Grid) -> Grid:
         if not self.drive.crosshead_friction:
@@ -229,8 +229,8 @@ class CylinderForces:
         if self.work_left is None:
             return None
         turnover = self.grid.integral(np.abs(self._samples.M.value))
-        pieces = self._cut_at_turns(Grid(self.drive.breaks()).other())
-        return float(integral(pieces.breaks, self._torque) - self.work_left) / turnover if turnover else 0.0
+        pieces = self._cut_at_turns(self.drive.cuts.grid().other())
+        return float(integral(pieces, self._torque) - self.work_left) / turnover if turnover else 0.0
 
     def _torque(self, pieces: Pieces) -> Array:
         return np.asarray(State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond)).M)

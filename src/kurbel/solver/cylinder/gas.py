@@ -6,6 +6,8 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms import Mechanism
@@ -36,15 +38,15 @@ class PistonGas:
         self._stroke = mechanism.stroke
 
     @property
-    def starts(self) -> list[Array]:
-        """The crank angles in degrees at which a pressure bends or jumps, and where quadratures should split."""
-        return [
-            angles + turn * self._cycle
-            for end in (self.head, self.crank)
-            if end
-            for angles in (end.starts, end.bends)
-            for turn in range(self.repeats)
-        ]
+    def starts(self) -> Array:
+        """The crank angles (n,) in degrees in the cylinder's cycle at which a pressure bends or jumps."""
+        ends = [end.starts for end in (self.head, self.crank) if end]
+        return np.concatenate([starts + turn * self._cycle for turn in range(self.repeats) for starts in ends])
+
+    @property
+    def bends(self) -> tuple[float, ...]:
+        """Crank angles in degrees of a turn at which quadratures should split."""
+        return tuple(angle for end in (self.head, self.crank) if end for angle in end.bends)
 
     def force(self, x: Any, angle: CrankAngle, within: Array) -> Any:
         """Return P = p_H A_H − p_C A_C in N, R 296, with gauge pressures."""

@@ -51,8 +51,8 @@ class Pressure(Protocol):
         ...
 
     @property
-    def bends(self) -> Array:
-        """Further crank angles (n,) in degrees at which a quadrature should split."""
+    def bends(self) -> tuple[float, ...]:
+        """Crank angles in degrees of a turn at which a quadrature should split."""
         ...
 
     def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:

@@ -88,16 +88,15 @@ class ProcessPressure:
         return np.where(exponents != 0, power, straight)
 
     @cached_property
-    def bends(self) -> Array:
+    def bends(self) -> tuple[float, ...]:
         """Angles in degrees beside the dead centre of the smallest volume, where a polytropic line bends sharply."""
         if not self.process.polytropic:
-            return np.array([])
-        mechanism, cycle = self.place.mechanism, self.place.cycle
+            return ()
+        mechanism = self.place.mechanism
         dead_centre = mechanism.dead_centres()[0 if self.place.head_end else 1]
         curvature = abs(mechanism.curvature(CrankAngle.of(dead_centre)))
         width = math.degrees(math.sqrt(2 * self.process.clearance * self._stroke / curvature)) if curvature else 0.0
-        marks = np.array(fan(dead_centre, width))
-        return np.asarray(np.mod(np.concatenate([marks + turn for turn in np.arange(0.0, cycle, 360.0)]), cycle))
+        return fan(dead_centre, width)
 
     @cached_property
     def area(self) -> float:

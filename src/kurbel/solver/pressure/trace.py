@@ -10,7 +10,7 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.trace import Trace
-from kurbel.numerics.grid import Grid, cycle_breaks
+from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet, once_each
 from kurbel.solver.pressure import Place
 
@@ -48,7 +48,7 @@ class TracePressure:
         self._pieces = _Piece(*(part[order] for part in piece))
         self.starts = starts[order]
         self._gradients = (self._pieces.next_p - self._pieces.p) / (self._pieces.end - self._pieces.start)
-        self.bends: Array = np.array([])
+        self.bends: tuple[float, ...] = ()
 
     def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
         """Return the gauge pressure in Pa at crank angles (n,), on the pieces that hold the angles `within`."""
@@ -82,7 +82,7 @@ class TracePressure:
     @cached_property
     def straight_area(self) -> float:
         """∮ p dz in Pa with straight lines between the samples, by a Gauss rule that is exact to rounding."""
-        grid = Grid(cycle_breaks(self.place.mechanism.cuts(), self.place.cycle, [self.starts]))
+        grid = Cuts.of_turns(self.place.mechanism.cuts(), self.place.cycle, [self.starts]).grid()
         angle = CrankAngle.of(grid.degrees, grid.beyond)
         pressure = self(None, angle, grid.within)
         return grid.integral(pressure * self._fraction("slope", grid.degrees))

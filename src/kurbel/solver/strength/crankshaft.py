@@ -244,7 +244,7 @@ class CrankshaftStrength:
     @cached_property
     def _mean_loads(self) -> dict[str, float]:
         """Means over time in N of the force of the rod on the pin, and of the forces on both bearings."""
-        found = integral(self._grid.breaks, self._loads) / math.radians(self.forces.drive.cycle)
+        found = integral(self._grid, self._loads) / math.radians(self.forces.drive.cycle)
         return dict(zip(("pin", "A", "B"), found.tolist(), strict=True))
 
     def _loads(self, pieces: Pieces) -> Array:

@@ -18,19 +18,18 @@ from kurbel.machine.turning import Coupling
 from kurbel.numerics.elements import Elements, rule
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
+from kurbel.numerics.linear_collocation import linear_periodic
 from kurbel.numerics.search import Extremes, Sampled, extremes
-from kurbel.solver.turning.excess import mean_torque
-from kurbel.solver.turning.torques import Sum, Torque
+from kurbel.solver.turning.excess import Excess
+from kurbel.solver.turning.torques import Sum
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, ComplexArray
 
 _SWING = 120.0
-"""Degrees of a natural oscillation that one element may hold at first; …"""
-_TOLERANCE = 1e-10
-"""… it is cut while its last two coefficients are more over the swing, with which the error is far less, …"""
-_ROUNDS, _MOST_ELEMENTS = 10, 8000
-"""… so many times at the most."""
+"""Degrees of a natural oscillation that one element may hold at first, …"""
+_MOST_PARTS = 8000
+"""… though a piece is cut into no more parts than these."""
 _NEAR = 0.1
 """A harmonic whose order lies so near the natural one, relatively, is worth a warning."""
 _WORTH = 1e-3
@@ -73,81 +72,60 @@ class ElasticCoupling:
     Raises NoSolutionError in a resonance that nothing damps, and where floats do not hold the figures.
     """
 
-    def __init__(self, coupling: Coupling, shaft: Shaft, effort: Torque, load: Torque) -> None:
+    def __init__(self, coupling: Coupling, shaft: Shaft, excess: Excess) -> None:
         self.coupling = coupling
         self.shaft = shaft
-        self._effort, self._load = effort, load
-        self._torques = Sum(((1.0, effort), (-1.0, load)))
-        self.cycle = float(self._torques.breaks[-1])
+        self._excess = excess
+        self.cycle = excess.cycle
         self.natural_frequency = natural_frequency(coupling, shaft.inertia)
         self.natural_order = self.natural_frequency / shaft.omega
         self._speeds = np.array([0.0, 1 / shaft.inertia, 1 / coupling.inertia]) / shaft.omega
         twisting = self._speeds * np.array([0.0, 1.0, -1.0])
         self._passing = coupling.damping * twisting + np.array([self.natural_order, 0.0, 0.0])
-        self._matrix = np.stack(
+        self.matrix = np.stack(
             (
                 coupling.stiffness / self.natural_frequency * twisting,
                 -self._passing,
                 self._passing - np.array([0.0, 0.0, shaft.load_slope * self._speeds[2]]),
             )
         )
-        self._largest = 0.0
+        self._refuse_resonance(self._first_elements)
         try:
-            self.elements, self._coefficients = self._solution()
+            self.elements, self._coefficients = linear_periodic(self, self._first_elements)
         except np.linalg.LinAlgError:
             raise NoSolutionError(
                 "stiffness, damping and inertia of the coupling are too far apart to compute with; look at their units"
             ) from None
+        # a load that does not depend on the speed leaves the mean speed open: it is the nominal one
+        drift = np.radians(self.elements.width) @ self._coefficients[:, 1, 0] / math.radians(self.cycle)
+        self._coefficients[:, 1:, 0] -= drift * self._speeds[1] / self._speeds[1:]
 
     @cached_property
+    def _first_elements(self) -> Elements:
+        """The smooth pieces, cut so that a natural oscillation has several elements."""
+        breaks = self._excess.grid.breaks
+        parts = np.ceil(np.diff(breaks) * (self.natural_order / _SWING)).astype(int).clip(1, _MOST_PARTS)
+        cuts = [low + step * np.arange(n) / n for low, step, n in zip(breaks[:-1], np.diff(breaks), parts)]
+        return Elements.over(np.append(np.concatenate(cuts), breaks[-1]))
+
+    @property
     def mean(self) -> float:
         """Mean torque in N m."""
-        return mean_torque(self._effort, self.cycle)
+        return self._excess.mean
 
     def prepared(self, degrees: Array, within: Array) -> Array:
-        """Return effort and load less their mean in N m, as (2, …)."""
-        return np.stack([part.torque(degrees, within).value - self.mean for part in (self._effort, self._load)])
-
-    def _solution(self) -> tuple[Elements, Array]:
-        """Return elements and Legendre coefficients (k, 3, s + 1) of the unknowns on them."""
-        breaks = self._torques.breaks
-        parts = np.ceil(np.diff(breaks) * (self.natural_order / _SWING)).astype(int).clip(1, _MOST_ELEMENTS)
-        cuts = [low + step * np.arange(n) / n for low, step, n in zip(breaks[:-1], np.diff(breaks), parts)]
-        elements = Elements.over(np.append(np.concatenate(cuts), breaks[-1]))
-        self._refuse_resonance(elements)
-        answers = self._answers(elements)
-        for _ in range(_ROUNDS):
-            coefficients = _joined(answers)
-            least = _TOLERANCE * np.ptp(coefficients.sum(axis=2), axis=0) + 1e-14 * self._largest
-            rough = (np.abs(coefficients[..., -2:]).sum(axis=2) > least).any(axis=1)
-            if not rough.any() or len(rough) > _MOST_ELEMENTS:
-                break
-            elements, old, _ = elements.cut(rough)
-            answers = answers[old]
-            answers[rough[old]] = self._answers(Elements(*(of[rough[old]] for of in elements)))
-        width = np.radians(elements.width)
-        drift = width @ coefficients[:, 1, 0] / math.radians(self.cycle) * self._speeds[1]
-        # a load that does not depend on the speed leaves the mean speed open: it is the nominal one
-        coefficients[:, 1:, 0] -= drift / self._speeds[1:]
-        return elements, coefficients
-
-    def _answers(self, elements: Elements) -> Array:
-        """Return the unknowns at the nodes of all elements (k, 3 s, 4): from 0 under its torques, from unit starts."""
-        weights, unknowns = rule().matrix, 3 * len(rule().nodes)
-        effort, load = elements.prepared(self)
-        self._largest = max(self._largest, float(np.abs(effort).max()), float(np.abs(load).max()))
-        width = np.radians(elements.width)[:, None, None]
-        fed = width * (weights @ np.stack((np.zeros_like(effort), effort, -load), axis=-1))
-        starts = np.broadcast_to(np.tile(np.eye(3), (len(weights), 1)), (len(width), unknowns, 3))
-        systems = np.eye(unknowns) - width * np.kron(weights, self._matrix)
-        return np.asarray(np.linalg.solve(systems, np.concatenate((fed.reshape(-1, unknowns, 1), starts), axis=2)))
+        """Return what drives the unknowns: nothing, the effort, and the load, less their mean in N m, as (3, …)."""
+        effort, load = (
+            part.torque(degrees, within).value - self.mean for part in (self._excess.effort, self._excess.load)
+        )
+        return np.stack((np.zeros_like(effort), effort, -load))
 
     def _amplitudes(self, orders: Array, elements: Elements) -> tuple[ComplexArray, ComplexArray, float]:
         """Return amplitudes in N m of effort and load at orders (n,), M = mean + Re Σ M̂ e^{inφ}, and the size of both.
 
         The size is the amplitude of a single harmonic with the same mean square.
         """
-        torques = elements.prepared(self)
+        torques = elements.prepared(self)[1:] * np.array([1.0, -1.0])[:, None, None]
         weights = np.radians(elements.width)[:, None] * rule().matrix[-1] * (2 / math.radians(self.cycle))
         waves = np.exp(-1j * orders[:, None] * np.radians(elements.degrees.ravel()))
         effort, load = (np.asarray(waves @ (weights * part).ravel(), dtype=complex) for part in torques)
@@ -189,8 +167,7 @@ class ElasticCoupling:
     def _sampled(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return the torque less its mean, and ω₁ − ω_n, with their slopes by φ, at crank angles of the cycle."""
         state = self.elements.at(self._coefficients, degrees, within)
-        effort, load = self.prepared(degrees, within)
-        rate = state @ self._matrix.T + np.stack((np.zeros_like(effort), effort, -load), axis=-1)
+        rate = state @ self.matrix.T + np.moveaxis(self.prepared(degrees, within), 0, -1)
         return {
             "torque": Sampled(state @ self._passing, rate @ self._passing),
             "omega": Sampled(state[..., 1] * self._speeds[1], rate[..., 1] * self._speeds[1]),
@@ -252,18 +229,17 @@ class ElasticCoupling:
 
         Of the eigenvalues of the equations at the head of the module.
         """
-        return float(np.linalg.eigvals(self._matrix).real.max()) * math.radians(self.cycle)
+        return float(np.linalg.eigvals(self.matrix).real.max()) * math.radians(self.cycle)
 
     @cached_property
     def amplification(self) -> float | None:
         """Swing of the torque in the coupling over that in a rigid one, J₂ (M − L)/(J₁ + J₂) + L, if it swings."""
         own, driven = self.shaft.inertia, self.coupling.inertia
-        rigid = Sum(((driven / (own + driven), self._effort), (own / (own + driven), self._load)))
-        grid = Grid(rigid.breaks)
+        rigid = Sum((driven / (own + driven), self._excess.effort), (own / (own + driven), self._excess.load))
+        grid = self._excess.grid
 
         def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
-            jet = rigid.torque(degrees, within)
-            return {"torque": Sampled(jet.value, jet.slope)}
+            return {"torque": Sampled.of(rigid.torque(degrees, within), degrees.shape)}
 
         found = extremes(grid, evaluate(grid.degrees, grid.within), evaluate)["torque"]
         swing = found.largest.value - found.smallest.value
@@ -283,43 +259,3 @@ class ElasticCoupling:
         return tuple(
             Harmonic(*(float(of[i]) for of in (orders, distance, amplitudes, gain))) for i in np.nonzero(near)[0]
         )
-
-
-def _joined(answers: Array) -> Array:
-    """Return the Legendre coefficients (k, 3, s + 1) of the periodic solution from `_answers` (k, 3 s, 4)."""
-    last = answers[:, -3:]
-    starts = _around(-last[..., 1:], np.broadcast_to(np.eye(3), last[..., 1:].shape), last[..., 0])
-    values = answers[..., 0] + (answers[..., 1:] @ starts[..., None])[..., 0]
-    whole = np.concatenate((starts, values), axis=1).reshape(len(starts), -1, 3)
-    return np.asarray(np.einsum("ns,ksm->kmn", rule().to_legendre, whole))
-
-
-def _around(before: Array, after: Array, sides: Array) -> Array:
-    """Return x (k, m) with before_i x_i + after_i x_{i+1} = sides_i, x_k being x_0; matrices (k, m, m), sides (k, m).
-
-    Every second x is eliminated by rotations, which do not mind whether a solution grows or dies on its way, until one
-    is left. What the equations leave open there is taken as small as can be.
-    """
-    count, size = sides.shape
-    if count == 1:
-        return np.asarray(np.linalg.lstsq(before[0] + after[0], sides[0], rcond=1e-13)[0][None])
-    even, odd = slice(0, count - 1, 2), slice(1, count, 2)
-    turn, upper = np.linalg.qr(np.concatenate((after[even], before[odd]), axis=1), mode="complete")
-    empty = np.zeros_like(before[odd])
-    rows = np.concatenate(
-        (
-            np.concatenate((before[even], empty), axis=1),
-            np.concatenate((empty, after[odd]), axis=1),
-            np.concatenate((sides[even], sides[odd]), axis=1)[..., None],
-        ),
-        axis=2,
-    )
-    rows = np.swapaxes(turn, 1, 2) @ rows
-    parts = rows[:, size:, :size], rows[:, size:, size:-1], rows[:, size:, -1]
-    left = [np.concatenate((part, whole[2 * len(part) :])) for part, whole in zip(parts, (before, after, sides))]
-    found = np.empty_like(sides)
-    found[::2] = _around(*left)
-    ends = np.concatenate((found[even], np.roll(found[::2], -1, axis=0)[: len(turn)]), axis=1)
-    rest = rows[:, :size, -1:] - rows[:, :size, :-1] @ ends[..., None]
-    found[odd] = np.linalg.solve(upper[:, :size], rest)[..., 0]
-    return found

@@ -1,102 +1,134 @@
-"""Excess work: where the effort crosses the resistance, every lobe between, and the largest swing ΔE over all."""
+"""Excess work: where the effort crosses the resistance, every lobe between, and the largest swing ΔE over all.
+
+One sampling of both torques on the grid of their common pieces serves the mean, the extremes, the crossings and E.
+"""
 
 from __future__ import annotations
 
 import math
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kurbel.numerics.grid import Grid
-from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
-from kurbel.solver.turning.torques import Sum, Torque, total_work, total_works
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.piecewise import Piecewise
+from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, sign_changes
+from kurbel.solver.turning.torques import Sum, Torque, Uniform
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.numerics.jet import Jet
+
+_BALANCED = 1e-9
+"""Means of effort and resistance that differ by less, relatively, are equal."""
 
 
 class Excess:
-    """The excess of a turning effort over a resistance with the same mean, over a common cycle.
+    """The excess of a turning effort over a resistance, over a common cycle.
 
     E(φ) = ∫ (M − M_load) dφ from φ = 0 is stationary at the crossings, so that an error of their place does not show.
+
+    effort, given: the torques, in N m; without a given resistance it is the mean of the effort all the time, and one of
+    another mean is brought to that of the effort.
     """
 
-    def __init__(self, effort: Torque, load: Torque) -> None:
-        self.torque = Sum(((1.0, effort), (-1.0, load)))
-        self.grid = Grid(self.torque.breaks)
-        self.cycle = float(self.torque.breaks[-1])
+    def __init__(self, effort: Torque, given: Torque | None = None) -> None:
         self.effort = effort
+        self.grid = (effort.cuts if given is None else Sum((1.0, effort), (1.0, given)).cuts).grid()
+        self.cycle = float(self.grid.breaks[-1])
+        self._sampled_effort = self._on_grid(effort)
+        self.mean = self._mean_of(self._sampled_effort)
+        self.deficit = self.mean if given is None else self.mean - self._mean_of(self._on_grid(given))
+        if given is not None and abs(self.deficit) <= _BALANCED * max(abs(self.mean - self.deficit), abs(self.mean)):
+            self.deficit = 0.0
+        self.load = Sum((1.0, given or Uniform(0.0, self.cycle)), (1.0, Uniform(self.deficit, self.cycle)))
+        self.torque = Sum((1.0, effort), (-1.0, self.load))
+
+    def _on_grid(self, torque: Torque) -> Jet:
+        return torque.torque(self.grid.degrees, self.grid.within)
+
+    def _mean_of(self, sampled: Jet) -> float:
+        return self.grid.integral(sampled.value) / math.radians(self.cycle)
+
+    @cached_property
+    def _sampled(self) -> Jet:
+        return self._sampled_effort - self._on_grid(self.load)
+
+    @cached_property
+    def line(self) -> Piecewise:
+        """The excess in N m as polynomials on the pieces of the grid."""
+        return Piecewise(self.grid, self._sampled.value)
+
+    def _evaluate(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        """Return effort and excess at crank angles (n,)."""
+        effort = self.effort.torque(degrees, within)
+        return self._named(effort, effort - self.load.torque(degrees, within))
+
+    def _named(self, effort: Jet, excess: Jet) -> dict[str, Sampled]:
+        shape = effort.value.shape
+        return {"effort": Sampled.of(effort, shape), "excess": Sampled.of(excess, shape)}
+
+    @cached_property
+    def _curves(self) -> dict[str, Curve]:
+        return curves(self.grid, self._named(self._sampled_effort, self._sampled), self._evaluate)
 
     @cached_property
     def effort_extremes(self) -> Extremes:
         """Largest and smallest turning effort in N m, one-sided values at jumps included."""
-        evaluate = _evaluated(self.effort)
-        return extremes(self.grid, evaluate(self.grid.degrees, self.grid.within), evaluate)["M"]
+        return extremes_of(self._curves["effort"])
 
     @cached_property
     def crossings(self) -> tuple[float, ...]:
         """Crank angles in degrees, ascending, at which the effort crosses the resistance, by a jump or through zero."""
-        evaluate = _evaluated(self.torque)
+
+        def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
+            return {"excess": self._evaluate(degrees, within)["excess"]}
+
         # an effort that equals the resistance over a while differs from it by rounding only
         size = max(abs(extreme.value) for extreme in self.effort_extremes)
-        found = zeros(self.grid, evaluate(self.grid.degrees, self.grid.within), evaluate, size)["M"]
-        return tuple(found.tolist())
+        found = sign_changes(self.grid, {"excess": self._curves["excess"]}, evaluate, size)
+        return tuple(found["excess"].tolist())
+
+    def at(self, degrees: Array) -> Array:
+        """Return E in J at crank angles (…,) in degrees, counted from φ = 0; an angle's E hangs on no other one."""
+        if not self.crossings:
+            return np.zeros_like(degrees)
+        return self.line.integral_to(np.mod(degrees, self.cycle))
+
+    @cached_property
+    def _heights(self) -> Array:
+        """E in J at the crossings."""
+        return self.at(np.array(self.crossings))
 
     @cached_property
     def lobes(self) -> tuple[float, ...]:
         """Work in J of every lobe from one crossing to the next, cyclically; positive ones speed the machine up."""
-        if not self.crossings:
-            return ()
-        ends = (*self.crossings[1:], self.crossings[0] + self.cycle)
-        return tuple(total_works(self.torque, self.crossings, ends))
+        heights = self._heights.tolist()
+        return tuple(high - low for low, high in pairwise([*heights, *heights[:1]]))
 
     @cached_property
-    def _summits(self) -> tuple[float, float]:
-        """Crank angles in degrees of the largest and the smallest E, the first ones where several are equal."""
-        heights = total_works(self.torque, (0.0,) * len(self.crossings), self.crossings)
-        size = max(map(abs, heights), default=0.0) + max(map(abs, self.lobes), default=0.0)
-        level = 16 * np.finfo(float).eps * size
-        top, bottom = max(heights) - level, min(heights) + level
-        largest = next(a for a, e in zip(self.crossings, heights, strict=True) if e >= top)
-        smallest = next(a for a, e in zip(self.crossings, heights, strict=True) if e <= bottom)
-        return largest, smallest
+    def _summits(self) -> tuple[int, int]:
+        """Which crossings have the largest and the smallest E, the first ones where several are equal."""
+        heights = self._heights
+        level = 16 * np.finfo(float).eps * (np.abs(heights).max() + np.abs(self.lobes).max())
+        return int(np.argmax(heights >= heights.max() - level)), int(np.argmax(heights <= heights.min() + level))
 
     @property
-    def phi_largest(self) -> float | None:
-        """Crank angle in degrees at which E is largest; None where it is always the same."""
-        return self._summits[0] if self.crossings else None
+    def largest(self) -> Extreme | None:
+        """Largest E in J and its crank angle in degrees; None where it is always the same."""
+        return self._height_at(self._summits[0]) if self.crossings else None
 
     @property
-    def phi_smallest(self) -> float | None:
-        """Crank angle in degrees at which E is smallest; None where it is always the same."""
-        return self._summits[1] if self.crossings else None
+    def smallest(self) -> Extreme | None:
+        """Smallest E in J and its crank angle in degrees; None where it is always the same."""
+        return self._height_at(self._summits[1]) if self.crossings else None
+
+    def _height_at(self, crossing: int) -> Extreme:
+        return Extreme(float(self._heights[crossing]), self.crossings[crossing])
 
     @cached_property
     def dE(self) -> float:
-        """ΔE in J, the largest swing of the excess work, taken as one closed difference."""
-        if not self.crossings:
-            return 0.0
-        largest, smallest = self._summits
-        return total_work(self.torque, smallest, largest)
-
-    def at(self, degrees: Array) -> Array:
-        """Return E in J at crank angles (n,) in degrees, counted from φ = 0; an angle's E hangs on no other one."""
-        if not self.crossings:
-            return np.zeros_like(degrees)
-        total = rest = np.zeros_like(degrees)
-        for term in self.torque.work(total, degrees):
-            # Neumaier's sum, so that the order in which numpy would add does not show
-            raised = total + term
-            rest = rest + np.where(np.abs(total) >= np.abs(term), (total - raised) + term, (term - raised) + total)
-            total = raised
-        return np.where(degrees == 0, 0.0, total + rest)
-
-
-def _evaluated(torque: Torque) -> Evaluate:
-    return lambda degrees, within: {"M": Sampled.of(torque.torque(degrees, within), degrees.shape)}
-
-
-def mean_torque(torque: Torque, cycle: float) -> float:
-    """Return the mean of a torque in N m over a cycle in degrees, from its closed work."""
-    return total_work(torque, 0.0, cycle) / math.radians(cycle)
+        """ΔE in J, the largest swing of the excess work."""
+        return self.largest.value - self.smallest.value if self.largest and self.smallest else 0.0

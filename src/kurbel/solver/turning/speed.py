@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
@@ -20,9 +19,8 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
 from kurbel.numerics.search import Extremes, Sampled, extremes
-from kurbel.solver.turning.effort import InertiaEffort
 from kurbel.solver.turning.excess import Excess
-from kurbel.solver.turning.torques import Torque
+from kurbel.solver.turning.machine_effort import MovingInertia
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -31,17 +29,14 @@ if TYPE_CHECKING:
 class Inertia:
     """The reduced moment of inertia J(φ) = J + Σ m x′² + … in kg m², at a nominal angular velocity ω_n in rad/s."""
 
-    def __init__(self, flywheel: float, masses: Sequence[InertiaEffort], omega: float) -> None:
+    def __init__(self, flywheel: float, moving: MovingInertia, omega: float) -> None:
         self.flywheel = flywheel
-        self.masses = tuple(masses)
+        self.moving = moving
         self.omega = omega
 
     def at(self, degrees: Array, within: Array) -> Jet:
-        """Return J(φ) with its slope at crank angles (n,)."""
-        total = Jet(np.full_like(degrees, self.flywheel), np.zeros_like(degrees))
-        for mass in self.masses:
-            total = total + mass.reduced_inertia(degrees, within)
-        return total
+        """Return J(φ) with its slope at crank angles (…,)."""
+        return self.moving.line.at(degrees, within) + self.flywheel
 
     def energy(self, degrees: Array, within: Array) -> Jet:
         """Return ½ J(φ) ω_n² in J."""
@@ -89,7 +84,7 @@ class SpeedLine(ABC):
 
     SLOWEST = 0.0
 
-    def __init__(self, excess: Torque, inertia: Inertia, grid: Grid) -> None:
+    def __init__(self, excess: Excess, inertia: Inertia, grid: Grid) -> None:
         self.excess = excess
         self.inertia = inertia
         self.grid = grid
@@ -105,7 +100,7 @@ class SpeedLine(ABC):
 
     def _ratio(self, degrees: Array, within: Array) -> Sampled:
         """Return (ω/ω_n)² − 1 with its slope by φ."""
-        torque = self.excess.torque(degrees, within).value
+        torque = self.excess.line.at(degrees, within).value
         return self._sampled(self.z(degrees, within), self.inertia.energy(degrees, within), torque)
 
     def _sampled(self, z: Array, energy: Jet, torque: Array) -> Sampled:
@@ -158,29 +153,6 @@ class SpeedLine(ABC):
         return self.inertia.omega**2 * squares / ((self.omega_max.value + self.omega_min.value) * self.omega_mean)
 
 
-class Turning:
-    """What a speed under a constant load hangs on whatever the flywheel, on a grid: computed once for all flywheels."""
-
-    def __init__(self, excess: Excess, masses: Sequence[InertiaEffort], omega: float) -> None:
-        self.excess, self.masses, self.omega = excess, tuple(masses), omega
-        self.grid = _split_at_dips(excess)
-
-    @cached_property
-    def work(self) -> Array:
-        """E in J."""
-        return self.excess.at(self.grid.degrees.ravel()).reshape(self.grid.degrees.shape)
-
-    @cached_property
-    def torque(self) -> Array:
-        """Excess torque in N m."""
-        return np.asarray(self.excess.torque.torque(self.grid.degrees, self.grid.within).value)
-
-    @cached_property
-    def energy(self) -> Jet:
-        """½ J ω_n² in J of the masses alone."""
-        return Inertia(0.0, self.masses, self.omega).energy(self.grid.degrees, self.grid.within)
-
-
 class ConstantLoad(SpeedLine):
     """ω under a load that does not depend on speed: z = E + C, closed.
 
@@ -190,24 +162,18 @@ class ConstantLoad(SpeedLine):
 
     SLOWEST = 0.01
 
-    def __init__(self, turning: Turning, flywheel: float) -> None:
-        inertia = Inertia(flywheel, turning.masses, turning.omega)
-        super().__init__(turning.excess.torque, inertia, turning.grid)
-        self._turning = turning
-        self._energy = turning.energy + flywheel * turning.omega**2 / 2
+    def __init__(self, excess: Excess, inertia: Inertia) -> None:
+        super().__init__(excess, inertia, _split_at_dips(excess))
         self.constant = self._constant()
 
     def z(self, degrees: Array, within: Array) -> Array:
         """Return E + C in J; see `SpeedLine`."""
-        return self._turning.excess.at(degrees.ravel()).reshape(degrees.shape) + self.constant
-
-    @cached_property
-    def _samples(self) -> Sampled:
-        return self._sampled(self._turning.work + self.constant, self._energy, self._turning.torque)
+        return self.excess.at(degrees) + self.constant
 
     def _constant(self) -> float:
         """C in J, from ∫ dφ/ω = 2π/ω_n: the mean of 1/√(1 + r) is 1. That falls and is convex: Newton from below."""
-        energy, excess = self._energy.value, self._turning.work
+        energy = self.inertia.energy(self.grid.degrees, self.grid.within).value
+        excess = self.excess.at(self.grid.degrees)
         least = -excess + (self.SLOWEST**2 - 1) * energy
         constant = float(least.max())
         whole = math.radians(self.cycle)
@@ -240,29 +206,29 @@ def floquet(growth: float) -> float:
 
 
 class SpeedEquation:
-    """z′ = M − M_load(ω), ω from z; see `radau.Equation`."""
+    """z′ = M − M_load(ω), ω from z; see `collocation.Equation`."""
 
-    def __init__(self, excess: Torque, law: SpeedLaw, inertia: Inertia, noise: float, more: float = 0.0) -> None:
+    def __init__(self, excess: Excess, law: SpeedLaw, inertia: Inertia, noise: float, eased: float = 0.0) -> None:
         self.excess, self.law, self.inertia, self.noise = excess, law, inertia, noise
-        self.more = more
+        self._more = eased
 
     def prepared(self, degrees: Array, within: Array) -> Array:
-        """See `radau.Equation`."""
-        energy = self.inertia.energy(degrees, within).value + self.more
-        return np.stack((self.excess.torque(degrees, within).value, energy))
+        """See `collocation.Equation`."""
+        energy = self.inertia.energy(degrees, within).value + self._more
+        return np.stack((self.excess.line.at(degrees, within).value, energy))
 
-    def heavier(self, inertia: float) -> SpeedEquation:
-        """See `radau.Equation`; inertia as ½ J ω_n² in J."""
-        return SpeedEquation(self.excess, self.law, self.inertia, self.noise, inertia)
+    def eased(self, by: float) -> SpeedEquation:
+        """See `collocation.Equation`: so much more inertia, as ½ J ω_n² in J."""
+        return SpeedEquation(self.excess, self.law, self.inertia, self.noise, by)
 
     def rate(self, prepared: Array, z: Array) -> tuple[Array, Array]:
-        """See `radau.Equation`."""
+        """See `collocation.Equation`."""
         excess, energy = prepared
         rise, slope = self.law(z / energy)
         return excess - rise, -slope / energy
 
     def floor(self, prepared: Array) -> Array:
-        """See `radau.Equation`."""
+        """See `collocation.Equation`."""
         return np.asarray(-prepared[1])
 
 
@@ -275,9 +241,8 @@ class SpeedDependentLoad(SpeedLine):
         energy = inertia.energy(excess.grid.degrees, excess.grid.within).value.min()
         noise = 1e-16 * min(torque, float(energy))
         self._law = law
-        self.solution: Periodic = periodic(SpeedEquation(excess.torque, law, inertia, noise), excess.grid.breaks)
-        low = self.solution.elements.low
-        super().__init__(excess.torque, inertia, Grid(np.append(low, excess.cycle)))
+        self.solution: Periodic = periodic(SpeedEquation(excess, law, inertia, noise), excess.grid.breaks)
+        super().__init__(excess, inertia, Grid(np.append(self.solution.elements.low, excess.cycle)))
 
     def z(self, degrees: Array, within: Array) -> Array:
         """Return z in J; see `SpeedLine`."""

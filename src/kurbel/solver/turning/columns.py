@@ -1,0 +1,63 @@
+"""What `kurbel flywheel` tells over the angle of crank 1."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kurbel.solver.turning.machine_effort import MachineEffort
+from kurbel.solver.turning.speed import SpeedLine
+from kurbel.solver.turning.torques import Sum
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+    from kurbel.solver.turning.coupling import ElasticCoupling
+
+
+class TurningColumns:
+    """The whole machine at crank angles (n,) in degrees; attributes by the ids of the columns, in SI, each (n,).
+
+    crank: radius of crank 1 in m, None without one; a column that the machine does not have is None.
+    """
+
+    def __init__(
+        self, turned: MachineEffort, crank: float | None, speed: SpeedLine | ElasticCoupling | None, phi: Array
+    ) -> None:
+        self._turned, self._crank, self._speed = turned, crank, speed
+        self.phi = phi
+
+    @cached_property
+    def M(self) -> Array:
+        """Turning effort in N m, just after a jump where there is one."""
+        return np.asarray(self._turned.effort.torque(self.phi, self.phi).value)
+
+    @property
+    def T(self) -> Array | None:
+        """The turning effort as a force in N at the radius of crank 1."""
+        return None if self._crank is None else self.M / self._crank
+
+    @property
+    def T_inertia(self) -> Array | None:
+        """The share of the inertia forces in T, in N (Tolle)."""
+        masses, efficiency = self._turned.masses, self._turned.efficiency
+        if self._crank is None or not masses:
+            return None
+        torque = Sum(*((efficiency, mass) for mass in masses)).torque(self.phi, self.phi)
+        return np.asarray(torque.value / self._crank)
+
+    @property
+    def E(self) -> Array:
+        """Excess work in J since angle 0."""
+        return self._turned.excess.at(self.phi)
+
+    @property
+    def omega(self) -> Array | None:
+        """Angular velocity in rad/s."""
+        return None if self._speed is None else self._speed.omega(self.phi)
+
+    @property
+    def M_coupling(self) -> Array | None:
+        """Torque in the elastic coupling in N m."""
+        return None if self._speed is None or isinstance(self._speed, SpeedLine) else self._speed.torque(self.phi)
