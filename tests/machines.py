@@ -23,7 +23,7 @@ STEAM_CARD = Card.from_keys(
 
 def constant_pressure(pressure: float) -> Card:
     """A chamber that always holds this pressure in Pa."""
-    return Constant.from_keys(pressure, pressure)
+    return Constant.from_keys(expansion=pressure, compression=pressure)
 
 
 def one_cylinder(mechanism: SliderCrank, rpm: float | None = None, **cylinder: Any) -> CylinderForces:

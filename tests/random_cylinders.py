@@ -55,7 +55,9 @@ def random_chamber(random: np.random.Generator) -> Chamber:
     if kind == 0:
         return constant_pressure(random.uniform(-0.5, 1) * 1e5)
     if kind == 1:
-        return Diesel.from_keys(random.uniform(-0.5, 0) * 1e5, random.uniform(0.02, 0.2), compression_ratio=12.0)
+        return Diesel.from_keys(
+            intake=random.uniform(-0.5, 0) * 1e5, cut_off=random.uniform(0.02, 0.2), compression_ratio=12.0
+        )
     z = np.sort(random.uniform(0, 1, 3))
     p = random.uniform(-0.9, 3, 8)
     return Card.from_keys(

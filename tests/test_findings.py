@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from kurbel import loads, solve
-from kurbel.cli import COMMANDS, kurbel
+from kurbel.cli import kurbel
 from kurbel.errors import UsageError
 from kurbel.report.check import _compared, checked
 
@@ -123,4 +123,4 @@ def test_a_rod_whose_area_is_not_taken_off_is_told(command: str) -> None:
     assert told not in run(text + "crank_end_rod: 60 mm\n", command)[1]
     single = ENGINE + f"indicator: {{head_end: {{{PRESSURE}}}}}\n" + SHAFT
     assert told not in run(single, command)[1]
-    assert len(checked(loads(text), COMMANDS).errors) == 0
+    assert len(checked(loads(text)).errors) == 0

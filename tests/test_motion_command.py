@@ -271,7 +271,7 @@ def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) ->
     machine = tmp_path / "cam.yaml"
     machine.write_text("speed: 60 rpm\nmechanism: harmonic-cam\ncrank: 20 mm\nsecond: 2 mm\nram_force: {work: 1 kN}\n")
     code = (
-        "from kurbel.declared.keys import Record\nfrom kurbel.mechanisms import MECHANISMS\n"
+        "from kurbel.declared.forms import Record\nfrom kurbel.mechanisms import MECHANISMS\n"
         "MECHANISMS['harmonic-cam'] = Record('toy_mechanism:HarmonicCam')\n"
         "from kurbel.cli import main\nmain()\n"
     )

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Key, Keys
 from kurbel.mechanisms import Mechanism, check_lengths
 
 

@@ -31,10 +31,26 @@ class KurbelError(Exception):
 
 
 class Fault(NamedTuple):
-    """One thing that is wrong: where (relative to the record that found it), and what to write instead."""
+    """One thing that is wrong: where, and what to write instead.
+
+    path: relative to the record that found it, until the reader has made it whole; at_key: the key itself is meant.
+    Line and column count from 1, in characters; they and the source line are filled in when the text is searched.
+    """
 
     path: Path
     message: str
+    at_key: bool = False
+    line: int = 0
+    column: int = 0
+    source_line: str = ""
+
+    def below(self, path: Path) -> Fault:
+        """Return it as seen from further up: its path with this one before it."""
+        return self._replace(path=(*path, *self.path))
+
+    def at(self, line: int, column: int) -> Fault:
+        """Return it with its place, both counted from 0, as YAML counts them."""
+        return self._replace(line=line + 1, column=column + 1)
 
 
 class RuleError(KurbelError):
@@ -45,33 +61,32 @@ class RuleError(KurbelError):
         super().__init__("; ".join(f"{path_text(f.path)}: {f.message}" if f.path else f.message for f in faults))
 
 
-class UnitError(KurbelError):
-    """A text is not a number with a unit of the wanted kind."""
+def refuse(*faults: Fault) -> None:
+    """Raise RuleError where there is any fault."""
+    if faults:
+        raise RuleError(*faults)
+
+
+class UnitError(RuleError):
+    """A text is not a number, or not one with a unit of the wanted kind."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(Fault((), message))
 
 
 class UnreadableFileError(KurbelError):
     """A file is missing, may not be read, or is too long."""
 
 
-class LocatedFault(NamedTuple):
-    """One fault of a machine file with its place; line and column count from 1, column in characters."""
-
-    line: int
-    column: int
-    path: Path
-    message: str
-    source_line: str
-
-
 class MachineFileError(KurbelError):
     """All faults of a machine file, in the order in which they stand in it."""
 
-    def __init__(self, file_name: str, faults: list[LocatedFault]) -> None:
+    def __init__(self, file_name: str, faults: list[Fault]) -> None:
         self.file_name = file_name
         self.faults = faults
         super().__init__("\n".join(self.line(fault) for fault in faults))
 
-    def line(self, fault: LocatedFault) -> str:
+    def line(self, fault: Fault) -> str:
         """Return `file:line:column: path: message`."""
         where = f"{path_text(fault.path)}: " if fault.path else ""
         return f"{self.file_name}:{fault.line}:{fault.column}: {where}{fault.message}"
@@ -84,7 +99,7 @@ class MachineFileError(KurbelError):
 _SHOWN_WIDTH = 100  # of a source line; a diagram in one long line is cut to what stands round the fault
 
 
-def _pointed(fault: LocatedFault) -> tuple[str, ...]:
+def _pointed(fault: Fault) -> tuple[str, ...]:
     """Return the source line, cut and cleared of what could steer a terminal, and the caret under the fault."""
     if not fault.source_line.strip():
         return ()

@@ -61,7 +61,7 @@ def test_pretty_cuts_a_long_line_round_the_fault() -> None:
 
 
 def test_pretty_clears_what_could_steer_a_terminal() -> None:
-    from kurbel.errors import LocatedFault
+    from kurbel.errors import Fault
 
-    error = MachineFileError("m.yaml", [LocatedFault(1, 3, (), "wrong", "a\x1b[31m b")])
+    error = MachineFileError("m.yaml", [Fault((), "wrong", line=1, column=3, source_line="a\x1b[31m b")])
     assert "\x1b" not in error.pretty()

@@ -13,8 +13,7 @@ from kurbel.cli import kurbel
 from kurbel.declared.bounds import SIZES
 from kurbel.declared.unit_systems import SI
 from kurbel.errors import KurbelError, MachineFileError
-from kurbel.machine import trace_samples
-from kurbel.machine_file import load, loads
+from kurbel.machine_file import columns, load, loads
 from kurbel.machine_file.schema import json_schema
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod_ratio: 5\n"
@@ -162,9 +161,9 @@ def test_rows_beyond_the_limit_are_not_loaded(tmp_path: Path, monkeypatch: pytes
     (tmp_path / "p.csv").write_text("".join(f"{angle / 10},1\n" for angle in range(3601)))
     (tmp_path / "m.yaml").write_text(ENGINE + TRACE.format(file="p.csv", zero="0 deg", more=""))
     read = []
-    lines = trace_samples._lines
-    monkeypatch.setattr(trace_samples, "MOST_POINTS", 100)
-    monkeypatch.setattr(trace_samples, "_lines", lambda file: (read.append(line) or line for line in lines(file)))
+    lines = columns._lines
+    monkeypatch.setattr(columns, "MOST_POINTS", 100)
+    monkeypatch.setattr(columns, "_lines", lambda file: (read.append(line) or line for line in lines(file)))
     with pytest.raises(KurbelError, match="has more than 100 samples; thin them out"):
         load(tmp_path / "m.yaml")
     assert len(read) <= 102

@@ -82,4 +82,4 @@ def test_odd_spaces_in_a_trace(tmp_path: Path) -> None:
         "crank: 1 m\nrod_ratio: 5\nbore: 1 m\nindicator: {head_end: {trace: {file: p.csv, unit: bar}}}"
     )
     trace = load(tmp_path / "m.yaml").cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
-    assert trace.samples.pressures.tolist() == [1e5, 2e5, 1e5]  # type: ignore[union-attr]
+    assert trace.pressures.tolist() == [1e5, 2e5, 1e5]  # type: ignore[union-attr]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -109,8 +110,8 @@ def test_a_trace_file_is_found_beside_the_machine_file(tmp_path: Path) -> None:
     trace = load(path).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
     assert Path(trace.file) == tmp_path / "p.csv"  # type: ignore[union-attr]
     assert trace.angle_zero == 360  # type: ignore[union-attr]
-    assert trace.samples.angles.tolist() == [360, 540, 720]  # type: ignore[union-attr]
-    assert trace.samples.pressures.tolist() == [1e5, 5e4, 1e5]  # type: ignore[union-attr]
+    assert trace.angles.tolist() == [360, 540, 720]  # type: ignore[union-attr]
+    assert trace.pressures.tolist() == [1e5, 5e4, 1e5]  # type: ignore[union-attr]
 
 
 def test_a_fault_of_a_flat_machine_has_no_cylinder_in_its_path() -> None:
@@ -144,3 +145,34 @@ def test_ten_thousand_points_in_the_file_are_read_as_they_stand() -> None:
     assert effort is not None
     assert list(effort.angles) == [float(f"{angle:.3f}") for angle, _ in points]
     assert list(effort.torques) == [1e3 * torque for _, torque in points]
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("1/80", 1 / 80), ("1.25 %", 0.0125), (" 1 / 80 ", 1 / 80), ("1⁄80", 1 / 80)]
+)
+def test_a_ratio_is_written_as_people_do(text: str, value: float) -> None:
+    machine = loads(
+        f"crank: 1 m\nrod_ratio: 10/3\nefficiency: 75 %\nflywheel: {{fluctuation: {text}}}\nlimits: {{delta: {text}}}"
+    )
+    assert machine.flywheel is not None
+    assert machine.flywheel.fluctuation == value
+    assert machine.limits == (("delta", value),)
+    assert machine.efficiency == 0.75
+    assert machine.cylinders[0].mechanism.rod == 10 / 3  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("500/80", "fluctuation: 500/80 is too large; it must be less than 2"),
+        ("0 %", "fluctuation: 0 % is too small; it must be more than 0"),
+        ("1/0", "fluctuation: expected a number or a quotient such as 1/200, got '1/0'"),
+        ("1e-300/1e300", "fluctuation: expected a number or a quotient such as 1/200, got"),
+        ("1e300/1e-300", "fluctuation: 1e300/1e-300 is too large"),
+        ("1/2/3", "fluctuation: expected a number, got '1/2/3'"),
+        ("'1/80'", "leave out the quotation marks"),
+    ],
+)
+def test_a_ratio_has_the_bounds_of_a_number(text: str, message: str) -> None:
+    with pytest.raises(MachineFileError, match=re.escape(message)):
+        loads(f"crank: 1 m\nrod_ratio: 5\nflywheel: {{fluctuation: {text}}}")

@@ -44,6 +44,8 @@ def test_accepts_what_the_reader_accepts(text: str, validator: Any) -> None:
         {"crank": "400 mm", "rod": "2 m", "head_end_rod": "20 mm"},
         {"bore": "400 mm", "cylinders": [{"crank": "400 mm", "rod": "2 m"}]},
         {"cylinders": []},
+        {"crank": "400 mm", "rod_ratio": "5:1"},
+        {"crank": "400 mm", "rod_ratio": "10/"},
         {"crank": "400 mm", "rod": "2 m", "flywheel": {"inertia": "1 kg m2", "gd2": "4 kg m2"}},
         {"crank": "400 mm", "rod": "2 m", "limits": {"cmax": "6 m/s"}},
         {"effort": {"unit": "N m", "points": [[0, 1, 5], [360, 2]]}},
@@ -73,6 +75,12 @@ def test_patterns_refuse_what_the_reader_refuses() -> None:
         assert not re.search(pattern, text)
         with pytest.raises(UnitError):
             parse_quantity(text, "length")
+
+
+def test_ratios_may_be_quotients_and_percent(validator: Any) -> None:
+    machine = {"crank": "400 mm", "rod_ratio": "10/3", "efficiency": "75 %", "limits": {"delta": "1/80"}}
+    assert validator.is_valid(machine)
+    assert validator.is_valid(machine | {"rod_ratio": "infinite"})
 
 
 def test_every_key_has_a_sentence() -> None:

@@ -48,7 +48,7 @@ def test_tredgold_work_of_the_mean_pressure() -> None:
     from kurbel.machine.indicator import Constant
 
     area, stroke = 2827 * INCH**2, 7 * FOOT
-    card = Constant.from_keys(15.35 * PSI, 0.0)
+    card = Constant.from_keys(expansion=15.35 * PSI, compression=0.0)
     piston = Piston(math.sqrt(4 * area / math.pi), indicator=Indicator(card, card))
     forces = one_cylinder(SliderCrank(stroke / 2, math.inf), 18, pistons=(piston,))
     assert forces.power == pytest.approx(43394.45 * POUND * 252 * FOOT / 60, rel=1e-12)

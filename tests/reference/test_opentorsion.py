@@ -19,8 +19,8 @@ from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
-from kurbel.machine.trace import Trace
 from kurbel.machine_file import load
+from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
@@ -39,7 +39,7 @@ def curves() -> tuple[Any, Any]:
 def engine(angles: Any, pressures: Any, rpm: float) -> CylinderForces:
     """The engine of the source with a trace in MPa."""
     points = list(zip(angles.tolist(), pressures.tolist()))
-    trace = Trace.from_keys((MPA, 1), points=points, angle_zero=360.0)
+    trace = Measured.from_keys(unit=(MPA, 1), points=points, angle_zero=360.0)
     own = Cylinder(
         SliderCrank(0.137 / 2, 0.207), pistons=(Piston(0.105, indicator=Indicator(trace)),), masses=Masses(2.521)
     )

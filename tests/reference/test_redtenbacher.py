@@ -111,7 +111,12 @@ def test_inclined_plane() -> None:
 
 def test_a_driven_machine_locks_where_f_tan_psi_reaches_one() -> None:
     """D 5 for the crosshead: N = −P tan ψ/(1 − f tan ψ) has no value beyond f tan ψ = 1."""
-    piston = Piston(0.2, indicator=Indicator(Constant.from_keys(0.0, 5e5), Constant.from_keys(0.0, 5e5)))  # takes work
+    piston = Piston(
+        0.2,
+        indicator=Indicator(
+            Constant.from_keys(expansion=0.0, compression=5e5), Constant.from_keys(expansion=0.0, compression=5e5)
+        ),
+    )  # takes work
     free = one_cylinder(SliderCrank(0.89, 1.0), pistons=(piston,), friction=Friction(0.5))
     locked = one_cylinder(SliderCrank(0.9, 1.0), pistons=(piston,), friction=Friction(0.5))
     assert free.friction_work is not None

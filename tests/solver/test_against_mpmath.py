@@ -138,7 +138,7 @@ def friction_work(oracle: Oracle, low: mpmath.mpf, high: mpmath.mpf) -> mpmath.m
 @pytest.mark.parametrize(("ratio", "f"), [(1.12, 0.49), (1.1181, 0.5), (1.001, 0.04), (3.0, 2.7)])
 def test_friction_work_of_a_driven_machine_near_self_locking(ratio: float, f: float) -> None:
     """The integrand has a pole just off the real axis; the way to locking, cos ψ − f sin ψ, keeps so many digits."""
-    driven = Constant.from_keys(0.0, 5e5)
+    driven = Constant.from_keys(expansion=0.0, compression=5e5)
     piston = Piston(0.45, indicator=Indicator(driven))
     forces = one_cylinder(SliderCrank(0.4, 0.4 * ratio), pistons=(piston,), friction=Friction(f))
     left = np.sqrt(1 - 1 / ratio**2) - f / ratio
@@ -239,7 +239,7 @@ def test_columns_at_any_angle(lam: float) -> None:
 
 
 def test_constant_force_has_its_extreme_at_the_first_angle_of_the_plateau() -> None:
-    card = Constant.from_keys(3e5, 1e5)
+    card = Constant.from_keys(expansion=3e5, compression=1e5)
     found = one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(0.2, indicator=Indicator(card)),)).extremes_of("P")
     assert found
     assert found.largest.degrees == 0

@@ -204,7 +204,7 @@ def test_parts_before_a_pump_stand_steam_and_pump_together() -> None:
 def constant_pressure_pair(suction: float, delivery: float) -> Card:
     from kurbel.machine.indicator import Constant
 
-    return Constant.from_keys(suction, delivery)
+    return Constant.from_keys(expansion=suction, compression=delivery)
 
 
 # ΔE against mpmath

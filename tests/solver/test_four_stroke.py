@@ -17,7 +17,7 @@ from kurbel.machine.ideal_cards import Compressor, Otto
 from kurbel.machine.indicator import Card, Constant, Indicator
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
-from kurbel.machine.trace import Trace
+from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.angles import stepped
 from kurbel.report.forces import forces_report
@@ -32,7 +32,7 @@ LINES: dict[str, list[tuple[float, float]]] = {
     "intake": [(0, 0.05), (0.05, -0.1), (1, -0.15)],
     "compression": [(1, -0.15), (0.5, 0.7), (0.2, 2.5), (0, 6)],
 }
-CARD = Card.from_keys((BAR, 1), **LINES)  # type: ignore[arg-type]
+CARD = Card.from_keys(unit=(BAR, 1), **LINES)  # type: ignore[arg-type]
 MECHANISM = SliderCrank(0.15, 0.66)
 
 
@@ -138,17 +138,17 @@ def test_the_report_runs_over_the_cycle() -> None:
 def test_a_missing_line_is_named(missing: str) -> None:
     lines = {name: points for name, points in LINES.items() if name != missing}
     with pytest.raises(RuleError, match=f"the '{missing}' line of the four-stroke card is missing"):
-        Card.from_keys((BAR, 1), **lines)  # type: ignore[arg-type]
+        Card.from_keys(unit=(BAR, 1), **lines)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
     "pump",
     [
         constant_pressure(2e5),
-        Constant.from_keys(-0.3e5, 6e5),
+        Constant.from_keys(expansion=-0.3e5, compression=6e5),
         STEAM_CARD,
         Compressor(0.0, 6e5, clearance=0.05),
-        Trace.from_keys((1e5, 1), points=[(0.0, 6.0), (90.0, 0.1), (200.0, 0.0), (360.0, 6.0)]),
+        Measured.from_keys(unit=(1e5, 1), points=[(0.0, 6.0), (90.0, 0.1), (200.0, 0.0), (360.0, 6.0)]),
     ],
     ids=["gas at rest", "pump", "card", "compressor", "trace"],
 )

@@ -216,7 +216,13 @@ def test_polytropic_points_of_one_pressure_are_an_isobar() -> None:
         (Diesel(-2 * BAR, cut_off=0.1, clearance=0.1), "intake: -2 bar is not above the vacuum"),
         (Compressor(0.0, 90 * BAR, clearance=0.1), "such a compressor delivers nothing"),
         (
-            Card.from_keys((BAR, 1), [(0, 3), (1, -1.5)], [(1, 0), (0, 3)], interpolate="polytropic", clearance=0.1),
+            Card.from_keys(
+                unit=(BAR, 1),
+                expansion=[(0, 3), (1, -1.5)],
+                compression=[(1, 0), (0, 3)],
+                interpolate="polytropic",
+                clearance=0.1,
+            ),
             "not above the vacuum",
         ),
     ],
@@ -253,7 +259,7 @@ def test_the_module_of_ideal_cards_is_left_alone_without_them() -> None:
         "import sys; from kurbel.machine_file import loads; from kurbel.solver.case import Case;"
         "m = loads('{stroke: 1 m, rod_ratio: 5, bore: 1 m, indicator: {head_end: {constant: "
         "{expansion: 1 bar, compression: 0 bar}}}}'); assert Case(m).cylinders[0].work > 0;"
-        "own = ('ideal', 'ideal_cards', 'trace', 'trace_samples', 'solver.rod');"
+        "own = ('ideal', 'ideal_cards', 'trace', 'whole_cycle', 'columns', 'solver.rod');"
         "print(*(n for n in sys.modules if n.endswith(own)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

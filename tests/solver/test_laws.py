@@ -184,7 +184,7 @@ def test_speed_zero_has_no_inertia_but_exact_zeros() -> None:
 
 @pytest.mark.parametrize("scale", [1e-300, 1e-150, 1e150, 1e300])
 def test_lengths_of_any_size(scale: float) -> None:
-    card = Constant.from_keys(1.0, 0.0)
+    card = Constant.from_keys(expansion=1.0, compression=0.0)
     bore = 1e-3 if scale > 1 else 1e3
     small = one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(bore, indicator=Indicator(card)),)).at([10, 100, 250])
     large = one_cylinder(SliderCrank(0.4 * scale, 2.0 * scale), pistons=(Piston(bore, indicator=Indicator(card)),))

@@ -95,8 +95,8 @@ def errors_of_bearings(forces: CylinderForces) -> list[float]:
 def rubbing_diesel() -> CylinderForces:
     """Piston force and rod angle pass zero beside each other: the guide changes sides twice between two nodes."""
     diesel = Diesel.from_keys(
-        -51379.84345506035,
-        0.032183767208578615,
+        intake=-51379.84345506035,
+        cut_off=0.032183767208578615,
         exponent=1.3138075981361519,
         compression_ratio=9.149748785327816,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -19,6 +20,7 @@ from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.machine.trace import Trace
 from kurbel.machine_file import load, loads
+from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.check import checked
 from kurbel.report.plausibility import brake_warnings, trace_warnings
@@ -39,7 +41,9 @@ def smooth(degrees: Any) -> Any:
 def trace(step: float, zero: float = 0.0, period: float = 360.0, closed: bool = True) -> Trace:
     count = round(period / step)
     angles = np.arange(count + closed) * period / count
-    return Trace.from_keys((BAR, 1), points=list(zip(angles.tolist(), smooth(angles - zero).tolist())), angle_zero=zero)
+    return Measured.from_keys(
+        unit=(BAR, 1), points=list(zip(angles.tolist(), smooth(angles - zero).tolist())), angle_zero=zero
+    )
 
 
 def solved(
@@ -87,7 +91,7 @@ def test_angle_zero_is_the_dead_centre_of_an_offset_crank() -> None:
 
 def test_straight_over_the_angle_between_samples() -> None:
     points = [(0.0, 5.0), (50.0, 9.0), (180.0, 2.0), (180.0, 1.0), (360.0, 3.0)]
-    forces = solved(Trace.from_keys((BAR, 1), points=points))
+    forces = solved(Measured.from_keys(unit=(BAR, 1), points=points))
     at = forces.at([0, 25, 50, 115, 180, 270, 359.999999])
     assert at.p_head == pytest.approx(np.array([5, 7, 9, 5.5, 1, 2, 3]) * BAR, rel=1e-7)
     assert forces.at([180 - 1e-9]).p_head[0] == pytest.approx(2 * BAR)
@@ -95,7 +99,7 @@ def test_straight_over_the_angle_between_samples() -> None:
 
 def test_uneven_samples_give_the_exact_work_of_the_straight_lines() -> None:
     points = [(0.0, 5.0), (50.0, 9.0), (180.0, 2.0), (180.0, 1.0), (360.0, 5.0)]
-    forces = solved(Trace.from_keys((BAR, 1), points=points))
+    forces = solved(Measured.from_keys(unit=(BAR, 1), points=points))
     with mpmath.workdps(30):
         total = mpmath.mpf(0)
         for (a, p), (b, q) in pairwise(points):
@@ -130,7 +134,7 @@ def test_a_trace_of_its_own_at_the_crank_end_counts_from_the_same_dead_centre() 
 def test_sensitivity_is_the_change_for_a_tenth_of_a_degree() -> None:
     here = solved(trace(0.5)).work or 0.0
     later = solved(trace(0.5, zero=0.0)).work
-    moved = Trace(trace(0.5).samples, angle_zero=-0.1)
+    moved = replace(trace(0.5), angle_zero=-0.1)
     change = ((solved(moved).work or 0.0) - here) / here
     assert later == here
     assert solved(trace(0.5)).work_sensitivity == pytest.approx(change, rel=2e-3)
@@ -146,7 +150,7 @@ def test_every_kink_counts_for_the_extremes() -> None:
     angles = np.arange(7201) / 20
     pressures = smooth(angles) + rng.normal(0, 0.2, 7201)
     points = list(zip(angles.tolist(), pressures.tolist()))
-    forces = solved(Trace.from_keys((BAR, 1), points=points), masses=Masses(200.0), friction=Friction(0.05))
+    forces = solved(Measured.from_keys(unit=(BAR, 1), points=points), masses=Masses(200.0), friction=Friction(0.05))
     fine = forces.at(np.arange(0, 72001) / 200)
     for name in ("P", "S", "N", "T"):
         found = forces.extremes_of(name)
@@ -203,7 +207,7 @@ def machine_of(tmp_path: Path, text: str | bytes, keys: str = "", more: str = ""
 
 
 def columns_of(machine: Machine) -> tuple[list[float], list[float]]:
-    samples = machine.cylinders[0].pistons[0].indicator.head_end.samples  # type: ignore[union-attr]
+    samples = machine.cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
     return samples.angles.tolist(), samples.pressures.tolist()
 
 
@@ -393,7 +397,7 @@ def warned(
     points: list[tuple[float, float]], cycle: str = "two-stroke", zero: float = 0.0, absolute: bool = False
 ) -> list[str]:
     piston = Piston(
-        0.3, indicator=Indicator(Trace.from_keys((BAR, 1), points=points, angle_zero=zero), absolute=absolute)
+        0.3, indicator=Indicator(Measured.from_keys(unit=(BAR, 1), points=points, angle_zero=zero), absolute=absolute)
     )
     own = Cylinder(CRANK, pistons=(piston,))
     return list(trace_warnings(CylinderForces(Machine((own,), speed=3.0, cycle=cycle), own)))
@@ -480,7 +484,7 @@ def test_indicated_below_brake_power(tmp_path: Path) -> None:
     machine = machine_of(tmp_path, "\n".join(GOOD), more="brake_power: 500 kW\n")
     (warning,) = brake_warnings(machine, Case(machine).cylinders)
     assert "is below the brake power, 500000 W" in warning
-    notes = [entry.text for section in checked(machine, ("forces",)).sections for entry in section.entries]
+    notes = [entry.text for section in checked(machine).sections for entry in section.entries]
     assert warning in notes
 
 
@@ -488,7 +492,7 @@ def test_samples_too_far_apart_are_told() -> None:
     from kurbel.report.forces import forces_report
 
     def told(points: list[tuple[float, float]]) -> bool:
-        piston = Piston(0.3, indicator=Indicator(Trace.from_keys((BAR, 1), points=points)))
+        piston = Piston(0.3, indicator=Indicator(Measured.from_keys(unit=(BAR, 1), points=points)))
         (part,) = forces_report(Case(Machine((Cylinder(CRANK, pistons=(piston,)),))), [0.0], None, "si").parts
         return any("the samples stand too far apart" in warning for warning in part.warnings)
 

@@ -15,14 +15,13 @@ def check(file: str) -> int:
 
     Where the file gives 'limits', compare the key values with them.
     """
-    from kurbel.cli import COMMANDS
     from kurbel.machine_file import load
     from kurbel.render import Look
     from kurbel.render.listing import listing
     from kurbel.render.output import stdout_charset, stdout_width, write_stdout
     from kurbel.report.check import checked
 
-    result = checked(load(file), COMMANDS)
+    result = checked(load(file))
     write_stdout((listing(result, Look(encoding=stdout_charset().encoding, width=stdout_width())),))
     if result.errors:  # all of them, as one of the gravest kind
         gravest = min(result.errors, key=lambda error: error.exit_status)

@@ -1,172 +1,107 @@
 """How a key of the machine file is declared: its form, symbol and sentence. Reader, schema and docs read it.
 
-A record (`Cylinder`, `Piston`, …) carries a table `KEYS` of these. It is built from the values of its keys by
-`record.from_keys(**values)` where it has that method, otherwise by its constructor; absent keys are not passed.
+A record (`Cylinder`, `Piston`, …) carries a table `KEYS` of these.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Union
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, ClassVar, NamedTuple
 
-from kurbel.errors import Fault, RuleError
+from kurbel.declared.reading import REFUSED, Reading, Tree
+from kurbel.errors import Fault, Path, RuleError, refuse
 
-
-class Physical(NamedTuple):
-    """A number with a unit of this kind, such as `450 mm`; becomes a float in the base of the kind.
-
-    above: the value must be larger; least, most: it must not be smaller or larger. `words` are texts allowed instead,
-    such as `infinite`, with the value they stand for.
-    """
-
-    kind: str
-    above: float | None = None
-    least: float | None = None
-    most: float | None = None
-    words: tuple[tuple[str, float], ...] = ()
+Schema = dict[str, Any]
+ABSENT = object()
+"""What is found of a key that is not given."""
 
 
-class Number(NamedTuple):
-    """A bare number (a ratio, a fraction, a coefficient) with its bounds; becomes a float."""
+class Form(ABC):
+    """What may stand under a key. Every kind of form supplies `take`, `expected` and `schema`."""
 
-    above: float | None = None
-    least: float | None = None
-    below: float | None = None
-    most: float | None = None
-    words: tuple[tuple[str, float], ...] = ()
+    shape: ClassVar[type] = str
+    """Of the tree: str, list or dict."""
+    shared: ClassVar[bool] = False
+    """Whether keys of another record stand in the mapping in place of the key."""
 
+    @abstractmethod
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Return what a value of the tree becomes; faults are noted, or raised as RuleError."""
 
-def out_of_bounds(value: float, form: Physical | Number) -> str:
-    """Return in what way a value is too small or too large for its form, with the bound; '' when it is not.
+    @abstractmethod
+    def expected(self) -> str:
+        """Return what stands under a key of this form, for 'expected …'."""
 
-    >>> out_of_bounds(-0.3, Physical("length", least=0.1))
-    'is too small; it must be at least 100 mm'
-    """
-    below = form.below if isinstance(form, Number) else None
-    kind = form.kind if isinstance(form, Physical) else "ratio"
-    if form.above is not None and not value > form.above:
-        return f"is too small; it must be more than {_bound(form.above, kind)}"
-    if form.least is not None and not value >= form.least:
-        return f"is too small; it must be at least {_bound(form.least, kind)}"
-    if below is not None and not value < below:
-        return f"is too large; it must be less than {_bound(below, kind)}"
-    if form.most is not None and not value <= form.most:
-        return f"is too large; it must be at most {_bound(form.most, kind)}"
-    return ""
+    @abstractmethod
+    def schema(self, definitions: Schema) -> Schema:
+        """Return the JSON Schema of a value of this form; what is used more than once goes into the definitions."""
 
+    def example(self) -> str:
+        """Return a value as a person would write it, or '…' for what is longer than a line."""
+        return "…"
 
-def _bound(value: float, kind: str) -> str:
-    from kurbel.declared.unit_systems import show
+    def written(self) -> str:
+        """Return in a few words what is written for a key, for the page of symbols."""
+        return "a mapping"
 
-    return "0" if value == 0 else show(value, kind)
+    def out_of_bounds(self, value: Any) -> str:
+        """Return in what way a value is too small or too large, with the bound; '' when it is not."""
+        return ""
 
+    def read(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Return what a value of the tree becomes, or REFUSED after noting every fault."""
+        if value is REFUSED:
+            return REFUSED
+        try:
+            return self.take(reading, value, path)
+        except RuleError as error:
+            return reading.refuse(path, error)
 
-class Count(NamedTuple):
-    """A whole number; becomes an int."""
+    def find(self, reading: Reading, name: str, mapping: Tree, rest: Tree, path: Path) -> Any:
+        """Return what a mapping has under a key; `rest` of it is what does not belong to the record of the key."""
+        return self.read(reading, mapping[name], (*path, name)) if name in mapping else ABSENT
 
-    least: int = 1
-    most: int | None = None
+    def names(self, name: str, mapping: Tree) -> Iterable[str]:
+        """Return the names of all keys of a mapping that a key of this form stands for."""
+        return (name,)
 
+    def moved(self, mapping: Tree) -> dict[str, str]:
+        """Return the names that do not stand in this mapping because a list has them, each with that list."""
+        return {}
 
-class Text(NamedTuple):
-    """Any text that is not empty."""
+    def flat(self, fault: Fault, mapping: Tree) -> Fault:
+        """Return a fault of the record as one of its mapping, whatever list the record has made of it."""
+        return fault
 
+    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
+        """Yield every key that may stand in a mapping of this form, each after the words for that mapping."""
+        return iter(())
 
-class Choice(NamedTuple):
-    """One of these words."""
+    def places_of(self, name: str, path: str, words: str) -> Iterator[tuple[str, str]]:
+        """Yield a key of this form after the words for its mapping, then what may stand below it."""
+        yield words, name
+        inner = f"{path}.{name}" if path else name
+        yield from self.places(inner, f"under '{inner}'")
 
-    words: tuple[str, ...]
+    def records(self, word: str) -> Iterator[tuple[str, Any]]:
+        """Yield the records that a key leads to, each after the word that names it."""
+        return iter(())
 
-
-class FilePath(NamedTuple):
-    """The path of a file, relative to the machine file; becomes a path that can be opened."""
-
-
-class UnitName(NamedTuple):
-    """The name of a unit of this kind; becomes the factor pair that turns numbers into its base."""
-
-    kind: str
-
-
-class Points(NamedTuple):
-    """A list of pairs of bare numbers, `[[x, y], …]`; becomes a list of (float, float)."""
-
-    x: str
-    y: str
-    least: int = 2
-
-
-class Record(NamedTuple):
-    """A mapping that becomes a record; `target` names it as `module:Class`, so that it is imported only when needed."""
-
-    target: str
-
-
-class Listing(NamedTuple):
-    """A list of items of one form, at least one; becomes a tuple."""
-
-    item: Form
-
-
-class OneOf(NamedTuple):
-    """Several forms that differ in shape (text or number, list, mapping); the first of the right shape reads it."""
-
-    forms: tuple[Form, ...]
-
-
-class Keyed(NamedTuple):
-    """A mapping whose single telling key decides what it becomes: `{constant: …}`, `{trace: …}`; else `otherwise`."""
-
-    cases: tuple[tuple[str, Form], ...]
-    otherwise: Form
-
-
-class Limits(NamedTuple):
-    """A mapping from ids of key values to bounds, each with the unit of its quantity."""
-
-
-class Variant(NamedTuple):
-    """Keys of the same mapping that depend on the word under `selector`: those of the mechanism, say."""
-
-    selector: str
-    default: str
-    cases: tuple[tuple[str, Record], ...]
-
-
-class Inline(NamedTuple):
-    """Keys of another record that stand in the same mapping: those of the piston in its cylinder.
-
-    With the key `unless`, a list of such records, they stand in its items instead; rules of the outer record speak of
-    the one inline record as the first of that list.
-    """
-
-    record: Record
-    unless: str = ""
-
-
-Form = Union[
-    Physical,
-    Number,
-    Count,
-    Text,
-    Choice,
-    FilePath,
-    UnitName,
-    Points,
-    Record,
-    Listing,
-    OneOf,
-    Keyed,
-    Limits,
-    Variant,
-    Inline,
-]
+    def describe(self, name: str, key: Key, properties: Schema, rules: list[Schema], definitions: Schema) -> None:
+        """Add a key of this form to the schema of its mapping."""
+        properties.setdefault(name, {**self.schema(definitions), "description": key.description})
+        if key.instead:
+            rules.append(none_of([[name, key.instead]]))
+        if key.needs:
+            rules.append({"dependencies": {name: [key.needs]}})
 
 
 class Key(NamedTuple):
     """One key: its form, what it means in one sentence, the textbook symbol, and whether it must stand there.
 
-    `absent` says what holds without it; `commands` names the commands that use it, where not all do; `instead` names
-    another key that says the same thing, so that both together are a contradiction.
+    `absent` says what holds without it. `instead` names another key that says the same thing, so that both together are
+    a contradiction; where that one is required, one of both is. `needs` names a key that must stand beside it.
     """
 
     form: Form
@@ -174,31 +109,82 @@ class Key(NamedTuple):
     symbol: str = ""
     required: bool = False
     absent: str = ""
-    commands: tuple[str, ...] = ()
     instead: str = ""
+    needs: str = ""
+    example: str = ""
+
+    @property
+    def description(self) -> str:
+        """What an editor shows."""
+        symbol = f" ({self.symbol})" if self.symbol else ""
+        return f"{self.text}{symbol}" + (f"; absent: {self.absent}" if self.absent else "")
+
+    def write(self, name: str) -> str:
+        """Return what to write where it is missing."""
+        return f"write for instance '{name}: {self.example or self.form.example()}'"
 
 
 Keys = dict[str, Key]
 
 
-def check_bounds(keys: Keys, **values: float | None) -> None:
-    """Raise RuleError for the values, in the base of their kinds, that are out of the bounds of their keys.
+def required(keys: Keys) -> list[str]:
+    """Return the names of the keys that nothing else can stand for."""
+    replaced = {key.instead for key in keys.values()}
+    return [name for name, key in keys.items() if key.required and name not in replaced]
 
-    What a machine file gives has been held against them already; this is for records that are made in Python.
+
+def none_of(groups: list[list[str]]) -> Schema:
+    """Return a schema that forbids each of these groups of keys together."""
+    return {"not": {"anyOf": [{"required": group} for group in groups]}}
+
+
+def check(keys: Keys, values: Mapping[str, Any]) -> None:
+    """Raise RuleError for values that contradict or lack one another, or are out of the bounds of their keys.
+
+    What holds for a machine file holds for records that are made in Python. None is a value that is not given.
     """
-    faults = [
-        Fault((name,), f"{value:g} {wrong}")
-        for name, value in values.items()
-        if value is not None and isinstance(form := keys[name].form, (Physical, Number))
-        if (wrong := out_of_bounds(value, form))
-    ]
-    if faults:
-        raise RuleError(*faults)
+    given = {name: value for name, value in values.items() if value is not None}
+    refuse(*_contradictions(keys, given), *_beyond(keys, given))
 
 
-def load(record: Record) -> Any:
-    """Import and return the class that a record form names."""
-    from importlib import import_module
+def _contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
+    for name, key in keys.items():
+        other = key.instead
+        if name in given and other in given:
+            yield Fault((name,), f"'{other}' and '{name}' say the same thing; leave one of them out")
+        if name in given and key.needs and key.needs not in given:
+            yield Fault((name,), f"'{name}' needs '{key.needs}' beside it")
+        if other and keys[other].required and not {name, other} & given.keys():
+            shown = other if keys[other].example else name
+            yield Fault((), f"'{other}' or '{name}' is missing; {keys[shown].write(shown)}")
 
-    module, name = record.target.split(":")
-    return getattr(import_module(module), name)
+
+def _beyond(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
+    for name, value in given.items():
+        if name in keys and (wrong := keys[name].form.out_of_bounds(value)):
+            yield Fault((name,), f"{value:g} {wrong}")
+
+
+class Described:
+    """A record that a machine file describes by its `KEYS`."""
+
+    KEYS: ClassVar[Keys]
+
+    @classmethod
+    def from_keys(cls, **values: Any) -> Any:
+        """Return the record that the values of these keys make; absent keys are not passed.
+
+        Raises RuleError for values that contradict one another, and for whatever the record refuses.
+        """
+        check(cls.KEYS, values)
+        return cls.of_keys(**values)
+
+    @classmethod
+    def of_keys(cls, *args: Any, **values: Any) -> Any:
+        """Return the record; its fields are the keys, where it does not say otherwise."""
+        return cls(*args, **values)
+
+    @staticmethod
+    def faults_of_key(name: str, value: Any) -> Iterable[Fault]:
+        """Return what is wrong with the value of one key, whatever the others say."""
+        return ()

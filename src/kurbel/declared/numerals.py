@@ -9,6 +9,8 @@ from kurbel.errors import UnitError
 
 NUMBER = re.compile(r"[-+]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 """A number as YAML 1.2 writes it: no leading zero, no underscore, no base 60, no inf."""
+RATIO = re.compile(rf"({NUMBER.pattern})\s*(?:/\s*({NUMBER.pattern})|%)")
+"""What stands for a number by a division."""
 
 SPACES = "\xa0\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000"
 """White space that no keyboard has; who wrote it meant a space."""
@@ -46,6 +48,21 @@ def parse_number(text: str) -> float:
     if math.isfinite(value):
         return value
     raise UnitError(f"{number.group()} is too large to compute with")
+
+
+def parse_ratio(text: str) -> float:
+    """Return the number that a text is, also as a quotient or in percent; raises UnitError as `parse_number` does.
+
+    >>> parse_ratio("1/80"), parse_ratio("75 %")
+    (0.0125, 0.75)
+    """
+    found = RATIO.fullmatch(plain(text))
+    if not found:
+        return parse_number(text)
+    over, under = parse_number(found[1]), parse_number(found[2] or "100")
+    if under and bool(over) == bool(over / under):
+        return over / under
+    raise UnitError(f"expected a number or a quotient such as 1/200, got '{text}'")
 
 
 def _hint(text: str) -> str:

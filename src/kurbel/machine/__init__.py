@@ -9,22 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from kurbel.declared.keys import (
-    Choice,
-    Count,
-    Inline,
-    Key,
-    Keys,
-    Limits,
-    Listing,
-    Number,
-    OneOf,
-    Physical,
-    Record,
-    Text,
-    Variant,
-)
-from kurbel.errors import Fault, RuleError
+from kurbel.declared.forms import Choice, Count, Inline, Limits, Listing, Number, OneOf, Physical, Record, Text, Variant
+from kurbel.declared.keys import Described, Key, Keys
+from kurbel.errors import Fault, refuse
 from kurbel.machine.fit import misfits
 from kurbel.mechanisms import MECHANISMS, Mechanism
 
@@ -44,7 +31,7 @@ CYCLES = {"two-stroke": 1, "four-stroke": 2}
 
 
 @dataclass(frozen=True, eq=False)
-class Cylinder:
+class Cylinder(Described):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
@@ -66,7 +53,7 @@ class Cylinder:
     KEYS: ClassVar[Keys] = {
         "name": Key(Text(), "Name of the cylinder", absent="cylinder 1, cylinder 2, …"),
         "mechanism": Key(
-            Variant("mechanism", "slider-crank", tuple(MECHANISMS.items())),
+            Variant("slider-crank", MECHANISMS),
             "Kind of crank mechanism",
             absent="slider-crank",
         ),
@@ -77,7 +64,7 @@ class Cylinder:
         ),
         "piston": Key(Inline(Record("kurbel.machine.piston:Piston")), "The cylinder's own piston"),
         "tandem": Key(
-            Listing(Record("kurbel.machine.piston:Piston")),
+            Listing(Record("kurbel.machine.piston:Piston"), inline_too=True),
             "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
             absent="none",
         ),
@@ -102,7 +89,7 @@ class Cylinder:
     }
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls,
         mechanism: Mechanism,
         name: str = "",
@@ -118,7 +105,7 @@ class Cylinder:
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe."""
         if tandem and piston is None:
-            raise RuleError(Fault(("tandem",), "a tandem piston stands beside the cylinder's own one; give its 'bore'"))
+            refuse(Fault(("tandem",), "a tandem piston stands beside the cylinder's own one; give its 'bore'"))
         pistons = () if piston is None else (piston, *tandem)
         return cls(mechanism, name, pistons, masses, friction, inclination, crank_position, ram_force, moment, cycle)
 
@@ -127,12 +114,11 @@ class Cylinder:
         faults = list(misfits(self))
         if rings and not self.pistons and self.mechanism.slides:
             faults.append(Fault(("friction", "rings"), "rings rub on the bore; give the cylinder a 'bore'"))
-        if faults:
-            raise RuleError(*faults)
+        refuse(*faults)
 
 
 @dataclass(frozen=True, eq=False)
-class Machine:
+class Machine(Described):
     """A whole machine.
 
     speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
@@ -170,7 +156,6 @@ class Machine:
             "by it where the machine is driven",
             "η",
             absent="1",
-            commands=("flywheel",),
         ),
         "ambient": Key(Physical("pressure", least=0), "Absolute pressure round the machine", absent="1.01325 bar"),
         "brake_power": Key(
@@ -181,42 +166,36 @@ class Machine:
         ),
         "cylinder": Key(Inline(Record("kurbel.machine:Cylinder"), unless="cylinders"), "The keys of the only cylinder"),
         "cylinders": Key(
-            Listing(Record("kurbel.machine:Cylinder")),
+            Listing(Record("kurbel.machine:Cylinder"), inline_too=True),
             "Several cylinders; their keys then do not stand at the top",
             absent="one cylinder, flat",
         ),
-        "flywheel": Key(
-            Record("kurbel.machine.turning:Flywheel"), "Flywheel", absent="no speed line", commands=("flywheel",)
-        ),
+        "flywheel": Key(Record("kurbel.machine.turning:Flywheel"), "Flywheel", absent="no speed line"),
         "load": Key(
-            OneOf((Choice(("constant",)), Record("kurbel.machine.turning:Load"))),
+            OneOf(Choice(("constant",)), Record("kurbel.machine.turning:Load")),
             "Resistance at the shaft",
             absent="constant",
-            commands=("flywheel",),
         ),
         "effort": Key(
             Record("kurbel.machine.turning:Effort"),
             "A turning-moment diagram known from elsewhere, instead of cylinders",
             absent="from the cylinders",
-            commands=("flywheel",),
         ),
         "coupling": Key(
             Record("kurbel.machine.turning:Coupling"),
             "Elastic coupling to a driven moment of inertia",
             absent="rigid",
-            commands=("flywheel",),
         ),
         "crankshaft": Key(
             Record("kurbel.machine.crankshaft:Crankshaft"),
             "One throw between bearings A and B",
             absent="no strength check",
-            commands=("stress",),
         ),
         "limits": Key(Limits(), "Bounds for key values, checked by `kurbel check`", absent="none"),
     }
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls,
         name: str = "machine",
         cylinder: Cylinder | None = None,
@@ -234,27 +213,26 @@ class Machine:
 
     def __post_init__(self) -> None:
         if not self.cylinders and self.effort is None:
-            raise RuleError(Fault((), "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"))
+            refuse(Fault((), "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"))
         if self.cylinders and self.effort is not None:
-            raise RuleError(Fault(("effort",), "'effort' stands instead of cylinders; leave one of them out"))
+            refuse(Fault(("effort",), "'effort' stands instead of cylinders; leave one of them out"))
         names = [cylinder.name for cylinder in self.cylinders]
         for index, name in enumerate(names):
             if name in names[:index]:
-                raise RuleError(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
+                refuse(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
         faults = [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
                 faults.append(Fault((key, "points"), message))
-        if faults:
-            raise RuleError(*faults)
+        refuse(*faults)
 
     def _cycle_faults(self, index: int) -> list[Fault]:
         """A four-stroke cycle needs four-line cards, a two-stroke one two-line cards; some need absolute pressures."""
         cylinder = self.cylinders[index]
         return [
-            Fault(("cylinders", index, *path), message)
+            fault.below(("cylinders", index))
             for number, piston in enumerate(cylinder.pistons)
-            for path, message in piston.indicator_faults(
+            for fault in piston.indicator_faults(
                 self.cycle_of_piston(cylinder, number), self.ambient, () if number == 0 else ("tandem", number - 1)
             )
         ]

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, RuleError
+from kurbel.errors import Fault, refuse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +25,7 @@ def _length(text: str, symbol: str, required: bool = True, absent: str = "") -> 
 
 
 @dataclass(frozen=True, eq=False)
-class Crankshaft:
+class Crankshaft(Described):
     """A crank throw between bearing A and bearing B, the one on the side of the flywheel; lengths in m.
 
     a, b: from the middle of the pin to A and B; web_distance: from there to the middle of each web; flywheel_position:
@@ -56,9 +57,14 @@ class Crankshaft:
         "pin_length": _length("Length of the crank pin", "l_z"),
         "journal_diameter": _length("Diameter of the journals", "d_j", False, "journals not examined"),
         "journal_length": _length("Length of a journal", "l_j", False, "no journal pressure"),
-        "flywheel_mass": Key(Physical("mass", least=0), "Mass of the flywheel", "m_s", absent="no flywheel"),
+        "flywheel_mass": Key(
+            Physical("mass", least=0), "Mass of the flywheel", "m_s", absent="no flywheel", needs="flywheel_position"
+        ),
         "flywheel_position": Key(
-            Physical("length"), "Middle of the flywheel from bearing B, positive outward", absent="no flywheel"
+            Physical("length"),
+            "Middle of the flywheel from bearing B, positive outward",
+            absent="no flywheel",
+            needs="flywheel_mass",
         ),
         "allowable_bending": Key(
             Physical("stress", above=0), "Allowable stress in bending", "k_b", absent="no safety figures"
@@ -68,22 +74,8 @@ class Crankshaft:
         ),
     }
 
-    @classmethod
-    def from_keys(
-        cls, flywheel_mass: float | None = None, flywheel_position: float | None = None, **keys: float
-    ) -> Crankshaft:
-        """Return the crankshaft that these keys of a machine file describe; raises RuleError."""
-        if (flywheel_mass is None) != (flywheel_position is None):
-            given, missing = ("flywheel_mass", "flywheel_position")
-            if flywheel_mass is None:
-                given, missing = missing, given
-            raise RuleError(Fault((given,), f"'{given}' needs '{missing}' beside it"))
-        return cls(flywheel_mass=flywheel_mass or 0.0, flywheel_position=flywheel_position or 0.0, **keys)
-
     def __post_init__(self) -> None:
-        faults = [*self._web_faults(), *self._place_faults(), *self._length_faults()]
-        if faults:
-            raise RuleError(*faults)
+        refuse(*self._web_faults(), *self._place_faults(), *self._length_faults())
 
     def _web_faults(self) -> list[Fault]:
         thickness, width = show(self.web_thickness, "length"), show(self.web_width, "length")

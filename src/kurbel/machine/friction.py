@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from kurbel.declared.keys import Count, Key, Keys, Number, Physical, Record
-from kurbel.errors import Fault, RuleError
+from kurbel.declared.forms import Count, Number, Physical, Record
+from kurbel.declared.keys import Described, Key, Keys
+from kurbel.errors import Fault, refuse
 
 
 @dataclass(frozen=True, eq=False)
-class Rings:
+class Rings(Described):
     """Piston rings: their number, height in m, pressure on the wall in Pa, and coefficient of friction."""
 
     count: int
@@ -27,7 +28,7 @@ class Rings:
 
 
 @dataclass(frozen=True, eq=False)
-class Friction:
+class Friction(Described):
     """Coefficient f of the crosshead, None where it is left out, and the piston rings."""
 
     crosshead: float | None = None
@@ -40,4 +41,4 @@ class Friction:
 
     def __post_init__(self) -> None:
         if self.crosshead is None and self.rings is None:
-            raise RuleError(Fault((), "no friction is given; leave 'friction' out or give 'crosshead' or 'rings'"))
+            refuse(Fault((), "no friction is given; leave 'friction' out or give 'crosshead' or 'rings'"))

@@ -10,9 +10,10 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar, Union
 
-from kurbel.declared.keys import Key, Keys, Number, Physical
+from kurbel.declared.forms import Number, Physical
+from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, RuleError
+from kurbel.errors import Fault, refuse
 from kurbel.machine.indicator import CLEARANCE
 
 _CLEARANCE = Key(CLEARANCE, "Clearance volume over stroke volume", "c", required=True)
@@ -57,13 +58,8 @@ def _vacuum_fault(lift: float, **pressures: float | None) -> str:
     return ""
 
 
-def _raise(faults: list[Fault]) -> None:
-    if faults:
-        raise RuleError(*faults)
-
-
 @dataclass(frozen=True, eq=False)
-class Steam:
+class Steam(Described):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression.
 
     Pressures in Pa; cut_off, release, compression: fractions of the stroke at which admission ends, exhaust opens, and
@@ -97,7 +93,7 @@ class Steam:
             faults.append(
                 Fault(("release",), f"the exhaust opens at {self.release:g}, before the cut-off at {self.cut_off:g}")
             )
-        _raise(faults)
+        refuse(*faults)
 
     def fault_in(self, cycle: str, lift: float) -> str:
         """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
@@ -105,7 +101,7 @@ class Steam:
 
 
 @dataclass(frozen=True, eq=False)
-class Compressor:
+class Compressor(Described):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance. Pressures in Pa."""
 
     suction: float
@@ -122,7 +118,7 @@ class Compressor:
     }
 
     def __post_init__(self) -> None:
-        _raise(_order_fault("delivery", self.delivery, "suction", self.suction))
+        refuse(*_order_fault("delivery", self.delivery, "suction", self.suction))
 
     def fault_in(self, cycle: str, lift: float) -> str:
         """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
@@ -140,7 +136,13 @@ class Compressor:
 _ENGINE_KEYS: Keys = {
     "intake": _pressure("Pressure in the cylinder when compression begins, and while it fills"),
     "exhaust": _pressure("Pressure while the burnt gas leaves, in a four-stroke cycle", False, "that of the intake"),
-    "compression_ratio": Key(Number(least=1.00001, most=1e6), "Largest over smallest volume; or give `clearance`", "ε"),
+    "compression_ratio": Key(
+        Number(least=1.00001, most=1e6),
+        "Largest over smallest volume; or give `clearance`",
+        "ε",
+        required=True,
+        example="8",
+    ),
     "clearance": Key(
         CLEARANCE,
         "Clearance volume over stroke volume; or give `compression_ratio`",
@@ -154,18 +156,8 @@ _ENGINE_KEYS: Keys = {
 
 
 def _clearance(compression_ratio: float | None, clearance: float | None) -> float:
-    """Return the clearance c = 1/(ε − 1) from the one of both that is given; raises RuleError."""
-    if compression_ratio is not None and clearance is not None:
-        raise RuleError(
-            Fault(("clearance",), "'compression_ratio' and 'clearance' say the same thing; leave one of them out")
-        )
-    if compression_ratio is not None:
-        return 1 / (compression_ratio - 1)
-    if clearance is None:
-        raise RuleError(
-            Fault((), "'compression_ratio' or 'clearance' is missing; write for instance 'compression_ratio: 8'")
-        )
-    return clearance
+    """Return the clearance c = 1/(ε − 1) from the one of both that is given."""
+    return clearance or 0.0 if compression_ratio is None else 1 / (compression_ratio - 1)
 
 
 def _peak_fault(peak: float | None, card: _Engine, lift: float) -> str:
@@ -177,7 +169,7 @@ def _peak_fault(peak: float | None, card: _Engine, lift: float) -> str:
     return f"peak: {show(peak, 'pressure')} is below the end of the compression ({show(compressed, 'pressure')})"
 
 
-class _Engine:
+class _Engine(Described):
     """What the cards of combustion engines share."""
 
     intake: float
@@ -223,7 +215,7 @@ class Otto(_Engine):
     KEYS: ClassVar[Keys] = {**_ENGINE_KEYS, "peak": _pressure("Largest pressure, after combustion")}
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls,
         intake: float,
         peak: float,
@@ -238,7 +230,7 @@ class Otto(_Engine):
         return cls(intake, peak, volume, exhaust, exponent, expansion_exponent or exponent)
 
     def __post_init__(self) -> None:
-        _raise(_order_fault("peak", self.peak, "intake", self.intake))
+        refuse(*_order_fault("peak", self.peak, "intake", self.intake))
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,7 +256,7 @@ class Diesel(_Engine):
     }
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls,
         intake: float,
         cut_off: float,
@@ -281,7 +273,7 @@ class Diesel(_Engine):
 
     def __post_init__(self) -> None:
         if self.peak is not None:
-            _raise(_order_fault("peak", self.peak, "intake", self.intake))
+            refuse(*_order_fault("peak", self.peak, "intake", self.intake))
 
 
 def _no_exhaust_stroke(exhaust: float | None, cycle: str) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 from kurbel.declared.bounds import Point, size_faults
-from kurbel.declared.keys import Choice, Key, Keyed, Keys, Number, OneOf, Physical, Points, Record, UnitName
+from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName
+from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor
-from kurbel.errors import Fault, Path, RuleError
+from kurbel.errors import Fault, Path, refuse
 
 CLEARANCE = Number(least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
@@ -45,7 +46,7 @@ STROKES = {"two-stroke": ("expansion", "compression"), "four-stroke": ("expansio
 
 
 @dataclass(frozen=True, eq=False)
-class Card:
+class Card(Described):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
     interpolate: `linear`, or `polytropic`: straight in log p over log V, which needs the clearance volume over
@@ -68,7 +69,7 @@ class Card:
     }
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls,
         unit: Factor,
         expansion: list[Point] | None = None,
@@ -90,8 +91,7 @@ class Card:
             faults.append(Fault(("interpolate",), "'polytropic' needs the 'clearance' volume over the stroke volume"))
         for name, points, _ in drawn:
             faults += size_faults(points, unit, "pressure", (name,))
-        if faults:
-            raise RuleError(*faults)
+        refuse(*faults)
         lines = tuple(_line(name, points, unit, start) for name, points, start in drawn)
         notes = tuple(
             f"{name}: a point given twice counts once"
@@ -101,7 +101,7 @@ class Card:
         return cls(lines, interpolate, clearance, notes)
 
     @staticmethod
-    def faults_of_key(name: str, value: object) -> list[Fault]:
+    def faults_of_key(name: str, value: Any) -> list[Fault]:
         """Return what is wrong with the line under one key, whatever the others say."""
         return _line_faults(name, value) if isinstance(value, list) else []
 
@@ -158,7 +158,7 @@ def _order_faults(name: str, points: list[Point]) -> list[Fault]:
     return []
 
 
-class Constant:
+class Constant(Described):
     """Constant pressure on each stroke: an ideal pump."""
 
     KEYS: ClassVar[Keys] = {
@@ -167,7 +167,7 @@ class Constant:
     }
 
     @staticmethod
-    def from_keys(expansion: float, compression: float) -> Card:
+    def of_keys(expansion: float, compression: float) -> Card:
         """Return the card with two horizontal lines."""
         return Card(
             (
@@ -178,20 +178,20 @@ class Constant:
 
 
 _CHAMBER = Keyed(
-    cases=(
-        ("constant", Record("kurbel.machine.indicator:Constant")),
-        ("trace", Record("kurbel.machine.trace:Trace")),
-        ("steam", Record("kurbel.machine.ideal_cards:Steam")),
-        ("compressor", Record("kurbel.machine.ideal_cards:Compressor")),
-        ("otto", Record("kurbel.machine.ideal_cards:Otto")),
-        ("diesel", Record("kurbel.machine.ideal_cards:Diesel")),
-    ),
+    cases={
+        "constant": Record("kurbel.machine.indicator:Constant"),
+        "trace": Record("kurbel.machine_file.trace:Measured"),
+        "steam": Record("kurbel.machine.ideal_cards:Steam"),
+        "compressor": Record("kurbel.machine.ideal_cards:Compressor"),
+        "otto": Record("kurbel.machine.ideal_cards:Otto"),
+        "diesel": Record("kurbel.machine.ideal_cards:Diesel"),
+    },
     otherwise=Record("kurbel.machine.indicator:Card"),
 )
 
 
 @dataclass(frozen=True, eq=False)
-class Indicator:
+class Indicator(Described):
     """The pressures in the two ends of a cylinder; an end that is None is open to the ambient.
 
     absolute: the pressures of both ends are absolute, not gauge.
@@ -205,20 +205,20 @@ class Indicator:
         "pressures": Key(Choice(("gauge", "absolute")), "What the pressures count from", absent="gauge"),
         "head_end": Key(_CHAMBER, "Pressure at the head end", absent="open to the ambient"),
         "crank_end": Key(
-            OneOf((Choice(("mirrored",)), _CHAMBER)),
+            OneOf(Choice(("mirrored",)), _CHAMBER),
             "Pressure at the crank end, or `mirrored`: the head end's card from the crank end's dead centre",
             absent="open to the ambient",
         ),
     }
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls, pressures: str = "gauge", head_end: Chamber | None = None, crank_end: Chamber | str | None = None
     ) -> Indicator:
         """Return the indicator that these keys of a machine file describe; raises RuleError."""
         if head_end is None and crank_end in (None, "mirrored"):
             path: Path = () if crank_end is None else ("crank_end",)
-            raise RuleError(Fault(path, "the indicator shows no pressure; give 'head_end'"))
+            refuse(Fault(path, "the indicator shows no pressure; give 'head_end'"))
         # a mirrored card is the same card: each chamber's fractions count from its own dead centre
         other = head_end if isinstance(crank_end, str) else crank_end
         return cls(head_end, other, pressures == "absolute")

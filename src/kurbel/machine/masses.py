@@ -6,18 +6,19 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from kurbel.declared.keys import Form, Key, Keys, Listing, Number, OneOf, Physical, Record, check_bounds
-from kurbel.errors import Fault, RuleError
+from kurbel.declared.forms import Listing, Number, OneOf, Physical, Record
+from kurbel.declared.keys import Described, Form, Key, Keys, check
+from kurbel.errors import Fault, refuse
 
-_ONE_OR_MORE: Form = OneOf((Physical("mass", least=0), Listing(Physical("mass", least=0))))
+_ONE_OR_MORE: Form = OneOf(Physical("mass", least=0), Listing(Physical("mass", least=0)))
 
 
 @dataclass(frozen=True, eq=False)
-class ConnectingRod:
+class ConnectingRod(Described):
     """The connecting rod's mass in kg and how it moves.
 
-    share: the part of it that counts as reciprocating; or, exactly, center_of_gravity: its distance in m from the
-    crosshead pin, with inertia: moment of inertia in kg m² about the centre of gravity.
+    share: the part of it that counts as reciprocating; or, exactly, center_of_gravity: its distance
+    in m from the crosshead pin, with inertia: moment of inertia in kg m² about the centre of gravity.
     """
 
     mass: float
@@ -29,34 +30,23 @@ class ConnectingRod:
         "mass": Key(Physical("mass", least=0), "Mass of the rod", required=True),
         "share": Key(Number(least=0, most=1), "Reciprocating share of the mass", absent="1/2"),
         "center_of_gravity": Key(
-            Physical("length", least=0), "Distance of its centre of gravity from the crosshead pin", "a"
+            Physical("length", least=0),
+            "Distance of its centre of gravity from the crosshead pin",
+            "a",
+            instead="share",
+            needs="inertia",
         ),
-        "inertia": Key(Physical("inertia", least=0), "Moment of inertia about the centre of gravity", "I_r"),
+        "inertia": Key(
+            Physical("inertia", least=0),
+            "Moment of inertia about the centre of gravity",
+            "I_r",
+            needs="center_of_gravity",
+        ),
     }
 
-    @classmethod
-    def from_keys(
-        cls,
-        mass: float,
-        share: float | None = None,
-        center_of_gravity: float | None = None,
-        inertia: float | None = None,
-    ) -> ConnectingRod:
-        """Return the rod that these keys of a machine file describe; raises RuleError for contradictions."""
-        if share is not None and (center_of_gravity is not None or inertia is not None):
-            raise RuleError(
-                Fault(("share",), "'share' and 'center_of_gravity' say the same thing; leave one of them out")
-            )
-        return cls(mass, 0.5 if share is None else share, center_of_gravity, inertia)
-
     def __post_init__(self) -> None:
-        check_bounds(self.KEYS, mass=self.mass, share=self.share, inertia=self.inertia)
-        check_bounds(self.KEYS, center_of_gravity=self.center_of_gravity)
-        if (self.center_of_gravity is None) != (self.inertia is None):
-            missing, given = ("inertia", "center_of_gravity")
-            if self.center_of_gravity is None:
-                missing, given = given, missing
-            raise RuleError(Fault((given,), f"'{given}' needs '{missing}' beside it"))
+        # its default stands beside a centre of gravity, and is then not used
+        check(self.KEYS, {**vars(self), "share": None if self.exact else self.share})
 
     @property
     def exact(self) -> bool:
@@ -65,11 +55,9 @@ class ConnectingRod:
 
     def at_crosshead(self, length: float) -> float:
         """Mass in kg that goes to and fro: the share, or m (1 − a/L) with the length L of the rod in m."""
-        return (
-            self.mass * self.share
-            if self.center_of_gravity is None
-            else self.mass * (1 - self.center_of_gravity / length)
-        )
+        if self.center_of_gravity is None:
+            return self.mass * self.share
+        return self.mass * (1 - self.center_of_gravity / length)
 
     def at_pin(self, length: float) -> float:
         """Mass in kg that turns with the crank pin: what the share leaves, or m a/L with the length L in m."""
@@ -89,7 +77,7 @@ class ConnectingRod:
 
 
 @dataclass(frozen=True, eq=False)
-class Masses:
+class Masses(Described):
     """Reciprocating masses in kg: the sum of piston, piston rod, crosshead and others, and the connecting rod."""
 
     parts: float
@@ -101,19 +89,17 @@ class Masses:
         "crosshead": Key(_ONE_OR_MORE, "Crosshead"),
         "other": Key(_ONE_OR_MORE, "Whatever else goes to and fro"),
         "connecting_rod": Key(
-            OneOf((Physical("mass", least=0), Record("kurbel.machine.masses:ConnectingRod"))),
+            OneOf(Physical("mass", least=0), Record("kurbel.machine.masses:ConnectingRod")),
             "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
         ),
     }
 
     @classmethod
-    def from_keys(
-        cls, connecting_rod: float | ConnectingRod | None = None, **parts: float | tuple[float, ...]
-    ) -> Masses:
+    def of_keys(cls, connecting_rod: float | ConnectingRod | None = None, **parts: float | tuple[float, ...]) -> Masses:
         """Return the masses that these keys of a machine file describe."""
         each = [mass for part in parts.values() for mass in (part if isinstance(part, tuple) else (part,))]
         if not each and connecting_rod is None:
-            raise RuleError(Fault((), "no mass is given; leave 'masses' out or give 'piston', 'crosshead', …"))
+            refuse(Fault((), "no mass is given; leave 'masses' out or give 'piston', 'crosshead', …"))
         rod = ConnectingRod(connecting_rod) if isinstance(connecting_rod, float) else connecting_rod
         return cls(math.fsum(each), rod)
 

@@ -6,16 +6,17 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from kurbel.declared.keys import Key, Keys, Physical, Record, Text
+from kurbel.declared.forms import Physical, Record, Text
+from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, Path, RuleError
+from kurbel.errors import Fault, Path, refuse
 
 if TYPE_CHECKING:
     from kurbel.machine.indicator import Indicator
 
 
 @dataclass(frozen=True, eq=False)
-class Piston:
+class Piston(Described):
     """A piston: bore and rod diameters in m, and what the indicator shows on its two sides."""
 
     bore: float
@@ -35,13 +36,13 @@ class Piston:
     }
 
     def __post_init__(self) -> None:
-        faults = [
-            Fault((key,), f"{show(rod, 'length')} is no thinner than the bore ({show(self.bore, 'length')})")
-            for key, rod in (("head_end_rod", self.head_end_rod), ("crank_end_rod", self.crank_end_rod))
-            if rod >= self.bore
-        ]
-        if faults:
-            raise RuleError(*faults)
+        refuse(
+            *(
+                Fault((key,), f"{show(rod, 'length')} is no thinner than the bore ({show(self.bore, 'length')})")
+                for key, rod in (("head_end_rod", self.head_end_rod), ("crank_end_rod", self.crank_end_rod))
+                if rod >= self.bore
+            )
+        )
 
     @property
     def head_area(self) -> float:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from kurbel.declared.keys import Key, Keys, Physical, check_bounds
-from kurbel.errors import Fault, RuleError
+from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Described, Key, Keys, check
+from kurbel.errors import Fault, refuse
 
 
 @dataclass(frozen=True, eq=False)
-class RamForce:
+class RamForce(Described):
     """A force in N on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
 
     work: float = 0.0
@@ -22,13 +23,13 @@ class RamForce:
     }
 
     def __post_init__(self) -> None:
-        check_bounds(self.KEYS, **{"work": self.work, "return": self.back})
+        check(self.KEYS, {"work": self.work, "return": self.back})
 
     @classmethod
-    def from_keys(cls, work: float | None = None, **others: float) -> RamForce:
+    def of_keys(cls, work: float | None = None, **others: float) -> RamForce:
         """Return the resistance that these keys of a machine file describe; raises RuleError where it has none."""
         if work is None and not others:
-            raise RuleError(Fault((), "give 'work', the force on the working stroke, or 'return', or both"))
+            refuse(Fault((), "give 'work', the force on the working stroke, or 'return', or both"))
         return cls(work or 0.0, others.get("return", 0.0))
 
 

@@ -6,19 +6,22 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.declared.bounds import Point, size_faults
-from kurbel.declared.keys import Key, Keys, Number, Physical, Points, UnitName
+from kurbel.declared.forms import Number, Physical, Points, UnitName
+from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
-from kurbel.errors import Fault, RuleError
+from kurbel.errors import Fault, refuse
 from kurbel.machine.angle_points import angle_faults, beyond_cycle
 
 _TORQUE_KEYS: Keys = {
-    "unit": Key(UnitName("torque"), "Unit of the torques"),
-    "points": Key(Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M"),
+    "unit": Key(UnitName("torque"), "Unit of the torques", needs="points"),
+    "points": Key(
+        Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M", needs="unit"
+    ),
 }
 
 
 @dataclass(frozen=True, eq=False)
-class Flywheel:
+class Flywheel(Described):
     """A flywheel: its moment of inertia J in kg m², and the wanted coefficient of fluctuation δ; either may be None."""
 
     inertia: float | None = None
@@ -38,21 +41,19 @@ class Flywheel:
     }
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls, inertia: float | None = None, gd2: float | None = None, fluctuation: float | None = None
     ) -> Flywheel:
-        """Return the flywheel with J = inertia or GD²/4; raises RuleError when both or nothing is given."""
-        if inertia is not None and gd2 is not None:
-            raise RuleError(Fault(("gd2",), "'inertia' and 'gd2' say the same thing; leave one of them out"))
+        """Return the flywheel with J = inertia or GD²/4."""
         return cls(gd2 / 4 if gd2 is not None else inertia, fluctuation)
 
     def __post_init__(self) -> None:
         if self.inertia is None and self.fluctuation is None:
-            raise RuleError(Fault((), "a flywheel needs 'inertia', 'gd2' or the wanted 'fluctuation'"))
+            refuse(Fault((), "a flywheel needs 'inertia', 'gd2' or the wanted 'fluctuation'"))
 
 
 @dataclass(frozen=True, eq=False)
-class Effort:
+class Effort(Described):
     """A turning-moment diagram: torques in N m over crank angles in degrees, from 0 to 360 or 720, ascending.
 
     Two points at one angle are a jump.
@@ -64,11 +65,9 @@ class Effort:
     KEYS: ClassVar[Keys] = {name: key._replace(required=True) for name, key in _TORQUE_KEYS.items()}
 
     @classmethod
-    def from_keys(cls, unit: Factor, points: list[Point]) -> Effort:
+    def of_keys(cls, unit: Factor, points: list[Point]) -> Effort:
         """Return the diagram that these keys of a machine file describe; raises RuleError."""
-        faults = angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))
-        if faults:
-            raise RuleError(*faults)
+        refuse(*(angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))))
         up, down = unit
         return cls(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
 
@@ -78,7 +77,7 @@ class Effort:
 
 
 @dataclass(frozen=True, eq=False)
-class Load:
+class Load(Described):
     """The resistance at the shaft, in exactly one of three forms.
 
     power: k of a torque ∝ ω^k that equals the mean effort at the nominal speed; slip: s of a torque
@@ -96,7 +95,7 @@ class Load:
     }
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls,
         power_law: float | None = None,
         slip: float | None = None,
@@ -104,20 +103,17 @@ class Load:
         points: list[Point] | None = None,
     ) -> Load:
         """Return the load that these keys of a machine file describe; raises RuleError."""
-        if (unit is None) != (points is None):
-            given, missing = ("points", "unit") if unit is None else ("unit", "points")
-            raise RuleError(Fault((given,), f"'{given}' needs '{missing}' beside it"))
-        diagram = None if unit is None or points is None else Effort.from_keys(unit, points)
+        diagram = None if unit is None or points is None else Effort.from_keys(unit=unit, points=points)
         return cls(power_law, slip, diagram)
 
     def __post_init__(self) -> None:
         forms = {"power_law": self.power, "slip": self.slip, "points": self.diagram}
         given = [name for name, value in forms.items() if value is not None]
         if not given:
-            raise RuleError(Fault((), "give one of 'power_law', 'slip' or 'points'; or write 'load: constant'"))
+            refuse(Fault((), "give one of 'power_law', 'slip' or 'points'; or write 'load: constant'"))
         if len(given) > 1:
             names = " and ".join(f"'{name}'" for name in given)
-            raise RuleError(Fault((given[1],), f"{names} are different loads; keep one of them"))
+            refuse(Fault((given[1],), f"{names} are different loads; keep one of them"))
 
     def cycle_fault(self, cycle: str) -> str:
         """Return what does not fit the cycle of the machine, or an empty text."""
@@ -125,7 +121,7 @@ class Load:
 
 
 @dataclass(frozen=True, eq=False)
-class Coupling:
+class Coupling(Described):
     """An elastic coupling: stiffness in N m/rad, damping in N m s/rad, and the driven moment of inertia in kg m²."""
 
     stiffness: float

@@ -7,73 +7,35 @@ from it. Numbers stay text: what a scalar means is decided by the key that it st
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 from kurbel.declared.bounds import MOST_POINTS
-from kurbel.errors import Path, Step
-from kurbel.machine_file.runs import Run, without_runs
-from kurbel.machine_file.source import Place, shown
+from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, shown
+from kurbel.errors import Fault, Path, Step
 
 DEPTH_LIMIT = 32
 _MOST_SCALARS = 3 * MOST_POINTS
-FAULT_LIMIT = 100
-"""A file with more faults than this is not read on: it is no machine file, and suggestions cost time."""
 
 
-class Plain(str):
-    """A scalar without quotation marks."""
+def parse(text: str, reading: Reading) -> Any:
+    """Return the tree of a YAML text; what is wrong with it as YAML is noted.
 
-    __slots__ = ()
-
-
-class _Refused:
-    """What stands in place of a value that has been reported already; readers pass over it in silence."""
-
-    def __repr__(self) -> str:
-        return "REFUSED"
-
-
-REFUSED = _Refused()
-
-
-class Mistake(NamedTuple):
-    """What is wrong with the file as YAML, or with the record that stands at a path: its place and what to write."""
-
-    place: Place
-    path: Path
-    message: str
-
-
-class StopReading(Exception):
-    """The rest of the file cannot be read."""
-
-
-def parse(text: str) -> tuple[Any, list[Mistake]]:
-    """Return the tree of a YAML text and what is wrong with it as YAML.
-
-    The tree is made of dict, list, `Plain` and str, with REFUSED in place of what was reported; it is REFUSED as a
-    whole when the text could not be read to its end.
+    The tree has REFUSED in place of what was noted; it is REFUSED as a whole when the text could not be read to its
+    end.
     """
-    short, runs = without_runs(text, Plain)
-    builder = Builder(runs)
-    whole = run(short, builder)
-    if short != text and (not whole or builder.mistakes or runs):  # whatever is amiss is told of the text as it stands
-        builder = Builder({})
-        whole = run(text, builder)
-    if not whole:
-        return REFUSED, builder.mistakes
+    builder = Builder(reading)
+    if not run(text, builder):
+        return REFUSED
     root = builder.root
     # outer ones first: what lies inside a refused value may have been overwritten by a key given twice
-    for path in sorted((mistake.path for mistake in builder.mistakes), key=len):
+    for path in sorted((fault.path for fault in reading.faults), key=len):
         root = _refused_at(root, path)
-    return root, builder.mistakes
+    return root
 
 
 def run(text: str, builder: Builder) -> bool:
     """Send all events of a text to the builder and return whether the text could be read to its end."""
     import yaml
-
-    from kurbel.machine_file.syntax import explain
 
     loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     handlers = {
@@ -93,7 +55,9 @@ def run(text: str, builder: Builder) -> bool:
     except StopReading:
         return False
     except yaml.MarkedYAMLError as error:
-        builder.mistakes.append(explain(error, text))
+        from kurbel.machine_file.syntax import explain
+
+        builder.broken(explain(error, text))
         return False
     return True
 
@@ -121,23 +85,23 @@ _ODD_KEY = _OddKey("?")
 
 
 class Builder:
-    """Builds the tree from the events and collects mistakes.
+    """Builds the tree from the events and notes what is wrong.
 
     A mapping or list is put into its parent when it begins, so that the way down from the root is known at every event.
     """
 
-    def __init__(self, runs: dict[int, Run]) -> None:
+    def __init__(self, reading: Reading) -> None:
         self.root: Any = Plain("")
-        self._runs = runs  # those taken are taken out
-        self.mistakes: list[Mistake] = []
+        self._reading = reading
         self._open: list[dict[str, Any] | list[Any]] = []
-        self._steps: list[
-            Step
-        ] = []  # under which each open mapping or list stands; that of the root counts for nothing
-        self._brackets: list[bool] = []  # whether each open list stands in brackets
+        self._steps: list[Step] = []  # under which each of them stands; that of the root counts for nothing
         self._key: str | None = None  # of the innermost mapping, while its value is due
         self._documents = 0
         self._scalars = 0
+
+    def broken(self, fault: Fault) -> None:
+        """Note why the text cannot be read to its end."""
+        self._reading.faults.append(fault)
 
     def scalar(self, event: Any) -> None:
         """Take a scalar: a key or a value."""
@@ -165,15 +129,10 @@ class Builder:
     def sequence(self, event: Any) -> None:
         """Begin a list."""
         self._begin([], event)
-        run = self._runs.get(event.start_mark.index)
-        if run and self._brackets[:-1][-1:] == [run.in_brackets] and isinstance(parent := self._open[-2], list):
-            parent.extend(run.pairs)
-            del self._runs[event.start_mark.index]
 
     def end(self, event: Any) -> None:
         """End the innermost mapping or list."""
         self._open.pop()
-        self._brackets.pop()
         if isinstance(self._steps.pop(), _OddKey):
             self._key = _ODD_KEY
 
@@ -198,7 +157,6 @@ class Builder:
                 self._key = _ODD_KEY
         self._place(container, event)
         self._open.append(container)
-        self._brackets.append(bool(event.flow_style))
         self._steps.append(step)
 
     def _place(self, value: Any, event: Any) -> None:
@@ -246,9 +204,4 @@ class Builder:
 
     def _report(self, event: Any, path: Path, message: str) -> None:
         mark = event.start_mark
-        self.mistakes.append(Mistake(Place(mark.line, mark.column), path, message))
-        if len(self.mistakes) >= FAULT_LIMIT:
-            self.mistakes[-1] = self.mistakes[-1]._replace(
-                message=f"{message} (reading stopped after {FAULT_LIMIT} faults)"
-            )
-            raise StopReading
+        self._reading.note(Fault(path, message).at(mark.line, mark.column))

@@ -5,14 +5,16 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from kurbel.declared.forms import Record
+from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, glued_hint, kind_of
+from kurbel.errors import Fault
 from kurbel.machine import Machine
 from kurbel.machine_file import source
-from kurbel.machine_file.events import REFUSED, Mistake, Plain, parse
-from kurbel.machine_file.reading import Reading, TooManyFaults
-from kurbel.machine_file.scalars import glued_hint
-from kurbel.machine_file.source import Place, Source
-from kurbel.machine_file.structures import read_record
-from kurbel.machine_file.words import kind_of
+from kurbel.machine_file.events import parse
+from kurbel.machine_file.source import Source
+
+ROOT = Record("kurbel.machine:Machine")
+"""The form of a whole machine file."""
 
 
 def load(path: str | os.PathLike[str]) -> Machine:
@@ -37,11 +39,12 @@ def loads(text: str, name: str = "<text>") -> Machine:
 
 def read_machine(origin: Source) -> Machine:
     """Return the machine that a source describes; raises MachineFileError."""
-    tree, mistakes = parse(origin.text)
-    reading = Reading(origin.folder)
+    reading = Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
+    tree = parse(origin.text, reading)
+    known = len(reading.faults)  # YAML has told their places
     machine = REFUSED if tree is REFUSED else _machine(reading, tree, origin.stem)
-    if mistakes or reading.findings:
-        raise origin.error([*mistakes, *_located(origin.text, reading)])
+    if reading.faults:
+        raise origin.error(*reading.faults[:known], *_located(origin.text, reading.faults[known:]))
     assert isinstance(machine, Machine)
     return machine
 
@@ -49,20 +52,18 @@ def read_machine(origin: Source) -> Machine:
 def _machine(reading: Reading, tree: Any, stem: str) -> Any:
     try:
         if isinstance(tree, dict):
-            return read_record(reading, Machine, tree, (), **({} if "name" in tree else {"name": stem}))
+            return ROOT.read(reading, {"name": stem, **tree}, ())
         if isinstance(tree, Plain) and not tree:
             return reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")
-        hint = glued_hint(tree) if isinstance(tree, str) else ""
-        return reading.fault((), f"expected lines such as 'crank: 400 mm', got {kind_of(tree)}{hint}")
-    except TooManyFaults:
+        return reading.fault((), f"expected lines such as 'crank: 400 mm', got {kind_of(tree)}{glued_hint(tree)}")
+    except StopReading:
         return REFUSED
 
 
-def _located(text: str, reading: Reading) -> list[Mistake]:
-    """Return the findings of a reading with their places in the text."""
-    if not reading.findings:
+def _located(text: str, faults: list[Fault]) -> list[Fault]:
+    """Return the faults with their places in the text."""
+    if not faults:
         return []
-    from kurbel.machine_file.positions import locate
+    from kurbel.machine_file.positions import located
 
-    places: list[Place] = locate(text, [(path, at_key) for path, _, at_key in reading.findings])
-    return [Mistake(place, path, message) for place, (path, message, _) in zip(places, reading.findings)]
+    return located(text, faults)

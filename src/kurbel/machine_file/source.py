@@ -7,20 +7,14 @@ import re
 from typing import NamedTuple
 
 from kurbel.declared.numerals import SPACES
-from kurbel.errors import LocatedFault, MachineFileError, Path, UnreadableFileError
+from kurbel.declared.reading import LONGEST_VALUE, shown
+from kurbel.errors import Fault, MachineFileError, Path, UnreadableFileError
 
 SIZE_LIMIT = 16 * 1024 * 1024
 """Largest machine file in bytes; a longer measurement belongs into a file of its own."""
 _LINE_END = re.compile(r"\r\n|[\n\r\x85\u2028\u2029]")  # what YAML takes for the end of a line, no more
 _SPACE = re.compile(f"[{SPACES}]")  # YAML takes them for letters
 _UNPRINTABLE = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")  # as YAML has it
-
-
-class Place(NamedTuple):
-    """Line and column in characters, both from 0."""
-
-    line: int
-    column: int
 
 
 class Source(NamedTuple):
@@ -33,21 +27,24 @@ class Source(NamedTuple):
     @property
     def stem(self) -> str:
         """The name a machine gets from its file."""
-        stem = os.path.splitext(os.path.basename(self.name))[0]
-        return "machine" if self.name.startswith("<") or not stem.isprintable() else stem
+        stem = os.path.splitext(os.path.basename(self.name))[0].strip()
+        named = stem.isprintable() and stem and not self.name.startswith("<")
+        return stem[:LONGEST_VALUE] if named else "machine"
 
     def lines(self) -> list[str]:
         """Return the lines, split where YAML splits them."""
         return _LINE_END.split(self.text)
 
-    def error(self, faults: list[tuple[Place, Path, str]]) -> MachineFileError:
+    def error(self, *faults: Fault) -> MachineFileError:
         """Return these faults as an error, each once and in the order of the file."""
         lines = [*self.lines(), ""]  # the end of a file may be a place, too
-        located = [
-            LocatedFault(place.line + 1, place.column + 1, _shown_path(path), message, lines[place.line])
-            for place, path, message in sorted(dict.fromkeys(faults), key=lambda fault: fault[0])
-        ]
-        return MachineFileError(self.name, located)
+        return MachineFileError(
+            self.name,
+            [
+                fault._replace(path=_shown_path(fault.path), source_line=lines[fault.line - 1])
+                for fault in sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column))
+            ],
+        )
 
 
 def read(path: str | os.PathLike[str]) -> Source:
@@ -91,8 +88,7 @@ def decode(name: str, content: bytes, folder: str = "") -> Source:
             "put measured pressures into a csv file and name it under 'trace'"
         )
     if content[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in content[:2]:
-        message = "the file is UTF-16; save it as UTF-8"
-        raise Source(name, "").error([(Place(0, 0), (), message)])
+        raise Source(name, "").error(Fault((), "the file is UTF-16; save it as UTF-8").at(0, 0))
     try:
         source = Source(name, _SPACE.sub(" ", content.decode("utf-8-sig")), folder)
     except UnicodeDecodeError as error:
@@ -100,7 +96,7 @@ def decode(name: str, content: bytes, folder: str = "") -> Source:
     found = _UNPRINTABLE.search(source.text)
     if found:
         message = f"the character U+{ord(found.group()):04X} cannot be printed; remove it"
-        raise source.error([(place_of(source.text, found.start()), (), message)])
+        raise source.error(Fault((), message).at(*_place_of(source.text, found.start())))
     return source
 
 
@@ -109,25 +105,15 @@ def _encoding_error(name: str, content: bytes, start: int) -> MachineFileError:
     read_as = content[start : start + 1].decode("latin-1")
     hint = f", in Latin-1 the letter '{read_as}'" if read_as.isalpha() else ""
     message = f"byte 0x{content[start]:02X} is no UTF-8{hint}; save the file as UTF-8"
-    shown = Source(name, before + content[start:].decode("latin-1"))
-    return shown.error([(place_of(before, len(before)), (), message)])
+    readable = Source(name, before + content[start:].decode("latin-1"))
+    return readable.error(Fault((), message).at(*_place_of(before, len(before))))
 
 
-def place_of(text: str, index: int) -> Place:
-    """Return line and column of the character at an index."""
+def _place_of(text: str, index: int) -> tuple[int, int]:
+    """Return line and column, from 0, of the character at an index."""
     lines = _LINE_END.split(text[:index])
-    return Place(len(lines) - 1, len(lines[-1]))
+    return len(lines) - 1, len(lines[-1])
 
 
 def _shown_path(path: Path) -> Path:
     return tuple(shown(step) if isinstance(step, str) else step for step in path)
-
-
-LONGEST_VALUE = 200
-"""Characters of a value; what is longer is no number, and would flood the message."""
-
-
-def shown(text: str, most: int = 60) -> str:
-    """Write a text from the file so that it fits into one line of a message and cannot steer a terminal."""
-    flat = "".join(c if c.isprintable() else " " if c in "\t\r\n" else f"\\u{ord(c):04x}" for c in text[: most + 1])
-    return flat if len(flat) <= most else flat[: most - 3] + "…"

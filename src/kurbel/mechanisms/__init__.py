@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from kurbel.declared.keys import Keys, Record
-from kurbel.errors import Fault, RuleError
+from kurbel.declared.forms import Record
+from kurbel.declared.keys import Described, Keys
+from kurbel.errors import Fault, refuse
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ class Swing(NamedTuple):
     curvature: Any
 
 
-class Mechanism:
+class Mechanism(Described):
     """What every mechanism supplies. It serves forces, work and torque through these alone:
 
     1. `KEYS`, its keys in the machine file, and its geometric rules, raised as RuleError at birth;
@@ -233,9 +234,7 @@ class Mechanism:
 def check_lengths(**lengths: float) -> None:
     """Raise RuleError for every length that is not positive and finite."""
     wrong = [name for name, value in lengths.items() if not 0 < value < float("inf")]
-    faults = [Fault((name,), "must be a positive, finite length") for name in wrong]
-    if faults:
-        raise RuleError(*faults)
+    refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
 
 
 def fan(centre: float, width: float) -> tuple[float, ...]:

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
-from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Key, Keys, check
 from kurbel.errors import Fault, RuleError
 
 PIN_KEYS: Keys = {
     "pin_diameter": Key(
-        Physical("length", above=0), "Diameter of the crank pin; needs `pin_length`", "d_z", absent="no pin pressure"
+        Physical("length", above=0),
+        "Diameter of the crank pin; needs `pin_length`",
+        "d_z",
+        absent="no pin pressure",
+        needs="pin_length",
     ),
     "pin_length": Key(
-        Physical("length", above=0), "Length of the crank pin in its block; needs `pin_diameter`", "l_z", absent="same"
+        Physical("length", above=0),
+        "Length of the crank pin in its block; needs `pin_diameter`",
+        "l_z",
+        absent="same",
+        needs="pin_diameter",
     ),
 }
 
@@ -24,11 +33,9 @@ def projected_area(diameter: float | None, length: float | None) -> float | None
 
     Raises RuleError where only one of both is given, or one is not positive and finite.
     """
-    if diameter is None and length is None:
-        return None
+    check(PIN_KEYS, {"pin_diameter": diameter, "pin_length": length})
     if diameter is None or length is None:
-        given, missing = ("pin_length", "pin_diameter") if diameter is None else ("pin_diameter", "pin_length")
-        raise RuleError(Fault((given,), f"'{given}' needs '{missing}' beside it"))
+        return None
     for name, value in (("pin_diameter", diameter), ("pin_length", length)):
         if not 0 < value < float("inf"):
             raise RuleError(Fault((name,), "must be a positive, finite length"))

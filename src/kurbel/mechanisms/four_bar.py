@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, Swing, check_lengths, fan

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.declared.keys import Key, Keys, Physical, check_bounds
+from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Key, Keys, check
 from kurbel.mechanisms import Mechanism, Swing, check_lengths
 from kurbel.numerics.extreme import Extreme
 
@@ -38,7 +39,7 @@ class ParallelCrank(Mechanism):
 
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank, frame=self.frame)
-        check_bounds(self.KEYS, coupler_mass=self.coupler_mass)
+        check(self.KEYS, {"coupler_mass": self.coupler_mass})
 
     @property
     def stroke(self) -> float:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Key, Keys
 from kurbel.mechanisms import Mechanism, check_lengths
 from kurbel.mechanisms.crank_pin import NO_PIN, PIN_KEYS, projected_area
-from kurbel.mechanisms.slider_crank import CRANK_KEYS, one_of
+from kurbel.mechanisms.slider_crank import CRANK_KEYS
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class ScotchYoke(Mechanism):
     }
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls,
         crank: float | None = None,
         stroke: float | None = None,
@@ -52,7 +53,6 @@ class ScotchYoke(Mechanism):
         pin_length: float | None = None,
     ) -> ScotchYoke:
         """Return the Scotch yoke that these keys of a machine file describe; raises RuleError."""
-        one_of(("crank", crank), ("stroke", stroke), hint="crank: 400 mm")
         return cls(crank if crank is not None else (stroke or 0.0) / 2, guide_length, pin_diameter, pin_length)
 
     def __post_init__(self) -> None:

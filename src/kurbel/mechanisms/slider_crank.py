@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Key, Keys, Number, Physical
+from kurbel.declared.forms import Number, Physical
+from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, fan
@@ -17,8 +18,8 @@ from kurbel.numerics.extreme import Extreme
 
 _INFINITE = (("infinite", math.inf),)
 CRANK_KEYS: Keys = {
-    "crank": Key(Physical("length", above=0), "Crank radius; or give `stroke`", "R"),
-    "stroke": Key(Physical("length", above=0), "Stroke; or give `crank`", "s"),
+    "crank": Key(Physical("length", above=0), "Crank radius; or give `stroke`", "R", required=True, example="400 mm"),
+    "stroke": Key(Physical("length", above=0), "Stroke; or give `crank`", "s", instead="crank"),
 }
 """The size of the crank, shared by the mechanisms that can be given by their stroke."""
 
@@ -43,8 +44,9 @@ class SliderCrank(Mechanism):
             Physical("length", above=0, words=_INFINITE),
             "Length of the connecting rod, or `infinite`; or give `rod_ratio`",
             "L",
+            required=True,
         ),
-        "rod_ratio": Key(Number(above=1, words=_INFINITE), "L/R; or give `rod`", "L/R"),
+        "rod_ratio": Key(Number(above=1, words=_INFINITE), "L/R; or give `rod`", "L/R", instead="rod", example="5"),
         "offset": Key(
             Physical("length"),
             "Offset of the stroke line from the shaft, positive toward the side of the outstroke",
@@ -54,7 +56,7 @@ class SliderCrank(Mechanism):
     }
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls,
         crank: float | None = None,
         stroke: float | None = None,
@@ -63,8 +65,6 @@ class SliderCrank(Mechanism):
         offset: float = 0.0,
     ) -> SliderCrank:
         """Return the slider-crank that these keys of a machine file describe; raises RuleError."""
-        one_of(("crank", crank), ("stroke", stroke), hint="crank: 400 mm")
-        one_of(("rod", rod), ("rod_ratio", rod_ratio), hint="rod_ratio: 5")
         if crank is None:
             assert stroke is not None
             crank = _crank_of_stroke(stroke, rod, rod_ratio, offset)
@@ -234,15 +234,6 @@ class SliderCrank(Mechanism):
             value = self.crank * dip.value
             found += [Extreme(value, dip.degrees), Extreme(value, 360 - dip.degrees)]
         return tuple(found)
-
-
-def one_of(first: tuple[str, Any], second: tuple[str, Any], hint: str) -> None:
-    """Raise RuleError unless exactly one of two alternative keys is given."""
-    (name, value), (other, alternative) = first, second
-    if value is None and alternative is None:
-        raise RuleError(Fault((), f"'{name}' or '{other}' is missing; write for instance '{hint}'"))
-    if value is not None and alternative is not None:
-        raise RuleError(Fault((other,), f"'{name}' and '{other}' say the same thing; leave one of them out"))
 
 
 def _half_angle(sin: Any, cos: Any) -> tuple[Any, Any]:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, Swing, check_lengths, fan

@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.declared.keys import Key, Keys, Physical
+from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Key, Keys
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms.slider_crank import SliderCrank
 
@@ -40,7 +41,7 @@ class YokeFrame(SliderCrank):
     }
 
     @classmethod
-    def from_keys(
+    def of_keys(
         cls,
         crank: float | None = None,
         stroke: float | None = None,
@@ -50,7 +51,7 @@ class YokeFrame(SliderCrank):
         gland: float | None = None,
     ) -> YokeFrame:
         """Return the drive that these keys of a machine file describe; raises RuleError."""
-        plain = SliderCrank.from_keys(crank, stroke, rod, rod_ratio, offset)
+        plain = SliderCrank.of_keys(crank, stroke, rod, rod_ratio, offset)
         return cls(plain.crank, plain.rod, plain.offset, gland)
 
     def __post_init__(self) -> None:

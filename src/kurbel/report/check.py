@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from kurbel.declared.keys import Key, Physical
+from kurbel.declared.forms import Physical
 from kurbel.declared.quantities import KEY_VALUES, NOISE_POWER
 from kurbel.declared.unit_systems import SI, show
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
@@ -41,12 +41,9 @@ class Checked(NamedTuple):
     errors: tuple[KurbelError, ...]
 
 
-def checked(machine: Machine, commands: Sequence[str]) -> Checked:
-    """Return what is to be said of a machine; `commands` are those that exist.
-
-    Key values are computed only where the machine has limits.
-    """
-    judged = tuple(_limits(machine, commands))
+def checked(machine: Machine) -> Checked:
+    """Return what is to be said of a machine; key values are computed only where it has limits."""
+    judged = tuple(_limits(machine))
     limits = tuple(one for one in judged if isinstance(one, Entry))
     found = machine_notes(machine)
     sections = (
@@ -54,7 +51,6 @@ def checked(machine: Machine, commands: Sequence[str]) -> Checked:
         *(_cylinder_section(machine, cylinder, found) for cylinder in machine.cylinders),
         Section("Whole machine", tuple(_turning_entries(machine))),
         Section("Crankshaft", tuple(_crankshaft_entries(machine))),
-        Section("Not used yet", tuple(_unused(machine, commands))),
         Section("Limits", limits),
     )
     broken = any(entry.bad for entry in limits)
@@ -138,31 +134,16 @@ def _described(mechanism: Mechanism) -> str:
     return f"{mechanism.name}: {', '.join(lengths)}"
 
 
-def _unused(machine: Machine, commands: Sequence[str]) -> Iterable[Entry]:
-    """Yield the keys that are given, but belong to commands that do not exist."""
-    for name, key in Machine.KEYS.items():
-        if _pending(key, commands) and getattr(machine, name, None) not in (None, 1.0):
-            yield Entry(
-                name, f"read and checked; it is for kurbel {' and '.join(key.commands)}, which does not exist yet"
-            )
-
-
-def _pending(key: Key, commands: Sequence[str]) -> bool:
-    return bool(key.commands) and not any(command in commands for command in key.commands)
-
-
-def _limits(machine: Machine, commands: Sequence[str]) -> Iterable[Entry | KurbelError]:
+def _limits(machine: Machine) -> Iterable[Entry | KurbelError]:
     """Yield how each limit stands, or why that cannot be told."""
     if not machine.limits:
         return
-    from kurbel.report.limits import command_of, limited_values
+    from kurbel.report.limits import limited_values
 
-    values, errors = limited_values(machine, (name for name, _ in machine.limits if command_of(name) in commands))
+    values, errors = limited_values(machine, (name for name, _ in machine.limits))
     for name, bound in machine.limits:
         found = [(where, value) for where, id, value in values if id == name]
-        if command_of(name) not in commands:
-            yield Entry(name, f"not checked: kurbel {command_of(name)} does not exist yet")
-        elif name in errors:
+        if name in errors:
             yield type(errors[name])(f"limits.{name}: {errors[name]}")
         elif not found:
             text = KEY_VALUES[name].text

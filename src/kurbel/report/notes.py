@@ -32,7 +32,7 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
     ]
     found += [Note(None, text) for text in speed_notes(machine)]
     found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in size_notes(cylinder)]
-    if machine.brake_power is not None or any(hasattr(chamber, "samples") for _, _, chamber in chambers):
+    if machine.brake_power is not None or any(hasattr(chamber, "angle_zero") for _, _, chamber in chambers):
         found += _on_measurements(machine, case)
     return tuple(dict.fromkeys(found))
 

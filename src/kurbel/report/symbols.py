@@ -5,25 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
-from kurbel.declared.keys import (
-    Choice,
-    Count,
-    Form,
-    Inline,
-    Key,
-    Keyed,
-    Listing,
-    Number,
-    OneOf,
-    Physical,
-    Points,
-    Record,
-    Variant,
-    load,
-)
+from kurbel.declared.forms import Record
+from kurbel.declared.keys import Keys, required
 from kurbel.declared.quantities import COLUMNS, FACTORS, KEY_VALUES, STRESSES, Quantity
 from kurbel.declared.unit_systems import SI, TECHNICAL
-from kurbel.declared.units import example
 
 _HEAD = """# Symbols, quantities and keys
 
@@ -64,73 +49,26 @@ def _sizes() -> str:
 
 def _records() -> Iterable[str]:
     """Yield a table of keys for the machine and for every record that its keys lead to, each record once."""
-    from kurbel.machine import Machine
-
     seen: set[str] = set()
-    waiting: list[tuple[str, type]] = [("machine", Machine)]
+    waiting = [("machine", Record("kurbel.machine:Machine"))]
     while waiting:
         name, record = waiting.pop(0)
-        if record.__qualname__ in seen:
-            continue
-        seen.add(record.__qualname__)
-        keys: dict[str, Key] = record.KEYS  # type: ignore[attr-defined]
-        yield _keys(name, keys)
-        waiting += [(word, load(inner)) for key in keys for word, inner in _inner(key, keys[key].form)]
+        if record.target not in seen:
+            seen.add(record.target)
+            yield _keys(name, record.keys)
+            waiting += [one for word, key in record.keys.items() for one in key.form.records(word)]
 
 
-def _keys(name: str, keys: dict[str, Key]) -> str:
+def _keys(name: str, keys: Keys) -> str:
+    needed = required(keys)
     rows = [
-        f"| `{word}` | {_cell(key.symbol)} | {_cell(_form(key.form))} | {_cell(key.text)} | {_absent(key)} |"
+        f"| `{word}` | {_cell(key.symbol)} | {_cell(key.form.written())} | {_cell(key.text)} | "
+        f"{'must be given' if word in needed else _cell(key.absent)} |"
         for word, key in keys.items()
-        if not isinstance(key.form, Inline)
+        if not key.form.shared
     ]
     head = ["| key | symbol | form | meaning | absent |", "|---|---|---|---|---|"]
     return "\n".join([f"### {name}\n", *head, *rows, ""])
-
-
-def _absent(key: Key) -> str:
-    return "must be given" if key.required else _cell(key.absent)
-
-
-def _inner(word: str, form: Form) -> Iterable[tuple[str, Record]]:
-    """Yield the records that a key leads to, with the word that names them."""
-    if isinstance(form, Record):
-        yield word, form
-    elif isinstance(form, Inline):
-        yield word, form.record
-    elif isinstance(form, Listing):
-        yield from _inner(word, form.item)
-    elif isinstance(form, OneOf):
-        for one in form.forms:
-            yield from _inner(word, one)
-    elif isinstance(form, Keyed):
-        for case, one in (*form.cases, ("card", form.otherwise)):
-            yield from _inner(case, one)
-    elif isinstance(form, Variant):
-        for case, record in form.cases:
-            yield f"{word}: {case}", record
-
-
-def _form(form: Form) -> str:
-    """Return in a few words what is written for a key."""
-    if isinstance(form, Physical):
-        words = "".join(f", or `{word}`" for word, _ in form.words)
-        return f"`{example(form.kind)}`{words}"
-    if isinstance(form, (Number, Count)):
-        return "a number" if isinstance(form, Number) else "a whole number"
-    if isinstance(form, Choice):
-        return ", ".join(f"`{word}`" for word in form.words)
-    if isinstance(form, Points):
-        return f"`[[{form.x}, {form.y}], …]`"
-    if isinstance(form, Listing):
-        return f"a list; each {_form(form.item)}"
-    if isinstance(form, OneOf):
-        return " or ".join(_form(one) for one in form.forms)
-    if isinstance(form, Variant):
-        return ", ".join(f"`{word}`" for word, _ in form.cases)
-    return {"Text": "text", "UnitName": "a unit", "FilePath": "a path", "Limits": "`{key value: bound}`"}.get(
-        type(form).__name__, "a mapping"
-    )
 
 
 def _cell(text: str) -> str:

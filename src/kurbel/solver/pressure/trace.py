@@ -40,7 +40,7 @@ class TracePressure:
         inner, outer = place.mechanism.dead_centres()
         # what is added to an angle of the trace to make it a crank angle
         self.shift = (outer if place.mirrored else inner) - trace.angle_zero
-        angles, pressures = trace.samples.angles + self.shift, trace.samples.pressures - place.base
+        angles, pressures = trace.angles + self.shift, trace.pressures - place.base
         wide = np.diff(angles) > 0
         piece = _Piece(angles[:-1][wide], angles[1:][wide], pressures[:-1][wide], pressures[1:][wide])
         starts = np.mod(piece.start, place.cycle)
@@ -66,7 +66,7 @@ class TracePressure:
         Samples at equal angles: trapezoid of p z′, z′ = dz/dφ exact, which for a periodic pressure converges far faster
         than the straight lines between the samples. Otherwise: the exact integral of those straight lines.
         """
-        return self._trapezoid("slope") if self.trace.samples.even else self.straight_area
+        return self._trapezoid("slope") if self.trace.even else self.straight_area
 
     @cached_property
     def area_by_angle(self) -> float:

@@ -1,0 +1,298 @@
+"""Forms of mappings: a mapping becomes a record once all of its keys could be read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any, NoReturn
+
+from kurbel.declared.forms.scalars import Choice, reference, refused
+from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, none_of, required
+from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, glued_hint, kind_of
+from kurbel.errors import Fault, Path, RuleError
+from kurbel.near_words import near
+
+_TOO_EXTREME = "these numbers are too large or too small to compute with"
+
+
+class Record(Form):
+    """A mapping that becomes a record; `target` names it as `module:Class`, so that it is imported only when needed."""
+
+    shape = dict
+
+    def __init__(self, target: str) -> None:
+        self.target = target
+
+    def load(self) -> type[Described]:
+        """Import and return the class."""
+        from importlib import import_module
+
+        module, name = self.target.split(":")
+        found: type[Described] = getattr(import_module(module), name)
+        return found
+
+    @property
+    def keys(self) -> Keys:
+        """The keys of the class."""
+        return self.load().KEYS
+
+    def expected(self) -> str:
+        return f"a mapping with the keys {', '.join(self.keys)}"
+
+    def records(self, word: str) -> Iterator[tuple[str, Record]]:
+        yield word, self
+
+    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
+        for name, key in self.keys.items():
+            yield from key.form.places_of(name, path, words)
+
+    def own_names(self) -> list[str]:
+        """Return the names of the keys that stand in the mapping itself."""
+        return [name for name, key in self.keys.items() if not key.form.shared]
+
+    def all_names(self, mapping: Tree) -> dict[str, None]:
+        """Return the names of all keys that this mapping may have: its own, inline ones, those of the variant."""
+        names = dict.fromkeys(self.own_names())
+        for name, key in self.keys.items():
+            names |= dict.fromkeys(key.form.names(name, mapping))
+        return names
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read a mapping into a record."""
+        if not isinstance(value, dict):
+            no_mapping(self, value)
+        known = self.all_names(value)
+        unknown = [name for name in value if name not in known]
+        # a misspelt key counts as given but unreadable, so that nobody is told that it is missing as well
+        meant = dict.fromkeys(self._unknown(reading, value, unknown, tuple(known), path), REFUSED)
+        return self.build(reading, value | meant, path)
+
+    def build(self, reading: Reading, mapping: Tree, path: Path, inline: bool = False) -> Any:
+        """Read the keys of the record out of a mapping that may hold those of others."""
+        own = self.own_names()
+        rest = {name: value for name, value in mapping.items() if name not in own}
+        missing = required(self.keys)
+        values: Tree = {}
+        for name, key in self.keys.items():
+            found = key.form.find(reading, name, mapping, rest, path)
+            if found is not ABSENT:
+                values[name] = found
+            elif name in missing:
+                # of an inline record, point at what is there of it
+                beside = next((given for given in own if given in mapping), "") if inline else ""
+                where = (*path, beside) if beside else path
+                values[name] = reading.fault(where, _missing(name, key, beside), bool(beside))
+        try:
+            return self._born(reading, values, path)
+        except RuleError as error:
+            return reading.refuse(path, RuleError(*(self._flat(fault, mapping) for fault in error.faults)))
+
+    def _born(self, reading: Reading, values: Tree, path: Path) -> Any:
+        """Make the record, or note what it has to say of single keys where others could not be read."""
+        cls = self.load()
+        if REFUSED in values.values():
+            faults = [fault for name, value in values.items() for fault in cls.faults_of_key(name, value)]
+            return reading.refuse(path, RuleError(*faults))
+        try:
+            born = cls.from_keys(**values)
+        except ArithmeticError:
+            refused(_TOO_EXTREME)
+        return born if _finite(born, values) else refused(_TOO_EXTREME)
+
+    def _flat(self, fault: Fault, mapping: Tree) -> Fault:
+        for key in self.keys.values():
+            fault = key.form.flat(fault, mapping)
+        return fault
+
+    def _unknown(
+        self, reading: Reading, mapping: Tree, unknown: list[str], known: tuple[str, ...], path: Path
+    ) -> Iterator[str]:
+        """Note a fault for each unknown key and yield the known ones that were probably meant."""
+        elsewhere: dict[str, str] = {}
+        for key in self.keys.values() if unknown else ():
+            elsewhere |= key.form.moved(mapping)
+        listed = False
+        for name in unknown:
+            meant = "" if name in elsewhere else near(name, known)
+            message = elsewhere.get(name) or _unknown_message(reading, name, meant)
+            if not message:
+                message = "unknown key" if listed else f"unknown key; known here are {', '.join(known)}"
+                listed = True
+            reading.fault((*path, name), message, at_key=True)
+            if meant and meant not in mapping:
+                yield meant
+
+    def schema(self, definitions: Schema) -> Schema:
+        name = self.target.split(":")[1]
+        if name not in definitions:
+            definitions[name] = self.object_schema(definitions)
+        return reference(name)
+
+    def object_schema(self, definitions: Schema) -> Schema:
+        """Return the schema of the mapping itself."""
+        properties: Schema = {}
+        rules: list[Schema] = []
+        self.describe_all(properties, rules, definitions)
+        schema = {"type": "object", "additionalProperties": False, "properties": properties}
+        return schema | demands(self.keys) | ({"allOf": rules} if rules else {})
+
+    def describe_all(self, properties: Schema, rules: list[Schema], definitions: Schema) -> None:
+        """Add all keys to the schema of a mapping, those of other records after its own."""
+        for name, key in sorted(self.keys.items(), key=lambda item: item[1].form.shared):
+            key.form.describe(name, key, properties, rules, definitions)
+
+
+def demands(keys: Keys) -> Schema:
+    """Return the schema of the keys that must be given."""
+    return {"required": needed} if (needed := required(keys)) else {}
+
+
+def no_mapping(form: Form, value: Any) -> NoReturn:
+    """Raise RuleError for a value that is no mapping."""
+    if isinstance(value, Plain) and not value:
+        refused(f"nothing stands here; write below it, indented, {form.expected()}")
+    refused(f"expected {form.expected()}, got {kind_of(value)}{glued_hint(value)}")
+
+
+def _missing(name: str, key: Key, beside: str) -> str:
+    meaning = key.text[:1].lower() + key.text[1:]
+    return f"'{name}' is missing{' beside it' if beside else ''}: {meaning}; {key.write(name)}"
+
+
+def _unknown_message(reading: Reading, name: str, meant: str) -> str:
+    """Return what was probably meant by an unknown key, or an empty text where nothing is like it."""
+    if meant:
+        return f"unknown key; did you mean '{meant}'?"
+    if name == "<<":
+        return "merging is not supported; write the keys themselves"
+    home = reading.where_it_belongs(name)
+    return f"does not belong here; {home}" if home else ""
+
+
+def _finite(born: Any, values: Tree) -> bool:
+    """Return whether every number of a record is finite, or infinite by a word of the file or by default."""
+    meant = any(value == math.inf for value in values.values() if isinstance(value, float))
+    return all(
+        math.isfinite(value) or (value == math.inf and (meant or getattr(type(born), name, 0) == math.inf))
+        for name, value in vars(born).items()
+        if isinstance(value, float)
+    )
+
+
+class Variant(Form):
+    """Keys of the same mapping that depend on the word under this one: those of the mechanism, say."""
+
+    def __init__(self, default: str, cases: dict[str, Record]) -> None:
+        self.default, self.cases = default, cases
+
+    @property
+    def _words(self) -> Choice:
+        return Choice(tuple(self.cases))
+
+    def expected(self) -> str:
+        return self._words.expected()
+
+    def written(self) -> str:
+        return self._words.written()
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read the word that chooses."""
+        return self._words.take(reading, value, path)
+
+    def find(self, reading: Reading, name: str, mapping: Tree, rest: Tree, path: Path) -> Any:
+        """Read the chosen record out of the mapping."""
+        word = super().find(reading, name, mapping, rest, path)
+        if word is REFUSED:
+            return REFUSED
+        return self.cases[self.default if word is ABSENT else word].build(reading, rest, path, inline=True)
+
+    def names(self, name: str, mapping: Tree) -> Iterable[str]:
+        """Return those of the chosen variant; of all of them where the word that chooses is unknown."""
+        word = mapping.get(name, self.default)
+        chosen = self.cases.get(word) if isinstance(word, str) else None
+        return [inner for case in ([chosen] if chosen else self.cases.values()) for inner in case.all_names(mapping)]
+
+    def places_of(self, name: str, path: str, words: str) -> Iterator[tuple[str, str]]:
+        yield words, name
+        for word, case in self.cases.items():
+            yield from ((f"to '{name}: {word}'", inner) for inner in case.keys)
+
+    def records(self, word: str) -> Iterator[tuple[str, Record]]:
+        for name, case in self.cases.items():
+            yield f"{word}: {name}", case
+
+    def schema(self, definitions: Schema) -> Schema:
+        return self._words.schema(definitions)
+
+    def describe(self, name: str, key: Key, properties: Schema, rules: list[Schema], definitions: Schema) -> None:
+        """Add the keys of all variants, and for each word what must and must not stand beside it."""
+        super().describe(name, key, properties, rules, definitions)
+        everything = dict.fromkeys(inner for case in self.cases.values() for inner in case.keys)
+        for word, case in self.cases.items():
+            case.describe_all(properties, rules, definitions)
+            chosen: Schema = {"properties": {name: {"const": word}}}
+            if word != self.default:
+                chosen["required"] = [name]
+            foreign = [[inner] for inner in everything if inner not in case.keys]
+            rules.append({"if": chosen, "then": (none_of(foreign) if foreign else {}) | demands(case.keys)})
+
+
+class Inline(Form):
+    """Keys of another record that stand in the same mapping: those of the piston in its cylinder.
+
+    With the key `unless`, a list of such records, they stand in its items instead; rules of the outer record speak of
+    the one inline record as the first of that list.
+    """
+
+    shared = True
+
+    def __init__(self, record: Record, unless: str = "") -> None:
+        self.record, self.unless = record, unless
+
+    @property
+    def _item(self) -> str:
+        return f"to a {self.unless.removesuffix('s')}"
+
+    def expected(self) -> str:
+        return self.record.expected()
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read the record out of the mapping."""
+        return self.record.build(reading, value, path, inline=True)
+
+    def find(self, reading: Reading, name: str, mapping: Tree, rest: Tree, path: Path) -> Any:
+        """Read the record where any of its keys is given."""
+        return self.read(reading, rest, path) if rest.keys() & set(self.names(name, mapping)) else ABSENT
+
+    def names(self, name: str, mapping: Tree) -> Iterable[str]:
+        return () if self.unless in mapping else self.record.all_names(mapping)
+
+    def moved(self, mapping: Tree) -> dict[str, str]:
+        if self.unless not in mapping:
+            return {}
+        message = f"belongs {self._item}; move it into the items of '{self.unless}'"
+        return dict.fromkeys(self.record.all_names(mapping), message)
+
+    def flat(self, fault: Fault, mapping: Tree) -> Fault:
+        inside = self.unless and self.unless not in mapping and fault.path[:2] == (self.unless, 0)
+        return fault._replace(path=fault.path[2:]) if inside else fault
+
+    def places_of(self, name: str, path: str, words: str) -> Iterator[tuple[str, str]]:
+        return self.record.places(path, self._item if self.unless else words)
+
+    def records(self, word: str) -> Iterator[tuple[str, Record]]:
+        yield word, self.record
+
+    def schema(self, definitions: Schema) -> Schema:
+        return self.record.schema(definitions)
+
+    def describe(self, name: str, key: Key, properties: Schema, rules: list[Schema], definitions: Schema) -> None:
+        """Add the keys of the record, and that they do not stand beside the list."""
+        before = set(properties)
+        self.record.describe_all(properties, rules, definitions)
+        added = [[inner] for inner in properties if inner not in before]
+        if required(self.record.keys):
+            given = {"anyOf": [{"required": group} for group in added]}
+            rules.append({"if": given, "then": demands(self.record.keys)})
+        if self.unless:
+            rules.append({"if": {"required": [self.unless]}, "then": none_of(added)})

@@ -1,0 +1,303 @@
+"""Forms of one line: numbers, values with a unit, counts, words, texts, file names."""
+
+from __future__ import annotations
+
+import os
+import re
+from abc import abstractmethod
+from operator import ge, gt, le, lt
+from typing import Any, NoReturn
+
+from kurbel.declared.bounds import SIZES, out_of_size, range_of
+from kurbel.declared.keys import Form, Schema
+from kurbel.declared.numerals import NUMBER, RATIO, parse_ratio
+from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
+from kurbel.declared.unit_systems import show
+from kurbel.declared.units import example, parse_quantity, unit_factor, unit_names
+from kurbel.errors import Fault, Path, RuleError, UnitError
+from kurbel.near_words import did_you_mean
+
+Words = tuple[tuple[str, float], ...]
+
+
+def reference(name: str) -> Schema:
+    """Return a reference to a definition of the schema."""
+    # draft-07 overlooks whatever stands beside a $ref, so it goes into a list of its own
+    return {"allOf": [{"$ref": f"#/definitions/{name}"}]}
+
+
+class Scalar(Form):
+    """A text of one line."""
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read a text of sensible length."""
+        if is_nothing(value):
+            refused(f"a value is missing; write {self.expected()}")
+        if not isinstance(value, str) or len(value) > LONGEST_VALUE or not value.isprintable():
+            refused(f"expected {self.expected()}, got {kind_of(value)}")
+        if not value.strip():
+            refused(f"expected {self.expected()}, got an empty text")
+        return self.parse(value, reading.folder)
+
+    @abstractmethod
+    def parse(self, text: str, folder: str) -> Any:
+        """Return what a text becomes; raises RuleError."""
+
+
+def refused(message: str) -> NoReturn:
+    """Raise RuleError with this message for the value itself."""
+    raise RuleError(Fault((), message))
+
+
+class _Bounded(Scalar):
+    """A number with its bounds, in the base of its kind.
+
+    above, below: the value must be larger or smaller; least, most: it must not be smaller or larger. `words` are texts
+    allowed instead, such as `infinite`, with the value they stand for.
+    """
+
+    def __init__(
+        self,
+        kind: str,
+        above: float | None = None,
+        least: float | None = None,
+        below: float | None = None,
+        most: float | None = None,
+        words: Words = (),
+    ) -> None:
+        self.kind, self.words = kind, words
+        self.above, self.least, self.below, self.most = above, least, below, most
+
+    def parse(self, text: str, folder: str) -> float:
+        for word, stands_for in self.words:
+            if text == word:
+                return stands_for
+        if self.words and text.strip()[0].isalpha():
+            refused(f"expected {self.expected()}, got '{text}'")
+        try:
+            value = self.number(text)
+        except UnitError as error:
+            refused(f"{error}{glued_hint(text)}")
+        wrong = self.out_of_bounds(value) or out_of_size(value, self.kind)
+        return refused(f"{text} {wrong}") if wrong else value
+
+    @abstractmethod
+    def number(self, text: str) -> float:
+        """Return the number in the base of its kind; raises RuleError."""
+
+    def out_of_bounds(self, value: Any) -> str:
+        """Compare a number with the bounds.
+
+        >>> Physical("length", least=0.1).out_of_bounds(-0.3)
+        'is too small; it must be at least 100 mm'
+        """
+        for bound, holds, wrong in (
+            (self.above, gt, "is too small; it must be more than"),
+            (self.least, ge, "is too small; it must be at least"),
+            (self.below, lt, "is too large; it must be less than"),
+            (self.most, le, "is too large; it must be at most"),
+        ):
+            if bound is not None and isinstance(value, (int, float)) and not holds(value, bound):
+                return f"{wrong} {show(bound, self.kind) if bound else '0'}"
+        return ""
+
+    def _or_words(self) -> str:
+        return "".join(f" or '{word}'" for word, _ in self.words)
+
+    def _schema(self, number: Schema) -> Schema:
+        return {"anyOf": [number, {"enum": [word for word, _ in self.words]}]} if self.words else number
+
+
+class Physical(_Bounded):
+    """A number with a unit of this kind, such as `450 mm`; becomes a float in the base of the kind."""
+
+    def number(self, text: str) -> float:
+        return parse_quantity(text, self.kind)
+
+    def expected(self) -> str:
+        return f"a number with its unit, such as '{self.example()}'{self._or_words()}"
+
+    def example(self) -> str:
+        return example(self.kind)
+
+    def written(self) -> str:
+        return f"`{self.example()}`" + "".join(f", or `{word}`" for word, _ in self.words)
+
+    def schema(self, definitions: Schema) -> Schema:
+        name = f"quantity_{self.kind}"
+        definitions[name] = {
+            "type": "string",
+            "pattern": f"^\\s*{NUMBER.pattern}\\s*{_units(self.kind)}\\s*$",
+            "description": f"in size {range_of(self.kind)}",
+            "examples": [self.example()],
+        }
+        return self._schema(reference(name))
+
+
+class Number(_Bounded):
+    """A bare number, a quotient such as `1/80` or `75 %` (a ratio, a fraction, a coefficient); becomes a float."""
+
+    def __init__(
+        self,
+        above: float | None = None,
+        least: float | None = None,
+        below: float | None = None,
+        most: float | None = None,
+        words: Words = (),
+    ) -> None:
+        super().__init__("ratio", above, least, below, most, words)
+
+    def number(self, text: str) -> float:
+        if not isinstance(text, Plain):
+            refused(f'expected a number, got the text "{text}"; leave out the quotation marks')
+        return parse_ratio(text)
+
+    def expected(self) -> str:
+        return f"a number{self._or_words()}"
+
+    def example(self) -> str:
+        return "5" if (self.above or 0) >= 1 else "0.1"
+
+    def written(self) -> str:
+        return "a number"
+
+    def schema(self, definitions: Schema) -> Schema:
+        largest = SIZES["ratio"][1]
+        bounds = {
+            "exclusiveMinimum": self.above,
+            "minimum": -largest if self.least is None else self.least,
+            "exclusiveMaximum": self.below,
+            "maximum": largest if self.most is None else self.most,
+        }
+        number = {name: bound for name, bound in bounds.items() if bound is not None}
+        return self._schema({"type": ["number", "string"], **number, "pattern": f"^\\s*{RATIO.pattern}\\s*$"})
+
+
+class Count(Scalar):
+    """A whole number; becomes an int."""
+
+    def __init__(self, least: int = 1, most: int | None = None) -> None:
+        self.least, self.most = least, most
+
+    def parse(self, text: str, folder: str) -> int:
+        if not isinstance(text, Plain):
+            refused(f'expected a whole number, got the text "{text}"; leave out the quotation marks')
+        if not re.fullmatch(r"[-+]?(0|[1-9][0-9]{0,8})", text):
+            refused(f"expected a whole number, got '{text}'")
+        whole = int(text)
+        if self.most == self.least != whole:
+            refused(f"{whole} is not supported; it must be {self.least}")
+        if whole < self.least:
+            refused(f"{whole} is too small; it must be at least {self.least}")
+        if self.most is not None and whole > self.most:
+            refused(f"{whole} is too large; it must be at most {self.most}")
+        return whole
+
+    def expected(self) -> str:
+        return "a whole number"
+
+    written = expected
+
+    def example(self) -> str:
+        return str(max(self.least, 3) if self.most is None else self.least)
+
+    def schema(self, definitions: Schema) -> Schema:
+        return {"type": "integer", "minimum": self.least} | ({} if self.most is None else {"maximum": self.most})
+
+
+class Text(Scalar):
+    """Any text that is not empty."""
+
+    def parse(self, text: str, folder: str) -> str:
+        return text.strip()
+
+    def expected(self) -> str:
+        return "a text"
+
+    def written(self) -> str:
+        return "text"
+
+    def schema(self, definitions: Schema) -> Schema:
+        return {"type": ["string", "number"]}
+
+
+class Choice(Scalar):
+    """One of these words."""
+
+    def __init__(self, words: tuple[str, ...]) -> None:
+        self.words = words
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Take one of the words, of which one may be a blank or a tab."""
+        return str(value) if isinstance(value, str) and value in self.words else super().take(reading, value, path)
+
+    def parse(self, text: str, folder: str) -> str:
+        refused(f"unknown word '{shown(text)}'{did_you_mean(text, self.words) or f'; write {self.expected()}'}")
+
+    def expected(self) -> str:
+        return " or ".join(f"'{word}'" for word in self.words)
+
+    def example(self) -> str:
+        return self.words[0]
+
+    def written(self) -> str:
+        return ", ".join(f"`{word}`" for word in self.words)
+
+    def schema(self, definitions: Schema) -> Schema:
+        return {"enum": list(self.words)}
+
+
+class FilePath(Scalar):
+    """The path of a file, relative to the machine file; becomes a path that can be opened."""
+
+    def parse(self, text: str, folder: str) -> str:
+        full = os.path.join(folder, text)
+        if os.path.isdir(full):
+            refused(f"'{shown(text)}' is a folder; name the file in it")
+        if os.path.exists(full) and not os.path.isfile(full):
+            refused(f"'{shown(text)}' is a device or a pipe; name a file that can be read again")
+        if not os.path.isfile(full):
+            refused(f"there is no file '{shown(text)}' in {shown(folder) if folder else 'the working directory'}")
+        return full
+
+    def expected(self) -> str:
+        return "the name of a file"
+
+    def written(self) -> str:
+        return "a path"
+
+    def schema(self, definitions: Schema) -> Schema:
+        return {"type": "string", "minLength": 1}
+
+
+class UnitName(Scalar):
+    """The name of a unit of this kind; becomes the factor pair that turns numbers into its base."""
+
+    def __init__(self, kind: str) -> None:
+        self.kind = kind
+
+    def parse(self, text: str, folder: str) -> Any:
+        return unit_factor(text, self.kind)
+
+    def expected(self) -> str:
+        return f"a unit of {self.kind}, such as '{self.example()}'"
+
+    def example(self) -> str:
+        return example(self.kind).split(" ", 1)[1]
+
+    def written(self) -> str:
+        return "a unit"
+
+    def schema(self, definitions: Schema) -> Schema:
+        return {"type": "string", "pattern": f"^\\s*{_units(self.kind)}\\s*$"}
+
+
+def _units(kind: str) -> str:
+    """Return a pattern of the units of a kind in every spelling that the reader takes."""
+    return "(?:" + "|".join(_spellings(name) for name in unit_names(kind)) + ")"
+
+
+def _spellings(unit: str) -> str:
+    """Return a pattern of one unit: `kgf m2` is also `kgf·m²` and `kgf*m^2`."""
+    letters = re.escape(re.sub(r"(?<=[a-z])2", "²", unit)).replace("\\ ", "[ ·*]+").replace("/", "\\s*/\\s*")
+    return re.sub("^u(?=m)", "[uµμ]", letters).replace("²", "(?:\\^?2|²)")

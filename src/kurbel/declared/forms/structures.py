@@ -1,0 +1,200 @@
+"""Forms made of others: lists, alternatives, mappings with one telling key, bounds for key values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from kurbel.declared.bounds import MOST_ITEMS
+from kurbel.declared.forms.records import Record, no_mapping
+from kurbel.declared.forms.scalars import Number, Physical, refused
+from kurbel.declared.keys import Form, Schema
+from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
+from kurbel.errors import Path
+from kurbel.near_words import did_you_mean, near
+
+
+class Listing(Form):
+    """A list of items of one form, at least one; becomes a tuple.
+
+    inline_too: the keys of its items also stand inline, and are looked for there.
+    """
+
+    shape = list
+
+    def __init__(self, item: Form, inline_too: bool = False) -> None:
+        self.item, self.inline_too = item, inline_too
+
+    def expected(self) -> str:
+        return "a list"
+
+    def written(self) -> str:
+        return f"a list; each {self.item.written()}"
+
+    def schema(self, definitions: Schema) -> Schema:
+        return {"type": "array", "items": self.item.schema(definitions), "minItems": 1, "maxItems": MOST_ITEMS}
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read a list into a tuple."""
+        if isinstance(value, Plain) and not value:
+            refused("nothing stands here; write a list below it, each item after '- '")
+        if not isinstance(value, list):
+            refused(f"expected a list, each item after '- ', got {kind_of(value)}")
+        if not value:
+            refused("the list is empty; give at least one item or leave the key out")
+        if len(value) > MOST_ITEMS:
+            refused(f"{len(value)} items; no machine has more than {MOST_ITEMS} of them")
+        items = tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(value))
+        return REFUSED if any(item is REFUSED for item in items) else items
+
+    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
+        return iter(()) if self.inline_too else self.item.places(path, words)
+
+    def records(self, word: str) -> Iterator[tuple[str, Record]]:
+        return self.item.records(word)
+
+
+class OneOf(Form):
+    """Several forms that differ in shape (text or number, list, mapping); the first of the right shape reads it."""
+
+    def __init__(self, *forms: Form) -> None:
+        self.forms = forms
+
+    def expected(self) -> str:
+        return ", or ".join(form.expected() for form in self.forms)
+
+    def example(self) -> str:
+        return self.forms[0].example()
+
+    def written(self) -> str:
+        return " or ".join(form.written() for form in self.forms)
+
+    def schema(self, definitions: Schema) -> Schema:
+        return {"anyOf": [form.schema(definitions) for form in self.forms]}
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read a value by the first form that has its shape."""
+        shape = type(value) if isinstance(value, (dict, list)) else str
+        for form in self.forms:
+            if form.shape is shape:
+                return form.read(reading, value, path)
+        return refused(f"expected {self.expected()}, got {kind_of(value)}")
+
+    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
+        for form in self.forms:
+            yield from form.places(path, words)
+
+    def records(self, word: str) -> Iterator[tuple[str, Record]]:
+        for form in self.forms:
+            yield from form.records(word)
+
+
+class Keyed(Form):
+    """A mapping whose single telling key decides what it becomes: `{constant: …}`, `{trace: …}`; else `otherwise`."""
+
+    shape = dict
+
+    def __init__(self, cases: dict[str, Form], otherwise: Record) -> None:
+        self.cases, self.otherwise = cases, otherwise
+
+    def expected(self) -> str:
+        keys = self.otherwise.expected().removeprefix("a mapping with ")
+        return f"a mapping with {keys}; or with one of {', '.join(self.cases)}"
+
+    def schema(self, definitions: Schema) -> Schema:
+        one = {"type": "object", "additionalProperties": False}
+        cases = [
+            {**one, "required": [name], "properties": {name: form.schema(definitions)}}
+            for name, form in self.cases.items()
+        ]
+        return {"anyOf": [*cases, self.otherwise.schema(definitions)]}
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read a mapping by its telling key."""
+        if not isinstance(value, dict):
+            no_mapping(self, value)
+        telling = next((name for name in value if name in self.cases), "")
+        if not telling:
+            return REFUSED if self._misspelt(reading, value, path) else self.otherwise.read(reading, value, path)
+        for name in value:
+            if name != telling:
+                reading.fault((*path, name), f"cannot stand beside '{telling}'{self._home(reading, name)}", at_key=True)
+        inner = self.cases[telling].read(reading, value[telling], (*path, telling))
+        return inner if len(value) == 1 else REFUSED
+
+    def _home(self, reading: Reading, name: str) -> str:
+        """Return where a key belongs that stands beside a telling one, or that one of both is too many."""
+        if name in self.otherwise.keys or name in self.cases:
+            return "; leave one of them out"
+        return f"; {reading.where_it_belongs(name) or 'leave it out'}"
+
+    def _misspelt(self, reading: Reading, mapping: Tree, path: Path) -> bool:
+        """Note a fault where an unknown key is nearly a telling one, and return whether there was any."""
+        known = tuple(self.otherwise.keys)
+        found = False
+        for name in mapping:
+            meant = "" if name in known or near(name, known) else near(name, tuple(self.cases))
+            if meant:
+                reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)
+                found = True
+        return found
+
+    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
+        for name, form in self.cases.items():
+            yield from form.places_of(name, path, words)
+        yield from self.otherwise.places(path, words)
+
+    def records(self, word: str) -> Iterator[tuple[str, Record]]:
+        for name, form in (*self.cases.items(), ("card", self.otherwise)):
+            yield from form.records(name)
+
+
+class Limits(Form):
+    """A mapping from ids of key values to bounds; becomes pairs of id and bound in the base of its quantity."""
+
+    shape = dict
+
+    def expected(self) -> str:
+        return "a mapping of key values to bounds, such as 'c_max: 6 m/s'"
+
+    def written(self) -> str:
+        return "`{key value: bound}`"
+
+    def schema(self, definitions: Schema) -> Schema:
+        properties = {
+            name: {**form.schema(definitions), "description": text} for name, (form, text) in _bounds().items()
+        }
+        return {"type": "object", "additionalProperties": False, "minProperties": 1, "properties": properties}
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read every bound by the form of its quantity."""
+        if not isinstance(value, dict) or not value:
+            refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+        known = _bounds()
+        bounds = []
+        for name, bound in value.items():
+            if name in known:
+                bounds.append((name, known[name][0].read(reading, bound, (*path, name))))
+            else:
+                reading.fault((*path, name), _no_bound(name, tuple(known)), at_key=True)
+        return REFUSED if any(bound is REFUSED for _, bound in bounds) else tuple(bounds)
+
+
+def _bounds() -> dict[str, tuple[Form, str]]:
+    """Return the form of a bound for every key value that may have one, with its sentence."""
+    from kurbel.declared.quantities import KEY_VALUES, LISTS
+
+    return {
+        name: (Number() if quantity.kind == "ratio" else Physical(quantity.kind), quantity.text)
+        for name, quantity in KEY_VALUES.items()
+        if name not in LISTS
+    }
+
+
+def _no_bound(name: str, known: tuple[str, ...]) -> str:
+    from kurbel.declared.quantities import KEY_VALUES
+
+    if name in KEY_VALUES:
+        return f"'{name}' is a list of values; no bound can be put on it"
+    hint = did_you_mean(name, tuple(KEY_VALUES)) or f"; known are {', '.join([*known[:6], '…'])}"
+    return f"unknown key value '{shown(name)}'{hint}"

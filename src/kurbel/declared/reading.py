@@ -1,0 +1,102 @@
+"""What forms read from: the tree of a machine file, and one pass over it that collects every fault.
+
+The tree is made of dict, list and texts. Numbers stay text: what a text means is decided by the key it stands under.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from kurbel.errors import Fault, Path, RuleError
+
+Tree = dict[str, Any]
+FAULT_LIMIT = 100
+"""A file with more faults than this is not read on: it is no machine file, and suggestions cost time."""
+LONGEST_VALUE = 200
+"""Characters of a value; what is longer is no number, and would flood the message."""
+_GLUED = re.compile(r"\b[A-Za-z_]\w*:\S")
+
+
+class Plain(str):
+    """A text without quotation marks."""
+
+    __slots__ = ()
+
+
+class _Refused:
+    """What stands in place of a value that has been reported already; readers pass over it in silence."""
+
+    def __repr__(self) -> str:
+        return "REFUSED"
+
+
+REFUSED = _Refused()
+
+
+class StopReading(Exception):
+    """The rest of the file cannot be read, or has so many faults that reading on would help nobody."""
+
+
+class Reading:
+    """One pass over a machine file, with the faults found so far.
+
+    folder: what paths in the file are relative to; places: every key of a machine file after the words for its place.
+    """
+
+    def __init__(self, folder: str = "", places: Callable[[], Iterable[tuple[str, str]]] = tuple) -> None:
+        self.folder = folder
+        self._places = places
+        self.faults: list[Fault] = []
+
+    def where_it_belongs(self, key: str) -> str:
+        """Return where in a machine file a key may stand, such as "it belongs under 'friction.rings'", or ''."""
+        found = dict.fromkeys(words for words, name in self._places() if name == key)
+        return "it belongs " + " or ".join(list(found)[:3]) if found else ""
+
+    def note(self, fault: Fault) -> Any:
+        """Keep a fault and return REFUSED, which stands for the value that could not be read."""
+        full = len(self.faults) + 1 >= FAULT_LIMIT
+        if full:
+            fault = fault._replace(message=f"{fault.message} (reading stopped after {FAULT_LIMIT} faults)")
+        self.faults.append(fault)
+        if full:
+            raise StopReading
+        return REFUSED
+
+    def fault(self, path: Path, message: str, at_key: bool = False) -> Any:
+        """Keep a fault at a path of the tree and return REFUSED."""
+        return self.note(Fault(path, message, at_key))
+
+    def refuse(self, path: Path, error: RuleError) -> Any:
+        """Keep what was raised for the value at a path, and return REFUSED."""
+        for fault in error.faults:
+            self.note(fault.below(path))
+        return REFUSED
+
+
+def shown(text: str, most: int = 60) -> str:
+    """Write a text from the file so that it fits into one line of a message and cannot steer a terminal."""
+    flat = "".join(c if c.isprintable() else " " if c in "\t\r\n" else f"\\u{ord(c):04x}" for c in text[: most + 1])
+    return flat if len(flat) <= most else flat[: most - 3] + "…"
+
+
+def kind_of(value: Any) -> str:
+    """Return what a value of the tree is, for 'got …'."""
+    if isinstance(value, dict):
+        return "a mapping" if value else "an empty mapping"
+    if isinstance(value, list):
+        return "a list" if value else "an empty list"
+    return f"'{shown(value)}'"
+
+
+def is_nothing(value: Any) -> bool:
+    """Return whether nothing is written, or what YAML takes for nothing."""
+    return isinstance(value, Plain) and value in ("", "~", "null", "Null", "NULL")
+
+
+def glued_hint(value: Any) -> str:
+    """Return what to write when a key without a space after its colon hides in a value, or an empty text."""
+    found = _GLUED.search(value) if isinstance(value, str) else None
+    return f"; perhaps a space is missing after the colon of '{found.group().split(':')[0]}'" if found else ""
