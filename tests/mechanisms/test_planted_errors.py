@@ -1,4 +1,4 @@
-"""The laws are worth something only if a wrong formula breaks one: each of these slips is planted and must be caught."""
+"""The laws are worth something only if a wrong formula breaks one: each of these slips, once planted, breaks one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page of symbols, written from the declarations: `python -m kurbel.report.symbols > docs/symbols.md`."""
+"""The page of symbols, written from the declarations into docs/symbols.md by `pytest --rewrite`."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from kurbel.declared.units import SI, TECHNICAL, example
 
 _HEAD = """# Symbols, quantities and keys
 
-Written from the declarations in the code by `python -m kurbel.report.symbols`; do not edit by hand.
+Written from the declarations in the code by `pytest --rewrite`; do not edit by hand.
 """
 
 
@@ -134,9 +134,3 @@ def _form(form: Form) -> str:
 
 def _cell(text: str) -> str:
     return text.replace("|", "\\|")
-
-
-if __name__ == "__main__":
-    import sys
-
-    sys.stdout.buffer.write(symbols_page().encode())
