@@ -83,12 +83,3 @@ def test_the_readme_has_commands() -> None:
 
 def test_the_page_of_symbols_is_current(kept: Callable[[Path, str], str]) -> None:
     assert kept(ROOT / "docs" / "symbols.md", symbols_page()) == symbols_page()
-
-
-def test_the_python_of_the_readme_runs(workshop: Path) -> None:
-    blocks = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
-    assert blocks
-    for block in blocks:
-        code = block.replace("engine.yaml", "demo.yaml")
-        done = subprocess.run([sys.executable, "-c", code], cwd=workshop, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr

@@ -227,7 +227,7 @@ def test_the_force_on_the_pin_has_the_parts_t_and_d(machine):
     """|F| = |P| hypot(q′/R, D/P): what pushes the pin is one force, of the block or of the rod."""
     degrees = np.array(ANGLES)
     state = loaded(machine).cylinders[0].at(degrees)
-    offered = [force for force in (state.F_pin, state.S) if force is not None]
+    offered = [force for id in ("F_pin", "S") if (force := getattr(state, id, None)) is not None]
     assert len(offered) == (state.D is not None)
     if not offered:
         return
