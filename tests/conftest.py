@@ -1,11 +1,38 @@
-"""No test measures time: random examples have no deadline either."""
+"""No test measures time; and one switch rewrites every text that the tests keep of the program's output."""
+
+from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
+# random examples have no deadline either
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
 # a width in the environment (pytest-xdist sets one) is asked of every output, by contract
 os.environ.pop("COLUMNS", None)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--rewrite",
+        action="store_true",
+        help="write what the program prints now into tests/golden, the expected messages of bad machine files, the "
+        "README and docs/symbols.md; read the diff. Not with -n.",
+    )
+
+
+@pytest.fixture
+def kept(request: pytest.FixtureRequest) -> Callable[[Path, str], str]:
+    """Return the text that is kept in a file; with --rewrite it is first replaced by the one that is printed now."""
+
+    def text_in(file: Path, printed: str) -> str:
+        if request.config.getoption("--rewrite"):
+            file.write_text(printed, encoding="utf-8", newline="\n")
+        return file.read_text(encoding="utf-8")
+
+    return text_in

@@ -7,6 +7,7 @@ import io
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -268,6 +269,10 @@ def test_degenerate_geometry_is_an_error_of_the_file(keys: str, message: str) ->
 
 
 def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) -> None:
+    """The one of the page on architecture, as it stands there."""
+    page = (FOLDER.parent / "docs" / "architecture.md").read_text(encoding="utf-8")
+    (whole,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    (tmp_path / "toy_mechanism.py").write_text(whole, encoding="utf-8")
     machine = tmp_path / "cam.yaml"
     machine.write_text("speed: 60 rpm\nmechanism: harmonic-cam\ncrank: 20 mm\nsecond: 2 mm\nram_force: {work: 1 kN}\n")
     code = (
@@ -278,7 +283,7 @@ def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) ->
 
     def called(command: str) -> dict[str, Any]:
         arguments = [sys.executable, "-c", code, command, str(machine), "-f", "json", "--angles", "0,90"]
-        path = os.pathsep.join((str(FOLDER), os.environ.get("PYTHONPATH", "")))
+        path = os.pathsep.join((str(tmp_path), os.environ.get("PYTHONPATH", "")))
         environment = os.environ | {"PYTHONPATH": path, "PYTHONIOENCODING": "utf-8"}
         done = subprocess.run(arguments, capture_output=True, env=environment, check=False, encoding="utf-8")
         assert done.returncode == 0, done.stderr

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import re
 import sys
 from pathlib import Path
@@ -111,6 +112,41 @@ def test_picture_is_drawn_the_same_every_time(tmp_path: Path) -> None:
     svg = (tmp_path / "a.svg").read_text(encoding="utf-8")
     assert "textbook" in svg
     assert "<dc:date>" not in svg
+
+
+def test_a_panel_holds_all_scenes_of_a_quantity() -> None:
+    """One line for each method, broken between the scenes."""
+    from kurbel.render.plot import panels
+    from kurbel.report.tables import Column, Part, PlaceTable, Report
+
+    def scene(name: str, *rows: tuple[str, str, str, float | None, float | None]) -> Part:
+        names = tuple((quantity, method, "36", state) for quantity, method, state, _, _ in rows)
+        errors = Column("error", "error", "error", "", tuple(error for *_, error, _ in rows))
+        times = Column("median", "median", "median", "ms", tuple(time for *_, time in rows))
+        heads = ("quantity", "method", "points", "state")
+        table = PlaceTable("numerical_error", name, heads, names, (errors, times))
+        return Part(name, (), place_tables=(table,))
+
+    first = scene(
+        "one", ("x", "kurbel", "ok", 0.0, 2.0), ("x", "book, 9", "ok", 0.1, 1.0), ("x", "book, 18", "ok", 0.01, 3.0)
+    )
+    second = scene(
+        "two", ("x", "book, 9", "ok", 0.2, 4.0), ("c", "kurbel", "ok", 1e-16, 5.0), ("c", "book", "gave up", None, None)
+    )
+    drawn = panels(Report("title", "accuracy", None, "scenes", (first, second)))
+    assert list(drawn) == ["x", "c"]
+    own, book = drawn["x"]
+    assert (own.method, own.errors[0], own.times[0]) == ("kurbel", 1e-17, 2.0)  # what is exact can be drawn
+    assert (book.method, book.errors[:2], book.errors[3]) == ("book", (0.1, 0.01), 0.2)
+    assert math.isnan(book.errors[2])  # where the line is broken
+    assert [(dots.method, dots.times[0]) for dots in drawn["c"]] == [("kurbel", 5.0)]
+
+
+def test_the_picture_of_the_docs_is_small() -> None:
+    folder = Path(__file__).parent.parent.parent / "docs"
+    assert (folder / "accuracy.svg").stat().st_size <= 60_000
+    text = (folder / "accuracy.svg").read_text(encoding="utf-8")
+    assert all(f">{quantity}</text>" in text for quantity in ("x", "c", "b", "A_i", "T_max, T_min", "A_f", "ΔE", "ω"))
 
 
 def test_picture_needs_a_name_it_knows() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -22,14 +23,15 @@ def _message(name: str, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_message(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert _message(name, monkeypatch) == (FOLDER / f"{name}.expected").read_text("utf-8").rstrip("\n")
+def test_message(name: str, monkeypatch: pytest.MonkeyPatch, kept: Callable[[Path, str], str]) -> None:
+    message = _message(name, monkeypatch) + "\n"
+    assert message == kept(FOLDER / f"{name}.expected", message)
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_same_message_without_libyaml(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(yaml, "CSafeLoader", raising=False)
-    assert _message(name, monkeypatch) == (FOLDER / f"{name}.expected").read_text("utf-8").rstrip("\n")
+    assert _message(name, monkeypatch) + "\n" == (FOLDER / f"{name}.expected").read_text("utf-8")
 
 
 def test_there_are_enough_of_them() -> None:

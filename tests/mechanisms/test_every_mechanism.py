@@ -1,4 +1,4 @@
-"""Laws that hold for every mechanism; a new one joins by its line in MACHINES."""
+"""Laws that hold for every mechanism; a new one joins by its line in MACHINES, and by its free body in `statics`."""
 
 from __future__ import annotations
 
@@ -10,10 +10,14 @@ import mpmath as mp
 import numpy as np
 import pytest
 from precise import by_radian, exact_angle
+from statics import FREE_BODIES
 
 from kurbel.crank_angle import CrankAngle, jet_angle
+from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Described, required
 from kurbel.errors import RuleError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.resistance import Moment, RamForce
 from kurbel.mechanisms import MECHANISMS
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.parallel_crank import ParallelCrank
@@ -21,6 +25,9 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
+from kurbel.report.forces import forces_report
+from kurbel.report.motion import motion_report
+from kurbel.solver.case import Case
 
 MACHINES = {
     "straight": SliderCrank(0.4, 2.0),
@@ -29,8 +36,11 @@ MACHINES = {
     "offset": SliderCrank(0.3, 0.5, 0.1),
     "offset to the other side": SliderCrank(0.3, 1.2, -0.2),
     "scotch yoke": ScotchYoke(0.25),
+    "scotch yoke, guides and pin": ScotchYoke(0.25, 0.9, 0.05, 0.06),
     "yoke frame": YokeFrame(0.1, 0.5),
+    "yoke frame, gland": YokeFrame(0.1, 0.3, gland=0.2),
     "shaper": SlottedLever(0.3, 0.8, 1.3),
+    "shaper with pin": SlottedLever(0.3, 0.8, 1.3, pin_diameter=0.05, pin_length=0.07),
     "shaper with link": SlottedLever(0.3, 0.8, 1.3, link=0.5),
     "shaper, ram above": SlottedLever(0.3, 0.8, 1.3, link=0.8, ram_height=1.4),
     "pin close to the pivot": SlottedLever(0.3, 0.301, 0.7),
@@ -40,7 +50,9 @@ MACHINES = {
     "four-bar": FourBar(0.04, 0.15, 0.08, 0.15),
     "four-bar, nearly flat": FourBar(0.1, 0.3, 0.25, 0.4499),
     "four-bar, long rocker": FourBar(0.1, 0.5, 9.0, 9.0),
+    "four-bar, slow back": FourBar(0.04, 0.08, 0.15, 0.15),
     "parallel crank": ParallelCrank(0.3, 2.0),
+    "parallel crank, heavy coupler": ParallelCrank(0.3, 2.0, 140.0),
 }
 STROKES = {name: machine for name, machine in MACHINES.items() if machine.name != "parallel-crank"}
 ANGLES = (3.0, 47.0, 90.0, 118.0, 177.0, 181.0, 233.0, 291.0, 352.0)
@@ -180,6 +192,50 @@ def test_every_word_names_a_class_that_is_built_from_its_keys(name):
     )
 
 
+def test_every_mechanism_is_under_the_laws():
+    registered = {record.load() for record in MECHANISMS.values()}
+    assert {type(machine) for machine in MACHINES.values()} == registered
+    assert set(FREE_BODIES) == registered
+
+
+def loaded(machine):
+    """Return the cylinder that works against 900 on the outstroke or working swing and 200 on the other, at 90 rpm."""
+    if machine.slides:
+        part = {"ram_force": RamForce(900, 200)}
+    else:
+        part = {"moment": Moment(900) if machine.turns else Moment(900, 200)}
+    return Case(Machine((Cylinder(machine, **part),), speed=1.5))
+
+
+@every()
+def test_forces_and_speeds_are_those_of_the_free_body(machine):
+    degrees = np.array([*ANGLES, 10.0, 200.0])
+    state = loaded(machine).cylinders[0].at(degrees)
+    load_ = state.P if machine.slides else state.M_out
+    expected = FREE_BODIES[type(machine)](machine, np.exp(1j * np.radians(degrees)), load_)
+    per_angle = {"c_block": 1, "theta_dot": 1, "bx_coupler": 2, "by_coupler": 2}
+    for id, values in expected.items():
+        found = getattr(state, id) / (3 * math.pi) ** per_angle.get(id, 0)
+        if id == "x":
+            found, values = found - found[0], values - values[0]
+        if id == "theta":
+            found = np.remainder(found - values + 180, 360) + values - 180
+        assert found == pytest.approx(values, rel=1e-10, abs=1e-10 * abs(values).max()), id
+
+
+@every()
+def test_the_force_on_the_pin_has_the_parts_t_and_d(machine):
+    """|F| = |P| hypot(q′/R, D/P): what pushes the pin is one force, of the block or of the rod."""
+    degrees = np.array(ANGLES)
+    state = loaded(machine).cylinders[0].at(degrees)
+    offered = [force for id in ("F_pin", "S") if (force := getattr(state, id, None)) is not None]
+    assert len(offered) == (state.D is not None)
+    if not offered:
+        return
+    parts = np.hypot(machine.slope(CrankAngle.of(degrees)) / machine.crank, state.D / state.P)
+    assert abs(offered[0] / state.P) == pytest.approx(parts, rel=1e-13)
+
+
 @every(STROKES)
 @pytest.mark.parametrize("wrong", [0.0, -1.0, math.inf, math.nan])
 def test_lengths_must_be_positive_and_finite(machine, wrong):
@@ -200,6 +256,39 @@ def test_size_does_not_matter(machine, scale):
         (scaled.coordinate, scaled.slope, scaled.curvature), (machine.coordinate, machine.slope, machine.curvature)
     ):
         assert function(angle) / unit == pytest.approx(original(angle), rel=1e-13, abs=1e-15 * machine.stroke)
+
+
+def resized(machine, scale):
+    """Return the mechanism with all its lengths, and nothing else, times the scale."""
+    fields = {field.name: getattr(machine, field.name) for field in dataclasses.fields(machine)}
+    lengths = {key for key, one in machine.KEYS.items() if isinstance(one.form, Physical) and one.form.kind == "length"}
+    return type(machine)(**{key: value * scale if value and key in lengths else value for key, value in fields.items()})
+
+
+POWERS = {"m": 1, "m/s": 1, "m/s^2": 1, "N m": 1, "J": 1, "W": 1, "Pa": -2}
+"""Unit -> the power of a length in it where forces stay; angles and ratios stay with them."""
+POWERS_OF_A_MOMENT = {**POWERS, "N": -1, "N m": 0, "J": 0, "W": 0}
+"""The same where moments stay."""
+
+
+@every()
+@pytest.mark.parametrize("report", [motion_report, forces_report])
+def test_every_answer_grows_with_the_lengths_as_its_unit_says(machine, report):
+    """Twice as large: the same angles and forces, twice the ways and moments, a quarter of the pressure."""
+    angles = (0.0, 33.0, 118.0, 291.0)
+    parts = [report(loaded(one), angles, None, "si").parts[0] for one in (machine, resized(machine, 2.0))]
+    powers = POWERS if machine.slides else POWERS_OF_A_MOMENT
+    small, large = (
+        {one.id: (one.unit, one.values) for one in part.columns}
+        | {one.id: (one.unit, one.value) for one in part.key_values}
+        for part in parts
+    )
+    assert list(small) == list(large)
+    assert {"x", "theta", "M"} & set(small)
+    for id, (unit, values) in small.items():
+        power = 1 if id == "coupler_inertia" else powers.get(unit, 0)  # of a mass, which stays
+        before, after = (np.array(each, dtype=float) for each in (values, large[id][1]))
+        assert after == pytest.approx(before * 2.0**power, rel=1e-12, abs=1e-12 * abs(before).max()), id
 
 
 @every()

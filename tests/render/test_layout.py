@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -35,12 +35,9 @@ PAGES = {
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_golden(name: str) -> None:
-    """To see a wanted change: KURBEL_GOLDEN=1 pytest, then read the diff."""
+def test_golden(name: str, kept: Callable[[Path, str], str]) -> None:
     text = render(*PAGES[name])
-    if os.environ.get("KURBEL_GOLDEN"):
-        (GOLDEN / name).write_text(text, encoding="utf-8", newline="\n")
-    assert text == (GOLDEN / name).read_text(encoding="utf-8")
+    assert text == kept(GOLDEN / name, text)
 
 
 @pytest.mark.parametrize(

@@ -115,7 +115,7 @@ def reversals_of(
 
 
 def test_druckwechsel() -> None:
-    """A reversal is a change from one sign to the other; zero in between has none (formulas 3.1)."""
+    """A reversal is a change from one sign to the other; zero in between has none."""
     never = [(1.0, 0.0), (0.0, 0.0)]
     assert reversals_of([(0, 5), (0.5, 5), (1, 0)], never) == ()  # exhausts to the ambient
     assert reversals_of([(0, 5), (0.4, 0), (1, 3)], [(1, 3), (0, 5)]) == ()  # touches zero

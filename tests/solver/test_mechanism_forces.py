@@ -120,20 +120,6 @@ def test_rings_rub_in_any_mechanism(mechanism: Mechanism) -> None:
     assert forces.energy_residual == pytest.approx(0, abs=2e-14)
 
 
-@every({name: machine for name, machine in SLIDING.items() if not machine.has_rod})
-def test_the_force_on_the_pin_has_the_parts_t_and_d(mechanism: Mechanism) -> None:
-    state = solved(mechanism, pistons=(STEAM,), ram_force=RamForce(900, 100)).at(DENSE)
-    assert np.hypot(state.T, state.D) == pytest.approx(abs(state.F_pin), rel=1e-13)
-    assert (state.S, state.N, state.psi) == (None, None, None)
-
-
-@every({name: machine for name, machine in SLIDING.items() if machine.has_rod})
-def test_the_force_in_the_rod_has_the_parts_t_and_d(mechanism: Mechanism) -> None:
-    state = solved(mechanism, pistons=(STEAM,)).at(DENSE)
-    assert np.hypot(state.T, state.D) == pytest.approx(abs(state.S), rel=1e-13)
-    assert state.F_pin is None
-
-
 def test_force_on_the_pin_of_a_shaper_by_the_lever_rule() -> None:
     """At φ = 0 the pin stands e + r from the pivot, at 180° e − r: the ram pulls with P R_l over that."""
     state = solved(SlottedLever(0.3, 0.8, 1.3), ram_force=RamForce(1100, 500)).at([0.0, 180.0])

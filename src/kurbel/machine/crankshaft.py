@@ -1,4 +1,4 @@
-"""One crank throw between two bearings, with a flywheel (formulas.md 3.7, after G)."""
+"""One crank throw between two bearings, with a flywheel (Öl- und Gasmaschinen)."""
 
 from __future__ import annotations
 

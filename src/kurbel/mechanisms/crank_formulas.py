@@ -68,7 +68,13 @@ def radial_factor(sin: Any, cos: Any, lam: Any, rho: Any) -> Any:
 
 
 def first_order_displacement(sin: Any, cos: Any, lam: Any) -> Any:
-    """Return the book's x/R ≈ 1 − cos φ + ½ λ sin²φ, R 286, B 22."""
+    """Return the book's x/R ≈ 1 − cos φ + ½ λ sin²φ, R 286, B 22.
+
+    B example 31, λ = 1/5 at 45°:
+
+    >>> round(first_order_displacement(math.sqrt(0.5), math.sqrt(0.5), 0.2), 3)
+    0.343
+    """
     return 1 - cos + lam * (sin * sin) / 2
 
 
@@ -78,7 +84,13 @@ def first_order_velocity(sin: Any, cos: Any, lam: Any) -> Any:
 
 
 def first_order_acceleration(sin: Any, cos: Any, lam: Any) -> Any:
-    """Return the book's b R/v² ≈ cos φ + λ cos 2φ, R 291, B 26."""
+    """Return the book's b R/v² ≈ cos φ + λ cos 2φ, R 291, B 26.
+
+    Zusammenstellung 112, L/R = 5 at 60°:
+
+    >>> round(first_order_acceleration(math.sqrt(0.75), 0.5, 0.2), 3)
+    0.4
+    """
     return cos + lam * (cos * cos - sin * sin)
 
 
@@ -100,6 +112,7 @@ def velocity_peak(lam: float, rho: float) -> Peak:
 
     With q = sin²ψ the condition is q³ − q² − q + λ² = 0, and cos φ = λ sin²φ cos ψ, c_max = v sin φ (1 + sin²ψ).
     The one root in (0, 1) is taken in trigonometric form, free of cancellation from λ = 1e-300 to 1 − 2⁻⁵³.
+    R has about 1.02 v at λ = 1/5:
 
     >>> round(velocity_peak(0.2, 0.96).value, 7)
     1.0198331

@@ -1,4 +1,4 @@
-"""The page of symbols, written from the declarations: `python -m kurbel.report.symbols > docs/symbols.md`."""
+"""The page of symbols, written from the declarations into docs/symbols.md by `pytest --rewrite`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from kurbel.declared.unit_systems import SI, TECHNICAL
 
 _HEAD = """# Symbols, quantities and keys
 
-Written from the declarations in the code by `python -m kurbel.report.symbols`; do not edit by hand.
+Written from the declarations in the code by `pytest --rewrite`; do not edit by hand.
 """
 
 
@@ -73,9 +73,3 @@ def _keys(name: str, keys: Keys) -> str:
 
 def _cell(text: str) -> str:
     return text.replace("|", "\\|")
-
-
-if __name__ == "__main__":
-    import sys
-
-    sys.stdout.buffer.write(symbols_page().encode())

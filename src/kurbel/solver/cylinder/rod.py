@@ -1,4 +1,4 @@
-"""The exact connecting rod: two masses at its ends and a couple, as the rod swings (formulas.md 3.2, R 298).
+"""The exact connecting rod: two masses at its ends and a couple, as the rod swings (R 298).
 
 A rod of mass m_r, centre of gravity at a from the crosshead pin and moment of inertia I_r about it moves like a mass
 m_r (1 − a/L) at the crosshead pin, a mass m_r a/L at the crank pin, and a couple (I_r − m_r a (L − a)) ψ̈. The first

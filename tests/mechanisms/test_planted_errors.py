@@ -1,0 +1,95 @@
+"""The laws are worth something only if a wrong formula breaks one: each of these slips, once planted, breaks one."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import inspect
+import itertools
+import types
+from collections.abc import Iterator
+
+import pytest
+import test_every_mechanism as laws
+
+SLIPS = [
+    ("slider_crank", "rod_angle", "angle.sin - self.offset", "angle.sin + self.offset"),
+    ("slider_crank", "slope", "(angle.sin + angle.cos", "(angle.sin - angle.cos"),
+    ("slider_crank", "curvature", "+ bend", "- bend"),
+    ("slider_crank", "radial", "cos - angle.sin", "cos + angle.sin"),
+    ("slider_crank", "radial", "cos - angle.sin", "sin - angle.cos"),
+    ("crank_formulas", "displacement_factor", "versine + lam", "versine - lam"),
+    ("crank_formulas", "acceleration_factor", "/ kappa - lam", "/ kappa + lam"),
+    ("scotch_yoke", "coordinate", "versine", "vercosine"),
+    ("scotch_yoke", "block_slope", "angle.cos", "angle.sin"),
+    ("scotch_yoke", "pin_force_factor", "+ 1.0", "- 1.0"),
+    ("scotch_yoke", "radial", "angle.cos", "-angle.cos"),
+    ("scotch_yoke", "radial", "angle.cos", "angle.sin"),
+    ("scotch_yoke", "guide_pair_factor", "angle.sin", "angle.cos"),
+    ("yoke_frame", "bending_arm", "self.gland + self.coordinate", "self.gland - self.coordinate"),
+    ("slotted_lever", "_turning", "bend = -crank", "bend = crank"),
+    ("slotted_lever", "pin_force_factor", "/ lever.reach", "* lever.reach"),
+    ("slotted_lever", "radial", "-self.pin", "self.pin"),
+    ("slotted_lever", "radial", "angle.sin", "angle.cos"),
+    ("slotted_lever", "block_slope", "-self.crank", "self.crank"),
+    ("ram", "lead", "cos - sin", "cos + sin"),
+    ("four_bar", "direction", "self.area * across - foot", "self.area * across + foot"),
+    ("four_bar", "slope", "+ a * (self.near", "- a * (self.near"),
+    ("four_bar", "coupler_force_factor", "1 / (", "-1 / ("),
+    (
+        "parallel_crank",
+        "coupler_path",
+        "angle.versine, self.crank * angle.sin",
+        "angle.sin, self.crank * angle.versine",
+    ),
+    ("parallel_crank", "coupler_acceleration", "-self.crank * angle.cos", "self.crank * angle.cos"),
+    ("parallel_crank", "coupler_inertia", "coupler_mass * self.crank", "coupler_mass * self.crank * self.crank"),
+    ("parallel_crank", "coupler_force_factor", "angle.sin", "angle.cos"),
+]
+"""File, function, its text and the wrong one: signs, sine for cosine, factors."""
+SERVES = {"crank_formulas": "slider_crank", "ram": "slotted_lever"}
+
+
+def planted(file: str, function: str, right: str, wrong: str) -> types.ModuleType:
+    """Return the module of the mechanisms with this text replaced where it first stands from that function on."""
+    module = importlib.import_module(f"kurbel.mechanisms.{file}")
+    before, head, after = inspect.getsource(module).partition(f"def {function}(")
+    assert right in after, (
+        f"{file}.{function} has no '{right}' any more: plant the slip in the formula as it stands now"
+    )
+    spoilt = types.ModuleType(module.__name__)
+    exec(compile(before + head + after.replace(right, wrong, 1), file, "exec"), spoilt.__dict__)
+    return spoilt
+
+
+def take_over(monkeypatch: pytest.MonkeyPatch, spoilt: types.ModuleType) -> None:
+    """Put what the spoilt module defines where the real one has it: its functions, and what its classes hold."""
+    real = importlib.import_module(spoilt.__name__)
+    for name, one in vars(spoilt).items():
+        if isinstance(one, type) and one.__module__ == real.__name__:
+            for key, value in vars(one).items():
+                if not key.startswith("__"):
+                    monkeypatch.setattr(getattr(real, name), key, value)
+        elif inspect.isfunction(one) and one.__module__ == real.__name__:
+            monkeypatch.setattr(real, name, one)
+
+
+def broken(file: str) -> Iterator[str]:
+    """Yield the names of the laws that the machines of a file now break."""
+    own = f"kurbel.mechanisms.{SERVES.get(file, file)}"
+    for name, law in vars(laws).items():
+        marks = dict(mark.args for mark in getattr(law, "pytestmark", ()) if mark.name == "parametrize")
+        if name.startswith("test_") and "machine" in marks:
+            # anew, since some keep what they once computed
+            marks["machine"] = [dataclasses.replace(one) for one in marks["machine"] if type(one).__module__ == own]
+            try:
+                for values in itertools.product(*marks.values()):
+                    law(**dict(zip(marks, values)))
+            except AssertionError:
+                yield name
+
+
+@pytest.mark.parametrize(("file", "function", "right", "wrong"), SLIPS, ids=[" ".join(slip) for slip in SLIPS])
+def test_a_slip_breaks_a_law(file: str, function: str, right: str, wrong: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    take_over(monkeypatch, planted(file, function, right, wrong))
+    assert next(broken(file), None) is not None

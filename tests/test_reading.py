@@ -1,0 +1,58 @@
+"""What the text of the code and of the docs points to is there: files of the repository, and names of the package."""
+
+from __future__ import annotations
+
+import ast
+import pkgutil
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+CODE = [file for folder in ("src", "tests", "docs", "benchmarks") for file in (ROOT / folder).rglob("*.py")]
+PAGES = [*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
+FILE = re.compile(r"(?<![\w/.])[\w./-]*\w\.(?:md|py|yaml|svg|csv|json|toml|txt|expected)\b")
+NAME = re.compile(r"\bkurbel(?:\.[A-Za-z_]\w*)+")
+READERS = {"engine.yaml", "MACHINE.yaml", "m.yaml", "demo.yaml", "broken.yaml", "run7.csv", "kurbel.schema.json"}
+ELSEWHERE = READERS | {"examples/ICE_example.py", "kurbel.mechanisms.harmonic_cam"}
+"""Files of the reader's own, one of opentorsion, and the mechanism that the pages add as an example."""
+
+
+def docstrings(file: Path) -> Iterator[str]:
+    """Yield the text of a module that is there to be read: docstrings, also those of constants."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            yield node.value.value
+
+
+def is_there(word: str, beside: Path) -> bool:
+    return word.removeprefix("./") in ELSEWHERE or any(
+        (folder / word).is_file() for folder in (ROOT, beside.parent, ROOT / "src" / "kurbel")
+    )
+
+
+def can_be_had(name: str) -> bool:
+    """Whether a dotted name is a module of the package, or something in one."""
+    try:
+        pkgutil.resolve_name(name)
+    except (ImportError, AttributeError):
+        return name in ELSEWHERE
+    return True
+
+
+def astray(text: str, beside: Path) -> list[str]:
+    """Return the files and names that a text speaks of and that are not there."""
+    files = [word for word in FILE.findall(text) if not is_there(word, beside)]
+    return files + [name for name in NAME.findall(text) if not can_be_had(name)]
+
+
+def test_docstrings_and_pages_point_to_what_is_there() -> None:
+    texts = {file: "\n".join(docstrings(file)) for file in CODE}
+    texts |= {page: page.read_text(encoding="utf-8") for page in PAGES}
+    found = {str(file.relative_to(ROOT)): astray(text, file) for file, text in texts.items()}
+    assert {file: words for file, words in found.items() if words} == {}
+
+
+def test_what_is_not_there_is_found() -> None:
+    text = "see formulas.md 3.7, docs/symbols.md, kurbel.solver.case.Case and kurbel.solver.drive"
+    assert astray(text, ROOT / "README.md") == ["formulas.md", "kurbel.solver.drive"]
