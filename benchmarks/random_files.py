@@ -1,0 +1,49 @@
+"""Random machine files of every kind through every command: no fault of kurbel's own, and how long the slowest took.
+
+    python benchmarks/random_files.py [COUNT [SEED]]
+
+Without a seed it is that of the day.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import Counter
+from datetime import date
+from pathlib import Path
+
+import numpy as np
+from click.testing import CliRunner
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+from random_files import machine_file
+
+from kurbel.cli import kurbel
+
+COMMANDS = ("check", "motion", "forces", "flywheel", "stress")
+
+
+def main() -> None:
+    """Print the statuses by command, every fault with its number, and the slowest run."""
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    seed = int(sys.argv[2]) if len(sys.argv) > 2 else date.today().toordinal()
+    statuses: Counter[tuple[str, int]] = Counter()
+    slowest = (0.0, "", -1)
+    for number in range(count):
+        text = machine_file(np.random.default_rng([seed, number]))
+        for command in COMMANDS:
+            begin = time.process_time()
+            result = CliRunner().invoke(kurbel, [command, "-"], input=text)
+            slowest = max(slowest, (time.process_time() - begin, command, number))
+            statuses[command, result.exit_code] += 1
+            if result.exit_code not in (0, 1, 2, 3) or "Warning:" in result.stderr:
+                print(f"machine {number}, {command}: status {result.exit_code}: {result.stderr.strip()[-300:]}")
+    for (command, status), found in sorted(statuses.items()):
+        print(f"{command:<10} status {status}: {found}")
+    print(f"seed {seed}; slowest: {slowest[0]:.1f} s of CPU, {slowest[1]} of machine {slowest[2]}")
+
+
+if __name__ == "__main__":
+    main()

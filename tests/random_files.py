@@ -1,0 +1,156 @@
+"""Machine files drawn at random, of every kind that kurbel reads: plausible ones, and some beyond anything built."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import yaml
+
+Random = np.random.Generator
+Keys = dict[str, Any]
+
+
+def size(random: Random, middle: float, unit: str, decades: float = 0.7) -> str:
+    """Return a positive quantity so many decades round its middle; one in thirty lies far out."""
+    decades = 6.0 if random.random() < 0.03 else decades
+    return f"{middle * 10 ** random.uniform(-decades, decades):.6g} {unit}".strip()
+
+
+def number(random: Random, low: float, high: float) -> float:
+    return float(f"{random.uniform(low, high):.6g}")
+
+
+def maybe(random: Random, share: float, keys: Keys) -> Keys:
+    return keys if random.random() < share else {}
+
+
+def mechanism(random: Random) -> tuple[str, Keys]:
+    """Return a mechanism: lengths that mostly fit one another, and its optional sizes now and then."""
+    crank = 10 ** random.uniform(-2, 0.3)
+
+    def long(low: float, high: float) -> str:
+        return f"{crank * random.uniform(low, high):.6g} m"
+
+    pin = maybe(random, 0.5, {"pin_diameter": long(0.1, 0.3), "pin_length": long(0.1, 0.4)})
+    rod = {"crank": f"{crank:.6g} m", "rod": long(1.05, 8)} | maybe(random, 0.3, {"offset": long(-0.3, 0.3)})
+    name = str(
+        random.choice(
+            ["slider-crank"] * 5 + ["scotch-yoke", "slotted-lever", "four-bar", "parallel-crank", "yoke-frame"]
+        )
+    )
+    kinds: dict[str, Keys] = {
+        "slider-crank": rod,
+        "yoke-frame": rod | maybe(random, 0.5, {"gland": long(1, 3)}),
+        "scotch-yoke": {"stroke": long(1, 4)} | pin | maybe(random, 0.5, {"guide_length": long(0.5, 2)}),
+        "slotted-lever": {"crank": f"{crank:.6g} m", "frame": long(0.5, 4), "lever": long(2, 8)} | pin,
+        "four-bar": {"crank": f"{crank:.6g} m", "coupler": long(1.5, 5), "rocker": long(1.5, 5), "frame": long(1.5, 5)},
+        "parallel-crank": {"crank": f"{crank:.6g} m", "frame": long(2, 6)}
+        | maybe(random, 0.5, {"coupler_mass": "80 kg"}),
+    }
+    return name, {"mechanism": name} | kinds[name]
+
+
+def pressure(random: Random, four: bool) -> Any:
+    """Return what stands for one end of an indicator."""
+    high, low = number(random, 1, 60), number(random, 0.2, 2)
+    kind = random.choice(["card", "constant", "trace", "ideal"])
+    if kind == "constant" and not four:
+        return {"constant": {"expansion": f"{high} bar", "compression": f"{low} bar"}}
+    if kind == "trace":
+        angles = np.linspace(0, 720 if four else 360, int(random.integers(8, 400)))
+        wave = low + (high - low) * np.exp(-((np.minimum(angles, angles[-1] - angles) / number(random, 5, 60)) ** 2))
+        points = [[float(f"{a:.6g}"), float(f"{p:.6g}")] for a, p in zip(angles, wave)]
+        return {"trace": {"unit": "bar", "points": points}}
+    if kind == "ideal":
+        if four:
+            return {"otto": {"intake": f"{low} bar", "compression_ratio": number(random, 3, 15), "peak": f"{high + 60} bar"}}
+        cut = number(random, 0.05, 0.9)
+        return {
+            "steam": {
+                "admission": f"{high} bar",
+                "exhaust": f"{low} bar",
+                "cut_off": cut,
+                "clearance": number(random, 0.02, 0.3),
+            }
+        }
+    inner = sorted(number(random, 0.01, 0.99) for _ in range(int(random.integers(0, 5))))
+
+    def line(first: float, last: float) -> list[list[float]]:
+        return [[0, first], *([z, number(random, low, high)] for z in inner), [1, last]]
+
+    card = {"unit": "bar", "expansion": line(high, low), "compression": line(high, low)[::-1]}
+    return card | ({"intake": line(low, low), "exhaust": line(low, low)[::-1]} if four else {})
+
+
+def cylinder(random: Random, four: bool) -> Keys:
+    """Return the keys of one cylinder."""
+    name, keys = mechanism(random)
+    slides = name not in ("four-bar", "parallel-crank")
+    rod = name in ("slider-crank", "yoke-frame")
+    if slides and random.random() < 0.85:
+        keys |= {"bore": size(random, 0.3, "m")}
+        ends = {"head_end": pressure(random, four)} | maybe(random, 0.4, {"crank_end": "mirrored"})
+        keys |= {"indicator": {"pressures": str(random.choice(["gauge", "absolute"]))} | ends}
+        keys |= maybe(random, 0.2, {"crank_end_rod": "20 mm"})
+    if slides and random.random() < 0.7:
+        masses: Keys = {"piston": size(random, 100, "kg")}
+        if rod and random.random() < 0.6:
+            exact = {"mass": size(random, 60, "kg"), "center_of_gravity": keys["crank"], "inertia": size(random, 8, "kg m2")}
+            masses["connecting_rod"] = (
+                exact if random.random() < 0.5 else {"mass": size(random, 60, "kg"), "share": number(random, 0.2, 0.8)}
+            )
+        keys |= {"masses": masses} | maybe(random, 0.3, {"inclination": f"{number(random, -180, 180)} deg"})
+    if name == "slider-crank" and "bore" in keys:
+        keys |= maybe(random, 0.4, {"friction": {"crosshead": number(random, 0, 0.3)}})
+    if slides and "bore" not in keys:
+        keys |= maybe(random, 0.6, {"ram_force": {"work": size(random, 5e3, "N"), "return": size(random, 5e2, "N")}})
+    if not slides:
+        back = {"return": size(random, 20, "N m")} if name == "four-bar" else {}
+        keys |= maybe(random, 0.6, {"moment": {"work": size(random, 50, "N m")} | back})
+    return keys
+
+
+def turning(random: Random) -> Keys:
+    """Return flywheel, load and coupling."""
+    inertia = {"inertia": size(random, 300, "kg m2", 2.5)}
+    wish = {"fluctuation": number(random, 0.001, 0.2)}
+    flywheel = inertia if random.random() < 0.5 else wish if random.random() < 0.7 else inertia | wish
+    loads: list[Keys] = [{"power_law": number(random, -0.5, 4)}, {"slip": 10 ** random.uniform(-9, 0)}]
+    coupling = {
+        "stiffness": size(random, 1e5, "N m/rad", 2),
+        "damping": size(random, 100, "N m s/rad", 2),
+        "inertia": size(random, 300, "kg m2", 2),
+    }
+    keys = maybe(random, 0.6, {"flywheel": flywheel})
+    keys |= maybe(random, 0.5, {"load": loads[int(random.integers(2))]}) | maybe(random, 0.25, {"coupling": coupling})
+    return keys | maybe(random, 0.15, {"efficiency": number(random, 0.5, 1)})
+
+
+CRANKSHAFT = {
+    **{"a": "300 mm", "b": "320 mm", "web_distance": "140 mm", "web_thickness": "80 mm", "web_width": "200 mm"},
+    **{"pin_diameter": "130 mm", "pin_length": "130 mm", "journal_diameter": "130 mm", "journal_length": "200 mm"},
+    **{"flywheel_mass": "2000 kg", "flywheel_position": "400 mm"},
+    **{"allowable_bending": "60 N/mm2", "allowable_torsion": "45 N/mm2"},
+}
+
+
+def machine_file(random: Random) -> str:
+    """Return the text of a machine file."""
+    four = bool(random.random() < 0.25)
+    keys: Keys = maybe(random, 0.95, {"speed": size(random, 200, "rpm")}) | {
+        "cycle": "four-stroke" if four else "two-stroke"
+    }
+    if random.random() < 0.3:
+        count = int(random.integers(2, 7))
+        keys["cylinders"] = [
+            cylinder(random, four) | {"crank_position": f"{number(random, 0, 720)} deg"} for _ in range(count)
+        ]
+    else:
+        keys |= cylinder(random, four)
+    keys |= (
+        turning(random)
+        | maybe(random, 0.2, {"crankshaft": CRANKSHAFT})
+        | maybe(random, 0.3, {"limits": {"c_max": "6 m/s", "delta": 0.01}})
+    )
+    return yaml.safe_dump(keys, sort_keys=False)
