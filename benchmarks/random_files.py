@@ -18,9 +18,8 @@ from click.testing import CliRunner
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
-from random_files import machine_file
-
 from kurbel.cli import kurbel
+from random_files import machine_file
 
 COMMANDS = ("check", "motion", "forces", "flywheel", "stress")
 

@@ -64,7 +64,9 @@ def pressure(random: Random, four: bool) -> Any:
         return {"trace": {"unit": "bar", "points": points}}
     if kind == "ideal":
         if four:
-            return {"otto": {"intake": f"{low} bar", "compression_ratio": number(random, 3, 15), "peak": f"{high + 60} bar"}}
+            return {
+                "otto": {"intake": f"{low} bar", "compression_ratio": number(random, 3, 15), "peak": f"{high + 60} bar"}
+            }
         cut = number(random, 0.05, 0.9)
         return {
             "steam": {
@@ -96,7 +98,11 @@ def cylinder(random: Random, four: bool) -> Keys:
     if slides and random.random() < 0.7:
         masses: Keys = {"piston": size(random, 100, "kg")}
         if rod and random.random() < 0.6:
-            exact = {"mass": size(random, 60, "kg"), "center_of_gravity": keys["crank"], "inertia": size(random, 8, "kg m2")}
+            exact = {
+                "mass": size(random, 60, "kg"),
+                "center_of_gravity": keys["crank"],
+                "inertia": size(random, 8, "kg m2"),
+            }
             masses["connecting_rod"] = (
                 exact if random.random() < 0.5 else {"mass": size(random, 60, "kg"), "share": number(random, 0.2, 0.8)}
             )

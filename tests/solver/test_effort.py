@@ -11,6 +11,8 @@ import mpmath
 import numpy as np
 import pytest
 
+from kurbel.crank_angle import CrankAngle
+from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.friction import Friction, Rings
@@ -100,7 +102,7 @@ ROD = ConnectingRod(220.0, center_of_gravity=1.3, inertia=90.0)
     ],
     ids=["steam", "friction", "standing", "exact rod", "offset, pump", "short rod", "yoke"],
 )
-def test_closed_work_is_the_integral_of_the_torque(cylinder: Cylinder) -> None:
+def test_the_excess_work_is_the_integral_of_the_torque(cylinder: Cylinder) -> None:
     machine = turning(cylinder, replace(cylinder, crank_position=77.0))
     excess = machine.excess
     turnover = excess.grid.integral(np.abs(excess.torque.torque(excess.grid.degrees, excess.grid.within).value))
@@ -108,6 +110,29 @@ def test_closed_work_is_the_integral_of_the_torque(cylinder: Cylinder) -> None:
         part = Grid(np.append(excess.grid.breaks[excess.grid.breaks < angle], angle))
         quadrature = part.integral(excess.torque.torque(part.degrees, part.within).value)
         assert excess.at(np.array([angle]))[0] == pytest.approx(quadrature, abs=2e-14 * turnover)
+
+
+def test_the_work_of_the_masses_is_what_their_energy_loses() -> None:
+    """∫ −m x′ x″ ω² dφ = −½ m ω² x′² is closed, and so is the work m g Δx of their weight."""
+    idle = replace(ENGINE, pistons=(), inclination=60.0)
+    machine, mechanism = turning(idle, rpm=200.0), idle.mechanism
+    omega, angle = 200 * math.pi / 30, CrankAngle.of(ANGLES)
+    weight = 826.0 * GRAVITY * CrankAngle.of(60.0).sin * mechanism.coordinate(angle)
+    closed = weight - 826.0 / 2 * (mechanism.slope(angle) * omega) ** 2
+    assert pytest.approx(closed, abs=2e-15 * np.ptp(closed)) == machine.at(ANGLES).E
+    assert machine.M_mean == pytest.approx(0, abs=1e-15 * np.ptp(closed))
+
+
+def test_the_work_of_a_card_is_its_closed_area() -> None:
+    """Over a stroke from dead centre to dead centre, a card of straight lines without masses; both ends the same."""
+    machine = turning(replace(ENGINE, masses=None))
+    cylinder = Case(machine.machine).cylinders[0]
+    assert machine.work_shaft == pytest.approx(cylinder.work, rel=2e-15)
+    compressed = Card.from_keys(unit=(1e5, 1), expansion=[(0, 8), (0.3, 8), (1, 2)], compression=[(1, 0), (0, 0)])
+    single = replace(ENGINE, masses=None, pistons=(Piston(0.2, indicator=Indicator(compressed)),))
+    work = turning(single)
+    stroke = (0.3 * 8e5 + 0.7 * 5e5) * 0.8 * Piston(0.2).head_area
+    assert work.at(np.array([180.0])).E[0] + work.M_mean * math.pi == pytest.approx(stroke, rel=2e-15)
 
 
 def test_lobes_add_up_to_nothing_and_span_the_swing() -> None:

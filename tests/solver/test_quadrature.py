@@ -15,6 +15,7 @@ from kurbel.machine.ideal_cards import Diesel
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
+from kurbel.machine.trace import Trace
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
@@ -126,6 +127,27 @@ def test_the_residual_shows_gauss_across_a_kink(monkeypatch: pytest.MonkeyPatch)
     error = (forces.crosshead_work - precise) / turnover
     assert abs(error) > 1e-6
     assert forces.energy_residual == pytest.approx(error, rel=0.3)  # it divides by a turnover with the same fault
+
+
+@pytest.mark.parametrize("step", [0.9, 0.5])
+def test_friction_between_samples_where_the_rod_swings_round_within_a_hair(step: float) -> None:
+    """R/L = 0.999 and 400 or 720 samples: narrow as their pieces are, those beside 90° and 270° must be narrower."""
+    angles = np.arange(0.0, 360.0 + step / 2, step)
+    points = [(angle, 6 + 4 * math.cos(math.radians(angle) - 0.4)) for angle in angles.tolist()]
+    forces = one_cylinder(
+        SliderCrank(0.2, 0.2002),
+        180,
+        pistons=(Piston(0.3, indicator=Indicator(Trace.from_keys((1e5, 1), points=points))),),
+        masses=Masses(10.0),
+        friction=Friction(0.02),
+    )
+    near = [centre + side * 10 * share for centre in (90, 270) for side in (1, -1) for share in (1, *GRADES)]
+    breaks = np.unique(np.concatenate((forces.grid.breaks, near)))
+    edges = breaks[:-1, None], breaks[1:, None]
+    nodes = edges[0] + (edges[1] - edges[0]) * (1 + GAUSS[0]) / 2
+    values = friction_power(forces)(nodes.ravel()).reshape(nodes.shape)
+    precise = float((np.radians(edges[1] - edges[0]) / 2 * values * GAUSS[1]).sum())
+    assert forces.crosshead_work == pytest.approx(precise, rel=2e-12)
 
 
 def test_friction_of_random_cylinders() -> None:

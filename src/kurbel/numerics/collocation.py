@@ -56,7 +56,7 @@ class Periodic(NamedTuple):
     growth: float
 
     def at(self, degrees: Array, within: Array) -> Array:
-        """Return z at crank angles (n,) in degrees, from the elements that hold `within`."""
+        """Return z at angles (n,) in degrees, from the elements that hold `within`."""
         return self.elements.at(self.coefficients[:, None], degrees, within)[..., 0]
 
 

@@ -16,10 +16,10 @@ STAGES = 11
 
 
 class Prepared(Protocol):
-    """An equation of which a part hangs on the crank angle alone."""
+    """An equation of which a part hangs on the angle alone."""
 
     def prepared(self, degrees: Array, within: Array) -> Array:
-        """Return what it needs at crank angles (k, n) and does not change with the unknowns, as (m, k, n)."""
+        """Return what it needs at angles (k, n) and does not change with the unknowns, as (m, k, n)."""
         ...
 
 
@@ -74,12 +74,12 @@ class Elements(NamedTuple):
 
     @property
     def low(self) -> Array:
-        """Crank angles at which the elements begin."""
+        """Angles at which the elements begin."""
         return self.piece + self.offset
 
     @property
     def degrees(self) -> Array:
-        """Crank angles (k, s) of the nodes."""
+        """Angles (k, s) of the nodes."""
         return self.piece[:, None] + (self.offset[:, None] + self.width[:, None] * rule().nodes)
 
     def prepared(self, equation: Prepared) -> Array:
@@ -88,7 +88,7 @@ class Elements(NamedTuple):
         return equation.prepared(degrees, np.broadcast_to(self.within[:, None], degrees.shape))
 
     def at(self, coefficients: Array, degrees: Array, within: Array) -> Array:
-        """Return Σ c_n P_n at crank angles (n,), of the elements that hold `within`; coefficients: (k, …, s + 1)."""
+        """Return Σ c_n P_n at angles (n,), of the elements that hold `within`; coefficients: (k, …, s + 1)."""
         k = np.clip(np.searchsorted(self.low, within, side="right") - 1, 0, None)
         x = 2 * ((degrees - self.piece[k]) - self.offset[k]) / self.width[k] - 1
         return np.asarray(np.einsum("...n,...mn->...m", legendre(x, STAGES), coefficients[k]))

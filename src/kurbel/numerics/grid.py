@@ -25,7 +25,7 @@ _AGREEMENT = 1e-12  # of values; integrals of what is smooth then agree far bett
 class Pieces:
     """Pieces from `low` to `high` (n,) in degrees with the nodes of a rule.
 
-    degrees, within: crank angles of the nodes and the middles of their pieces, (pieces, nodes). beyond: what the
+    degrees, within: angles of the nodes and the middles of their pieces, (pieces, nodes). beyond: what the
     rounding of `degrees` took from the nodes; with R/L near 1 the rod swings round within a hair of 90°, and it counts.
     """
 

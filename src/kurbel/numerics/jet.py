@@ -1,4 +1,4 @@
-"""Jets: arrays that carry their slope by the crank angle, so that one formula gives a value and its derivative.
+"""Jets: arrays that carry their slope by the angle, so that one formula gives a value and its derivative.
 
 The formulas of the mechanisms use only + − × ÷, √ and a choice by sign. Fed with the jets of sin φ and cos φ they
 return the exact derivative of whatever they compute, with no second set of formulas to keep in step.

@@ -10,55 +10,68 @@ import numpy as np
 from kurbel.numerics.arithmetic import running_sums
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
-from kurbel.numerics.legendre import legendre, legendre_slopes
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
 
 
 class Piecewise:
-    """The polynomials through the values (pieces, nodes) of a quantity at the weighted points of a grid.
+    """The polynomials Σ c_k T_k through the values (pieces, nodes) of a quantity at the weighted points of a grid.
 
-    Up to the end of a piece their integral is the rule itself.
+    Chebyshev's T_k are cosines: all of them take one call.
     """
 
     def __init__(self, grid: Grid, values: Array) -> None:
         self._grid = grid
         used = grid.weights != 0
-        self._degree = int(used.sum()) - 1
-        order = np.arange(self._degree + 1)
-        squares = 2 / (2 * order + 1)
-        if grid.weights[0]:
-            squares[-1] = 2 / order[-1]  # the rule of Lobatto: P_{N−1}² summed over its points
-        at_nodes = legendre(grid.nodes[used], self._degree) * grid.weights[used][:, None]
-        self._coefficients = values[:, used] @ (at_nodes / squares)
+        self._wholes = grid.integrals(values)
+        at_nodes = _chebyshev(grid.nodes[used], int(used.sum()))
+        self._coefficients = values[:, used] @ np.linalg.inv(at_nodes).T
 
     def _place(self, degrees: Array, within: Array) -> tuple[Indices, Array]:
         """Return the pieces that hold `within`, and where the angles lie in them, on −1 … 1."""
         breaks = self._grid.breaks
         piece = np.clip(np.searchsorted(breaks, within, side="right") - 1, 0, len(breaks) - 2)
         low, high = breaks[piece], breaks[piece + 1]
-        return piece, 2 * (degrees - low) / (high - low) - 1
+        return piece, np.clip(2 * (degrees - low) / (high - low) - 1, -1.0, 1.0)
 
     def at(self, degrees: Array, within: Array) -> Jet:
         """Return values with slopes at angles (…,) in degrees within the cycle, on the sides that hold `within`."""
         piece, x = self._place(degrees, within)
-        coefficients = self._coefficients[piece]
-        value, slope = ((p(x, self._degree) * coefficients).sum(axis=-1) for p in (legendre, legendre_slopes))
-        return Jet(value, slope / self._grid.half_widths[piece])
+        t = _chebyshev(x, self._coefficients.shape[1])
+        slope = (t[..., :-1] * self._slopes[piece]).sum(axis=-1) / self._grid.half_widths[piece]
+        return Jet((t * self._coefficients[piece]).sum(axis=-1), slope)
+
+    @cached_property
+    def _slopes(self) -> Array:
+        """Coefficients of the derivatives: c′_{k−1} = c′_{k+1} + 2k c_k, the first one halved."""
+        count = self._coefficients.shape[1]
+        k = np.arange(count)
+        matrix = np.where((k > k[:, None]) & ((k - k[:, None]) % 2 == 1), 2.0 * k, 0.0)[:-1]
+        matrix[0] /= 2
+        return np.asarray(self._coefficients @ matrix.T)
+
+    @cached_property
+    def _integrals(self) -> Array:
+        """Coefficients of ∫ = Σ C_k (T_k − T_k(−1)), k > 0: C_k = (c_{k−1} − c_{k+1})/2k, the first c doubled."""
+        c = np.pad(self._coefficients, ((0, 0), (0, 2)))
+        c[:, 0] *= 2
+        return np.asarray((c[:, :-2] - c[:, 2:]) / (2 * np.arange(1, c.shape[1] - 1)))
 
     @cached_property
     def _up_to(self) -> Array:
-        """The integral up to the start of each piece, and over the whole cycle at the end."""
-        wholes = 2 * self._coefficients[:, 0] * self._grid.half_widths
-        return np.array([0.0, *running_sums(wholes.tolist())])
+        """The integral up to the start of each piece."""
+        return np.array([0.0, *running_sums(self._wholes[:-1].tolist())])
 
     def integral_to(self, degrees: Array) -> Array:
         """Return the integral over φ in radians from the start of the cycle to angles (…,) in degrees within it."""
         piece, x = self._place(degrees, degrees)
-        p = legendre(x, self._degree + 1)
-        # ∫ P_n from −1 to x is (P_{n+1} − P_{n−1})/(2n + 1), with P_{−1} = −1
-        below = np.concatenate((-np.ones_like(p[..., :1]), p[..., :-2]), axis=-1)
-        integrals = (p[..., 1:] - below) / (2 * np.arange(self._degree + 1) + 1)
-        part = (self._coefficients[piece] * integrals).sum(axis=-1)
+        count = self._integrals.shape[1] + 1
+        gained = (_chebyshev(x, count) - _chebyshev(np.array(-1.0), count))[..., 1:]
+        part = (self._integrals[piece] * gained).sum(axis=-1)
         return np.asarray(self._up_to[piece] + self._grid.half_widths[piece] * part)
+
+
+def _chebyshev(x: Array, count: int) -> Array:
+    """Return T_0 … at x (…,) on −1 … 1 as (…, count)."""
+    return np.asarray(np.cos(np.arccos(x)[..., None] * np.arange(count)))

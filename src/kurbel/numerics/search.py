@@ -47,7 +47,7 @@ class Curve(NamedTuple):
 
 
 class Extremes(NamedTuple):
-    """Largest and smallest value of one quantity over the cycle, with their crank angles."""
+    """Largest and smallest value of one quantity over the cycle, with their angles."""
 
     largest: Extreme
     smallest: Extreme

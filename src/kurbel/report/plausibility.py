@@ -49,7 +49,7 @@ def brake_warnings(machine: Machine, cylinders: Sequence[CylinderForces]) -> Ite
 
 def _of_level(pressure: TracePressure) -> Iterable[str]:
     """Judge by the lowest pressure whether gauge and absolute are mixed up."""
-    place = pressure.place
+    place = pressure.setting
     lowest = float(pressure.trace.pressures.min())
     shown = show(lowest, "pressure")
     if place.absolute and lowest < 0.1 * place.ambient:
@@ -68,7 +68,7 @@ def _of_ends(pressure: TracePressure) -> Iterable[str]:
 
 
 def _of_peak(pressure: TracePressure) -> Iterable[str]:
-    samples, place = pressure.trace, pressure.place
+    samples, place = pressure.trace, pressure.setting
     top = int(np.argmax(samples.pressures))
     at = float(samples.angles[top]) + pressure.shift
     inner, outer = place.mechanism.dead_centres()
@@ -93,7 +93,7 @@ def _motored(pressure: TracePressure, top: int) -> bool:
 
     The sign of the work tells nothing, since a motored trace that stands too late does work.
     """
-    samples, lift, sides = pressure.trace, pressure.place.lift, np.array(_MOTORED_SIDES)
+    samples, lift, sides = pressure.trace, pressure.setting.lift, np.array(_MOTORED_SIDES)
     before, after = (
         lift + np.interp(samples.angles[top] + side, samples.angles, samples.pressures, period=samples.period)
         for side in (-sides, sides)

@@ -1,13 +1,19 @@
-"""From a machine to its results, in SI: numpy, no files, no printing.
+"""From a machine to its results: a case asks the whole machine, the machine its cylinders, a cylinder its pressures.
 
-Letters before an equation number name the source: R is Rötscher, *Die Maschinenelemente* (1927), ch. 14; B is Blau,
-*Die Mechanik fester Körper* (1905), § 6; D is Redtenbacher, *Der Maschinenbau* (1862); G is *Öl- und Gasmaschinen*,
-on crankshafts. The books print magnitudes for each stroke; here every value has its sign, through the whole cycle:
+Letters before the numbers of formulas and pages name their source:
 
-- φ runs in the sense of rotation from the inner dead centre, where the piston is farthest from the shaft (G: firing
-  dead centre); the outstroke leads to the outer one. Angles that are shown are in degrees, derivatives are by radians.
-- x, c, b and the piston force P count positive toward the shaft; a force against the motion has the other sign.
-- S is compression; N = P tan ψ presses on the guide on the side away from that of the pin on the outstroke; T pushes
-  the crank pin on in the sense of rotation, D toward the shaft; M = T R.
-- pressures are above the ambient; ψ is the tilt of the connecting rod, θ that of a swinging lever or rocker; λ = R/L.
+    R   Rötscher, Die Maschinenelemente, 1927, chapter 14
+    B   Blau, 1905
+    D   Redtenbacher, 1862
+    G   Öl- und Gasmaschinen, the chapter on crankshafts
+
+The books print magnitudes and change signs between the strokes; here every quantity has a sign of its own:
+
+    φ        crank angle in degrees from the inner dead centre on, in the sense of rotation
+    x, c, b  displacement from the inner dead centre toward the shaft, velocity, acceleration: c < 0 on the way back
+    P        force along the stroke line, positive toward the shaft; friction and resistance count with their sign
+    ψ        angle between rod and stroke line, positive on the side where the pin runs on the outstroke
+    S, N     rod force, positive in compression; force on the guide, positive as P and ψ are
+    D, T     force on the crank pin toward the shaft, and in the sense of rotation
+    M        torque on the shaft, positive where it drives
 """

@@ -11,7 +11,7 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms import Mechanism
-from kurbel.solver.pressure import Place, pressure_in
+from kurbel.solver.pressure import Setting, pressure_in
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -28,7 +28,7 @@ class PistonGas:
         indicator = piston.indicator
         assert indicator is not None
         head, crank = indicator.head_end, indicator.crank_end
-        at_head = Place(mechanism, cycle, True, ambient, indicator.absolute)
+        at_head = Setting(mechanism, cycle, True, ambient, indicator.absolute)
         at_crank = at_head._replace(head_end=False, mirrored=crank is head)
         self.piston = piston
         self.repeats = repeats

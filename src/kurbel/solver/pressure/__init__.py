@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
 
 
-class Place(NamedTuple):
+class Setting(NamedTuple):
     """Where a chamber stands and what its pressures count from.
 
     cycle: degrees of crank angle, 360 or 720; ambient: absolute pressure in Pa; absolute: whether the chamber's own
@@ -58,7 +58,7 @@ class Pressure(Protocol):
     def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
         """Return the gauge pressure in Pa at crank angles (n,), where the displacement is x (n,) in m.
 
-        within: angles (n,) in degrees inside the piece that is meant, so that each side of a jump can be asked for.
+        within: angles (n,) in degrees inside the segment that is meant, so that each side of a jump can be asked for.
         With a jet for x the pressure is a jet too.
         """
         ...
@@ -79,12 +79,12 @@ _KINDS = {
     "kurbel.machine.ideal_cards:Otto": _IDEAL,
     "kurbel.machine.ideal_cards:Diesel": _IDEAL,
 }
-"""Class of the chamber -> what makes its pressure, from the chamber and its place."""
+"""Class of the chamber -> what makes its pressure, from the chamber and its setting."""
 
 
-def pressure_in(chamber: Chamber, place: Place) -> Pressure:
+def pressure_in(chamber: Chamber, setting: Setting) -> Pressure:
     """Return the pressure in a chamber."""
     paths = (f"{kind.__module__}:{kind.__qualname__}" for kind in type(chamber).__mro__)
     module, name = next(_KINDS[path] for path in paths if path in _KINDS).split(":")
-    pressure: Pressure = getattr(import_module(module), name)(chamber, place)
+    pressure: Pressure = getattr(import_module(module), name)(chamber, setting)
     return pressure

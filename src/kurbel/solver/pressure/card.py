@@ -1,12 +1,12 @@
-"""The pressure of a card: pieces over the stroke, found by crank angle."""
+"""The pressure of a card: segments over the stroke, found by crank angle."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,75 +14,58 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.machine.indicator import Card, Line
 from kurbel.mechanisms import fan
 from kurbel.numerics.jet import once_each
-from kurbel.solver.pressure import Place
-from kurbel.solver.pressure.pieces import Piece, Process, Stroke, polytropic_exponent
+from kurbel.solver.pressure import Setting
+from kurbel.solver.pressure.segments import Process, Segment, Stroke, polytropic_exponent
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
 
 
-class Lines(NamedTuple):
-    """The lines of pieces (n,): first fraction, pressure in Pa there, gradient in Pa, exponent, last fraction."""
-
-    z: Array
-    p: Array
-    gradients: Array
-    exponents: Array
-    next_z: Array
-
-    @classmethod
-    def of(cls, pieces: Sequence[Piece]) -> Lines:
-        """Return the lines of pieces that have a width."""
-        z, p, next_z, next_p, exponents = np.array(pieces).T
-        return cls(z, p, (next_p - p) / (next_z - z), exponents, next_z)
-
-
 class ProcessPressure:
     """Gauge pressure in one chamber from a process over the stroke.
 
-    The pieces are found by crank angle, not by displacement, so that each side of a vertical jump can be asked for
-    exactly. starts, bends: as `Pressure` says; pieces: those that begin at `starts`.
+    The segments are found by crank angle, not by displacement, so that each side of a vertical jump can be asked for
+    exactly. starts, bends: as `Pressure` says.
     """
 
-    def __init__(self, process: Process, place: Place) -> None:
+    def __init__(self, process: Process, setting: Setting) -> None:
         self.process = process
-        self.place = place
-        self._stroke = place.mechanism.stroke
+        self.setting = setting
+        self._stroke = setting.mechanism.stroke
         begun = sorted(
-            (begun for index, stroke in enumerate(process.strokes) for begun in _begun(stroke, index, place)),
+            (begun for index, stroke in enumerate(process.strokes) for begun in _begun(stroke, index, setting)),
             key=lambda begun: begun[0],
         )
         self.starts = np.array([start for start, _ in begun])
-        self.pieces = tuple(piece for _, piece in begun)
-        self.lines = Lines.of(self.pieces)
+        self._z, self._p, self._next_z, next_p, self._exponents = np.array([segment for _, segment in begun]).T
+        self._gradients = (next_p - self._p) / (self._next_z - self._z)
+        self._polytropic = bool(self._exponents.any())
         self._ends = np.roll(self.starts, -1)
 
     def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
-        """Return the gauge pressure in Pa at displacements x (n,) in m, on the pieces that hold the angles `within`."""
-        piece = np.searchsorted(self.starts, np.mod(once_each(within), self.place.cycle), side="right") - 1
-        lines = self.lines
-        share = x / self._stroke if self.place.head_end else 1 - x / self._stroke
-        share = self._at_corners(share, angle, piece)
-        straight = (lines.p[piece] - self.place.base) + lines.gradients[piece] * (share - lines.z[piece])
-        return self._curved(straight, share, piece) if self.process.polytropic else straight
+        """Return the gauge pressure in Pa at displacements x (n,) in m, on the segments that hold `within` (n,)."""
+        segment = np.searchsorted(self.starts, np.mod(once_each(within), self.setting.cycle), side="right") - 1
+        share = x / self._stroke if self.setting.head_end else 1 - x / self._stroke
+        share = self._at_corners(share, angle, segment)
+        straight = (self._p[segment] - self.setting.base) + self._gradients[segment] * (share - self._z[segment])
+        return self._curved(straight, share, segment) if self._polytropic else straight
 
-    def _at_corners(self, share: Any, angle: CrankAngle, piece: Indices) -> Any:
+    def _at_corners(self, share: Any, angle: CrankAngle, segment: Indices) -> Any:
         """Return the stroke fractions, at corners those of the card: their angles are rounded, lines may be steep."""
-        turned = np.mod(angle.degrees, self.place.cycle)
-        begins = np.abs(turned - self.starts[piece]) <= _ROUNDING
-        ends = np.abs(turned - self._ends[piece]) <= _ROUNDING
+        turned = np.mod(angle.degrees, self.setting.cycle)
+        begins = np.abs(turned - self.starts[segment]) <= _ROUNDING
+        ends = np.abs(turned - self._ends[segment]) <= _ROUNDING
         if not (begins.any() or ends.any()):
             return share
-        lines, value = self.lines, getattr(share, "value", share)
-        return share + (np.where(begins, lines.z[piece], np.where(ends, lines.next_z[piece], value)) - value)
+        value = getattr(share, "value", share)
+        return share + (np.where(begins, self._z[segment], np.where(ends, self._next_z[segment], value)) - value)
 
-    def _curved(self, straight: Any, share: Any, piece: Indices) -> Any:
-        """Return P (V/V′)^n less the ambient on polytropic pieces, and the straight value elsewhere."""
-        lines, clearance = self.lines, self.process.clearance
-        exponents = lines.exponents[piece]
+    def _curved(self, straight: Any, share: Any, segment: Indices) -> Any:
+        """Return P (V/V′)^n less the ambient on polytropic segments, and the straight value elsewhere."""
+        exponents, clearance = self._exponents[segment], self.process.clearance
         # beside a dead centre rounding may put x a hair outside the stroke; the clearance keeps the volume positive
-        swelling = (share + clearance) / (lines.z[piece] + clearance)
-        power = (lines.p[piece] + self.process.lift) * swelling**-exponents - self.place.ambient
+        swelling = (share + clearance) / (self._z[segment] + clearance)
+        power = (self._p[segment] + self.process.lift) * swelling**-exponents - self.setting.ambient
         if hasattr(power, "where"):
             return power.where(exponents != 0, power, straight)
         return np.where(exponents != 0, power, straight)
@@ -90,10 +73,10 @@ class ProcessPressure:
     @cached_property
     def bends(self) -> tuple[float, ...]:
         """Angles in degrees beside the dead centre of the smallest volume, where a polytropic line bends sharply."""
-        if not self.process.polytropic:
+        if not self._polytropic:
             return ()
-        mechanism = self.place.mechanism
-        dead_centre = mechanism.dead_centres()[0 if self.place.head_end else 1]
+        mechanism = self.setting.mechanism
+        dead_centre = mechanism.dead_centres()[0 if self.setting.head_end else 1]
         curvature = abs(mechanism.curvature(CrankAngle.of(dead_centre)))
         width = math.degrees(math.sqrt(2 * self.process.clearance * self._stroke / curvature)) if curvature else 0.0
         return fan(dead_centre, width)
@@ -107,40 +90,42 @@ class ProcessPressure:
 _ROUNDING = 3e-13
 """Degrees of crank angle by which the angle of a corner may be off: a few units in the last place of 720."""
 _NO_WIDTH = 1e-10
-"""Degrees of crank angle; over less a line cannot be followed, and its piece is a jump."""
+"""Degrees of crank angle; over less a line cannot be followed, and its segment is a jump."""
 
 
-def _begun(stroke: Stroke, index: int, place: Place) -> Iterator[tuple[float, Piece]]:
-    """Yield the crank angles in degrees in [0, cycle) at which the pieces of one stroke begin, jumps left out."""
-    edges = _edges(stroke, index, place)
+def _begun(stroke: Stroke, index: int, setting: Setting) -> Iterator[tuple[float, Segment]]:
+    """Yield the crank angles in degrees in [0, cycle) at which the segments of one stroke begin, jumps left out."""
+    edges = _edges(stroke, index, setting)
     # beside the other end of the stroke rounding may turn two angles round
     widths = np.mod(np.diff(edges) + 1, 360.0) - 1
-    wide = [(start, piece) for start, piece, width in zip(edges, stroke, widths, strict=False) if width > _NO_WIDTH]
-    for number, (start, piece) in enumerate(wide):
-        yield float((start if number else edges[0]) % place.cycle), piece
+    wide = [(start, segment) for start, segment, width in zip(edges, stroke, widths, strict=False) if width > _NO_WIDTH]
+    for number, (start, segment) in enumerate(wide):
+        yield float((start if number else edges[0]) % setting.cycle), segment
 
 
-def _edges(stroke: Stroke, index: int, place: Place) -> Array:
-    """Return the crank angles in degrees at which the pieces of one stroke begin, and that at which it ends."""
+def _edges(stroke: Stroke, index: int, setting: Setting) -> Array:
+    """Return the crank angles in degrees at which the segments of one stroke begin, and that at which it ends."""
     # the crank end begins its process at the outer dead centre, one stroke later
-    number = index + (0 if place.head_end else 1)
-    begin, end = (_dead_centre(place, each) for each in (number, number + 1))
-    fractions = np.array([piece.z for piece in stroke[1:]])
-    along = fractions if place.head_end else 1 - fractions
-    angles = place.mechanism.crank_angles_at(along * place.mechanism.stroke, number % 2 == 0) if len(stroke) > 1 else []
+    number = index + (0 if setting.head_end else 1)
+    begin, end = (_dead_centre(setting, each) for each in (number, number + 1))
+    fractions = np.array([segment.z for segment in stroke[1:]])
+    along = fractions if setting.head_end else 1 - fractions
+    angles = (
+        setting.mechanism.crank_angles_at(along * setting.mechanism.stroke, number % 2 == 0) if len(stroke) > 1 else []
+    )
     return np.concatenate(([begin], 360.0 * (number // 2) + np.asarray(angles), [end]))
 
 
-def _dead_centre(place: Place, number: int) -> float:
+def _dead_centre(setting: Setting, number: int) -> float:
     """Return the crank angle in degrees at which this stroke begins; strokes count from 0 on."""
-    return 360.0 * (number // 2) + place.mechanism.dead_centres()[number % 2]
+    return 360.0 * (number // 2) + setting.mechanism.dead_centres()[number % 2]
 
 
 class CardPressure(ProcessPressure):
     """The pressure of a card drawn by points, joined as the card says."""
 
-    def __init__(self, card: Card, place: Place) -> None:
-        super().__init__(card_process(card, place.lift), place)
+    def __init__(self, card: Card, setting: Setting) -> None:
+        super().__init__(card_process(card, setting.lift), setting)
 
 
 def card_process(card: Card, lift: float) -> Process:
@@ -151,7 +136,7 @@ def card_process(card: Card, lift: float) -> Process:
 
 def _stroke(line: Line, lift: float, clearance: float) -> Stroke:
     return tuple(
-        Piece(z, p, next_z, next_p, _exponent(z, p + lift, next_z, next_p + lift, clearance))
+        Segment(z, p, next_z, next_p, _exponent(z, p + lift, next_z, next_p + lift, clearance))
         for (z, p), (next_z, next_p) in pairwise(zip(line.fractions, line.pressures, strict=True))
         if next_z != z
     )

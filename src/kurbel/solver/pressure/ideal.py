@@ -10,14 +10,14 @@ from collections.abc import Callable
 from typing import Any
 
 from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam, after_polytrope
-from kurbel.solver.pressure import Place
+from kurbel.solver.pressure import Setting
 from kurbel.solver.pressure.card import ProcessPressure
-from kurbel.solver.pressure.pieces import Piece, Process, Stroke
+from kurbel.solver.pressure.segments import Process, Segment, Stroke
 
 
-def ideal_pressure(card: IdealCard, place: Place) -> ProcessPressure:
+def ideal_pressure(card: IdealCard, setting: Setting) -> ProcessPressure:
     """Return the pressure of an ideal card."""
-    return ProcessPressure(ideal_process(card, place.lift, round(place.cycle / 360)), place)
+    return ProcessPressure(ideal_process(card, setting.lift, round(setting.cycle / 360)), setting)
 
 
 def ideal_process(card: IdealCard, lift: float = 0.0, revolutions: int = 1) -> Process:
@@ -27,17 +27,17 @@ def ideal_process(card: IdealCard, lift: float = 0.0, revolutions: int = 1) -> P
 
 
 class _Drawing:
-    """Draws pieces of a card with one clearance; lift makes its pressures absolute; four_stroke: with gas exchange."""
+    """Draws segments of a card with one clearance; lift makes its pressures absolute; four_stroke: gas exchange too."""
 
     def __init__(self, lift: float, clearance: float, four_stroke: bool) -> None:
         self.four_stroke = four_stroke
         self.lift = lift
         self.clearance = clearance
 
-    def polytrope(self, z: float, p: float, next_z: float, exponent: float) -> Piece:
+    def polytrope(self, z: float, p: float, next_z: float, exponent: float) -> Segment:
         """Return p V^n = const from the point (z, p) to the stroke fraction next_z."""
         absolute = after_polytrope(p + self.lift, z + self.clearance, next_z + self.clearance, exponent)
-        return Piece(z, p, next_z, absolute - self.lift, exponent)
+        return Segment(z, p, next_z, absolute - self.lift, exponent)
 
     def fraction_after(self, z: float, p: float, next_p: float, exponent: float) -> float:
         """Return the stroke fraction at which p V^n = const from (z, p) reaches next_p."""
@@ -64,11 +64,11 @@ class _Drawing:
         empties = self.fraction_after(1.0, card.suction, card.delivery, card.exponent)
         return (
             _wide(
-                Piece(0.0, card.delivery, fills, card.suction, card.exponent),
+                Segment(0.0, card.delivery, fills, card.suction, card.exponent),
                 _isobar(fills, card.suction, 1.0),
             ),
             _wide(
-                Piece(1.0, card.suction, empties, card.delivery, card.exponent),
+                Segment(1.0, card.suction, empties, card.delivery, card.exponent),
                 _isobar(empties, card.delivery, 0.0),
             ),
         )
@@ -86,7 +86,7 @@ class _Drawing:
         )
         return self._engine(card, power)
 
-    def _compression(self, card: Otto | Diesel) -> Piece:
+    def _compression(self, card: Otto | Diesel) -> Segment:
         return self.polytrope(1.0, card.intake, 0.0, card.exponent)
 
     def _engine(self, card: Otto | Diesel, power: Stroke) -> tuple[Stroke, ...]:
@@ -104,10 +104,10 @@ _DRAWN: dict[type, Callable[[_Drawing, Any], tuple[Stroke, ...]]] = {
 }
 
 
-def _isobar(z: float, p: float, next_z: float) -> Piece:
-    return Piece(z, p, next_z, p)
+def _isobar(z: float, p: float, next_z: float) -> Segment:
+    return Segment(z, p, next_z, p)
 
 
-def _wide(*pieces: Piece) -> Stroke:
-    """Return the pieces that have any width."""
-    return tuple(piece for piece in pieces if piece.next_z != piece.z)
+def _wide(*segments: Segment) -> Stroke:
+    """Return the segments that have any width."""
+    return tuple(segment for segment in segments if segment.next_z != segment.z)

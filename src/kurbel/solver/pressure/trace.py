@@ -12,13 +12,13 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.machine.trace import Trace
 from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet, once_each
-from kurbel.solver.pressure import Place
+from kurbel.solver.pressure import Setting
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
 
 
-class _Piece(NamedTuple):
+class Segments(NamedTuple):
     """The straight pieces between samples, each (n,): start and end in degrees, pressures there in Pa."""
 
     start: Array
@@ -34,30 +34,30 @@ class TracePressure:
     crank end follows one stroke later. starts, bends: as `Pressure` says.
     """
 
-    def __init__(self, trace: Trace, place: Place) -> None:
+    def __init__(self, trace: Trace, setting: Setting) -> None:
         self.trace = trace
-        self.place = place
-        inner, outer = place.mechanism.dead_centres()
+        self.setting = setting
+        inner, outer = setting.mechanism.dead_centres()
         # what is added to an angle of the trace to make it a crank angle
-        self.shift = (outer if place.mirrored else inner) - trace.angle_zero
-        angles, pressures = trace.angles + self.shift, trace.pressures - place.base
+        self.shift = (outer if setting.mirrored else inner) - trace.angle_zero
+        angles, pressures = trace.angles + self.shift, trace.pressures - setting.base
         wide = np.diff(angles) > 0
-        piece = _Piece(angles[:-1][wide], angles[1:][wide], pressures[:-1][wide], pressures[1:][wide])
-        starts = np.mod(piece.start, place.cycle)
+        segment = Segments(angles[:-1][wide], angles[1:][wide], pressures[:-1][wide], pressures[1:][wide])
+        starts = np.mod(segment.start, setting.cycle)
         order = np.argsort(starts, kind="stable")
-        self._pieces = _Piece(*(part[order] for part in piece))
+        self._segments = Segments(*(part[order] for part in segment))
         self.starts = starts[order]
-        self._gradients = (self._pieces.next_p - self._pieces.p) / (self._pieces.end - self._pieces.start)
+        self._gradients = (self._segments.next_p - self._segments.p) / (self._segments.end - self._segments.start)
         self.bends: tuple[float, ...] = ()
 
     def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
-        """Return the gauge pressure in Pa at crank angles (n,), on the pieces that hold the angles `within`."""
+        """Return the gauge pressure in Pa at crank angles (n,), on the segments that hold the angles `within`."""
         meant = once_each(within)
-        turned = np.mod(meant, self.place.cycle)
-        piece = np.searchsorted(self.starts, turned, side="right") - 1
-        since = np.mod(turned - self.starts[piece], self.place.cycle) + (angle.degrees - meant)
-        value = self._pieces.p[piece] + self._gradients[piece] * since
-        return Jet(value, self._gradients[piece] * (180 / math.pi)) if isinstance(x, Jet) else value
+        turned = np.mod(meant, self.setting.cycle)
+        segment = np.searchsorted(self.starts, turned, side="right") - 1
+        since = np.mod(turned - self.starts[segment], self.setting.cycle) + (angle.degrees - meant)
+        value = self._segments.p[segment] + self._gradients[segment] * since
+        return Jet(value, self._gradients[segment] * (180 / math.pi)) if isinstance(x, Jet) else value
 
     @cached_property
     def area(self) -> float:
@@ -74,21 +74,21 @@ class TracePressure:
         return self._trapezoid("curvature")
 
     def _trapezoid(self, derivative: str) -> float:
-        pieces = self._pieces
-        first, last = (self._fraction(derivative, angles) for angles in (pieces.start, pieces.end))
-        terms = (pieces.p * first + pieces.next_p * last) * (pieces.end - pieces.start)
+        segments = self._segments
+        first, last = (self._fraction(derivative, angles) for angles in (segments.start, segments.end))
+        terms = (segments.p * first + segments.next_p * last) * (segments.end - segments.start)
         return math.radians(math.fsum(terms.tolist())) / 2
 
     @cached_property
     def straight_area(self) -> float:
         """∮ p dz in Pa with straight lines between the samples, by a Gauss rule that is exact to rounding."""
-        grid = Cuts.of_turns(self.place.mechanism.cuts(), self.place.cycle, [self.starts]).grid()
+        grid = Cuts.of_turns(self.setting.mechanism.cuts(), self.setting.cycle, [self.starts]).grid()
         angle = CrankAngle.of(grid.degrees, grid.beyond)
         pressure = self(None, angle, grid.within)
         return grid.integral(pressure * self._fraction("slope", grid.degrees))
 
     def _fraction(self, derivative: str, degrees: Array) -> Array:
         """Return a derivative of the stroke fraction z by φ."""
-        mechanism = self.place.mechanism
+        mechanism = self.setting.mechanism
         by_angle = getattr(mechanism, derivative)(CrankAngle.of(degrees)) / mechanism.stroke
-        return np.asarray(by_angle if self.place.head_end else -by_angle)
+        return np.asarray(by_angle if self.setting.head_end else -by_angle)
