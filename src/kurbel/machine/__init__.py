@@ -7,7 +7,7 @@ Records check their own rules and raise RuleError. They hold numbers only; what 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.declared.forms import Choice, Count, Inline, Limits, Listing, Number, OneOf, Physical, Record, Text, Variant
 from kurbel.declared.keys import Described, Key, Keys
@@ -89,25 +89,11 @@ class Cylinder(Described):
     }
 
     @classmethod
-    def of_keys(
-        cls,
-        mechanism: Mechanism,
-        name: str = "",
-        piston: Piston | None = None,
-        tandem: tuple[Piston, ...] = (),
-        masses: Masses | None = None,
-        friction: Friction | None = None,
-        inclination: float | None = None,
-        crank_position: float = 0.0,
-        ram_force: RamForce | None = None,
-        moment: Moment | None = None,
-        cycle: str | None = None,
-    ) -> Cylinder:
-        """Return the cylinder that these keys of a machine file describe."""
+    def of_keys(cls, piston: Piston | None = None, tandem: tuple[Piston, ...] = (), **keys: Any) -> Cylinder:
+        """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
         if tandem and piston is None:
             refuse(Fault(("tandem",), "a tandem piston stands beside the cylinder's own one; give its 'bore'"))
-        pistons = () if piston is None else (piston, *tandem)
-        return cls(mechanism, name, pistons, masses, friction, inclination, crank_position, ram_force, moment, cycle)
+        return cls(pistons=() if piston is None else (piston, *tandem), **{"name": "", **keys})
 
     def __post_init__(self) -> None:
         rings = self.friction and self.friction.rings
@@ -197,19 +183,18 @@ class Machine(Described):
     @classmethod
     def of_keys(
         cls,
-        name: str = "machine",
         cylinder: Cylinder | None = None,
         cylinders: tuple[Cylinder, ...] = (),
         load: Load | str | None = None,
         kurbel: int = FORMAT,
-        **keys: object,
+        **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
         from dataclasses import replace
 
         given = cylinders if cylinder is None else (cylinder,)
         named = tuple(c if c.name else replace(c, name=f"cylinder {i}") for i, c in enumerate(given, 1))
-        return cls(named, name, load=None if isinstance(load, str) else load, **keys)  # type: ignore[arg-type]
+        return cls(named, load=None if isinstance(load, str) else load, **keys)
 
     def __post_init__(self) -> None:
         if not self.cylinders and self.effort is None:
