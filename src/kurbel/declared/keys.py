@@ -43,7 +43,7 @@ class Form(ABC):
 
     def written(self) -> str:
         """Return in a few words what is written for a key, for the page of symbols."""
-        return "a mapping"
+        return self.expected() if self.shape is str else "a mapping"
 
     def out_of_bounds(self, value: Any) -> str:
         """Return in what way a value is too small or too large, with the bound; '' when it is not."""

@@ -7,114 +7,31 @@ Records check their own rules and raise RuleError. They hold numbers only; what 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.declared.forms import Choice, Count, Inline, Limits, Listing, Number, OneOf, Physical, Record, Text, Variant
+from kurbel.crank_angle import CrankAngle
+from kurbel.declared.forms import Choice, Count, Inline, Limits, Listing, Number, OneOf, Physical, Record, Text
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, refuse
-from kurbel.machine.fit import misfits
-from kurbel.mechanisms import MECHANISMS, Mechanism
+from kurbel.machine.angle_points import CYCLES
+from kurbel.machine.cylinder import Cylinder
 
 if TYPE_CHECKING:
+    from kurbel.declared.quantities import Quantity
     from kurbel.machine.crankshaft import Crankshaft
-    from kurbel.machine.friction import Friction
-    from kurbel.machine.masses import Masses
-    from kurbel.machine.piston import Piston
-    from kurbel.machine.resistance import Moment, RamForce
     from kurbel.machine.turning import Coupling, Effort, Flywheel, Load
+
+__all__ = ["CYCLES", "Cylinder", "Machine"]
 
 FORMAT = 1
 """Number of the machine-file format that this version reads."""
 STANDARD_ATMOSPHERE = 101325.0
-CYCLES = {"two-stroke": 1, "four-stroke": 2}
-"""Cycle -> revolutions of the shaft."""
 
 
-@dataclass(frozen=True, eq=False)
-class Cylinder(Described):
-    """One cylinder with its crank mechanism and everything that hangs on the same rod.
+def _key_values() -> tuple[dict[str, Quantity], tuple[str, ...]]:
+    from kurbel.declared.quantities import KEY_VALUES, LISTS
 
-    pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
-    is left out; crank_position: degrees by which this crank follows crank 1; ram_force, moment: what the output works
-    against, where it slides or only swings. Raises RuleError for parts that the mechanism cannot have.
-    """
-
-    mechanism: Mechanism
-    name: str = "cylinder 1"
-    pistons: tuple[Piston, ...] = ()
-    masses: Masses | None = None
-    friction: Friction | None = None
-    inclination: float | None = None
-    crank_position: float = 0.0
-    ram_force: RamForce | None = None
-    moment: Moment | None = None
-    cycle: str | None = None
-
-    KEYS: ClassVar[Keys] = {
-        "name": Key(Text(), "Name of the cylinder", absent="cylinder 1, cylinder 2, …"),
-        "mechanism": Key(
-            Variant("slider-crank", MECHANISMS),
-            "Kind of crank mechanism",
-            absent="slider-crank",
-        ),
-        "inclination": Key(
-            Physical("angle", least=-180, most=180),
-            "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft, beyond it leaning over",
-            absent="weight left out",
-        ),
-        "piston": Key(Inline(Record("kurbel.machine.piston:Piston")), "The cylinder's own piston"),
-        "tandem": Key(
-            Listing(Record("kurbel.machine.piston:Piston"), inline_too=True),
-            "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
-            absent="none",
-        ),
-        "masses": Key(Record("kurbel.machine.masses:Masses"), "Masses of the moving parts", absent="no inertia"),
-        "friction": Key(
-            Record("kurbel.machine.friction:Friction"), "Friction of crosshead and piston rings", absent="no friction"
-        ),
-        "crank_position": Key(Physical("angle"), "Angle by which this crank follows crank 1", absent="0 deg"),
-        "ram_force": Key(
-            Record("kurbel.machine.resistance:RamForce"),
-            "Force on a ram against its motion, constant on each stroke",
-            absent="none",
-        ),
-        "moment": Key(
-            Record("kurbel.machine.resistance:Moment"),
-            "Moment against the motion of a mechanism whose output only swings or turns",
-            absent="none",
-        ),
-        "cycle": Key(
-            Choice(tuple(CYCLES)), "Working cycle of this cylinder, among others", absent="that of the machine"
-        ),
-    }
-
-    @classmethod
-    def of_keys(
-        cls,
-        mechanism: Mechanism,
-        name: str = "",
-        piston: Piston | None = None,
-        tandem: tuple[Piston, ...] = (),
-        masses: Masses | None = None,
-        friction: Friction | None = None,
-        inclination: float | None = None,
-        crank_position: float = 0.0,
-        ram_force: RamForce | None = None,
-        moment: Moment | None = None,
-        cycle: str | None = None,
-    ) -> Cylinder:
-        """Return the cylinder that these keys of a machine file describe."""
-        if tandem and piston is None:
-            refuse(Fault(("tandem",), "a tandem piston stands beside the cylinder's own one; give its 'bore'"))
-        pistons = () if piston is None else (piston, *tandem)
-        return cls(mechanism, name, pistons, masses, friction, inclination, crank_position, ram_force, moment, cycle)
-
-    def __post_init__(self) -> None:
-        rings = self.friction and self.friction.rings
-        faults = list(misfits(self))
-        if rings and not self.pistons and self.mechanism.slides:
-            faults.append(Fault(("friction", "rings"), "rings rub on the bore; give the cylinder a 'bore'"))
-        refuse(*faults)
+    return KEY_VALUES, LISTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,25 +108,24 @@ class Machine(Described):
             "One throw between bearings A and B",
             absent="no strength check",
         ),
-        "limits": Key(Limits(), "Bounds for key values, checked by `kurbel check`", absent="none"),
+        "limits": Key(Limits(_key_values), "Bounds for key values, checked by `kurbel check`", absent="none"),
     }
 
     @classmethod
     def of_keys(
         cls,
-        name: str = "machine",
         cylinder: Cylinder | None = None,
         cylinders: tuple[Cylinder, ...] = (),
         load: Load | str | None = None,
         kurbel: int = FORMAT,
-        **keys: object,
+        **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
         from dataclasses import replace
 
         given = cylinders if cylinder is None else (cylinder,)
         named = tuple(c if c.name else replace(c, name=f"cylinder {i}") for i, c in enumerate(given, 1))
-        return cls(named, name, load=None if isinstance(load, str) else load, **keys)  # type: ignore[arg-type]
+        return cls(named, load=None if isinstance(load, str) else load, **keys)
 
     def __post_init__(self) -> None:
         if not self.cylinders and self.effort is None:
@@ -264,3 +180,23 @@ class Machine(Described):
         ]
         files = (getattr(end, "file", None) for one in indicators for end in (one.head_end, one.crank_end))
         return tuple(dict.fromkeys(file for file in files if file))
+
+    @property
+    def strength_obstacle(self) -> str:
+        """Why the strength of the crankshaft cannot be examined, or an empty text."""
+        if self.crankshaft is None:
+            return (
+                "no 'crankshaft' is given; its strength needs the lengths of the throw: 'crankshaft: {a: …, b: …, …}'"
+            )
+        if len(self.cylinders) != 1:
+            return (
+                f"{len(self.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
+                if self.cylinders
+                else "no cylinder loads the crankshaft; 'effort' tells a torque and no force on the pin"
+            )
+        cylinder = self.cylinders[0]
+        if cylinder.mechanism.quick_return or cylinder.mechanism.radial(CrankAngle.of(0.0)) is None:
+            return f"the force on the crank pin of a {cylinder.mechanism.name} is not known; give a slider-crank"
+        if not any(piston.indicator for piston in cylinder.pistons):
+            return "no pressure loads the crankshaft; give 'bore' and 'indicator'"
+        return ""

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from kurbel.declared.bounds import Point
 from kurbel.errors import Fault, Path
-from kurbel.machine import CYCLES
+
+CYCLES = {"two-stroke": 1, "four-stroke": 2}
+"""Cycle -> revolutions of the shaft."""
 
 
 def angle_faults(points: list[Point], path: Path) -> list[Fault]:

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
-from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from kurbel.machine import Machine
 
 _ROUNDED = 1.05
 """What lengths may contradict one another by: printed examples round them."""
@@ -77,69 +72,43 @@ class Crankshaft(Described):
     def __post_init__(self) -> None:
         refuse(*self._web_faults(), *self._place_faults(), *self._length_faults())
 
-    def _web_faults(self) -> list[Fault]:
+    def _wrong(self, name: str, message: str, part: str = "") -> Fault:
+        return Fault((name,), f"{part}{show(getattr(self, name), 'length')} {message}")
+
+    def _web_faults(self) -> Iterator[Fault]:
         thickness, width = show(self.web_thickness, "length"), show(self.web_width, "length")
-        faults = []
         if self.web_thickness >= self.web_width:
-            faults.append(
-                Fault(
-                    ("web_thickness",),
-                    f"{thickness} is not less than the width ({width}); the thickness lies along the shaft",
-                )
+            yield self._wrong(
+                "web_thickness", f"is not less than the width ({width}); the thickness lies along the shaft"
             )
         if self.web_distance <= self.web_thickness / 2:
-            faults.append(
-                Fault(
-                    ("web_distance",),
-                    f"{show(self.web_distance, 'length')} leaves no pin between the webs; "
-                    f"it must be more than half the thickness ({thickness})",
-                )
-            )
-        return faults
+            more = f"it must be more than half the thickness ({thickness})"
+            yield self._wrong("web_distance", f"leaves no pin between the webs; {more}")
 
-    def _place_faults(self) -> list[Fault]:
-        faults = [
-            Fault(
-                (name,),
-                f"{show(value, 'length')} puts the bearing inside the web "
-                f"({show(self._web_end, 'length')} from the pin); measure to the middle of the bearing",
-            )
-            for name, value in (("a", self.a), ("b", self.b))
-            if value <= self._web_end
-        ]
+    def _place_faults(self) -> Iterator[Fault]:
+        end, span = show(self._web_end, "length"), show(self.a + self.b, "length")
+        for name in ("a", "b"):
+            if getattr(self, name) <= self._web_end:
+                inside = f"puts the bearing inside the web ({end} from the pin)"
+                yield self._wrong(name, f"{inside}; measure to the middle of the bearing")
         if self.flywheel_position <= -(self.a + self.b):
-            faults.append(
-                Fault(
-                    ("flywheel_position",),
-                    f"{show(self.flywheel_position, 'length')} lies beyond bearing A; "
-                    f"A is the bearing away from the flywheel, {show(self.a + self.b, 'length')} from B",
-                )
-            )
+            beyond = "lies beyond bearing A; A is the bearing away from the flywheel"
+            yield self._wrong("flywheel_position", f"{beyond}, {span} from B")
         elif self.flywheel_position <= self._web_end - self.b < 0:
-            faults.append(
-                Fault(
-                    ("flywheel_position",),
-                    f"{show(self.flywheel_position, 'length')} is not between web and bearing B, which leave "
-                    f"{show(self.b - self._web_end, 'length')}; B is the bearing beside the flywheel",
-                )
-            )
-        return faults
+            room = f"is not between web and bearing B, which leave {show(self.b - self._web_end, 'length')}"
+            yield self._wrong("flywheel_position", f"{room}; B is the bearing beside the flywheel")
 
     def _length_faults(self) -> Iterator[Fault]:
         """Yield what is wrong with the lengths of pin and journals, beside faults of the places themselves."""
         gap = 2 * self.web_distance - self.web_thickness
         if self.pin_length > _ROUNDED * gap > 0:
-            yield Fault(
-                ("pin_length",),
-                f"{show(self.pin_length, 'length')} does not fit between the webs, which leave {show(gap, 'length')}: "
-                "twice web_distance less web_thickness",
-            )
+            leave = f"does not fit between the webs, which leave {show(gap, 'length')}"
+            yield self._wrong("pin_length", f"{leave}: twice web_distance less web_thickness")
         room, what = min(self._rooms)
         if self.journal_length and self.journal_length / 2 > _ROUNDED * room > 0:
-            yield Fault(
-                ("journal_length",),
-                f"half of {show(self.journal_length, 'length')} does not fit between {what}, which leave "
-                f"{show(room, 'length')}; 'a', 'b' and 'flywheel_position' go to the middle of a bearing",
+            leave = f"does not fit between {what}, which leave {show(room, 'length')}"
+            yield self._wrong(
+                "journal_length", f"{leave}; 'a', 'b' and 'flywheel_position' go to the middle of a bearing", "half of "
             )
 
     @property
@@ -154,21 +123,3 @@ class Crankshaft(Described):
     def _web_end(self) -> float:
         """Distance in m of the outer face of a web from the middle of the pin."""
         return self.web_distance + self.web_thickness / 2
-
-
-def strength_obstacle(machine: Machine) -> str:
-    """Return why the strength of a machine's crankshaft cannot be examined, or an empty text."""
-    if machine.crankshaft is None:
-        return "no 'crankshaft' is given; its strength needs the lengths of the throw: 'crankshaft: {a: …, b: …, …}'"
-    if len(machine.cylinders) != 1:
-        return (
-            f"{len(machine.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
-            if machine.cylinders
-            else "no cylinder loads the crankshaft; 'effort' tells a torque and no force on the pin"
-        )
-    cylinder = machine.cylinders[0]
-    if cylinder.mechanism.quick_return or cylinder.mechanism.radial(CrankAngle.of(0.0)) is None:
-        return f"the force on the crank pin of a {cylinder.mechanism.name} is not known; give a slider-crank"
-    if not any(piston.indicator for piston in cylinder.pistons):
-        return "no pressure loads the crankshaft; give 'bore' and 'indicator'"
-    return ""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, Union
+from typing import Any, ClassVar, Union
 
 from kurbel.declared.forms import Number, Physical
 from kurbel.declared.keys import Described, Key, Keys
@@ -155,11 +155,6 @@ _ENGINE_KEYS: Keys = {
 """What every combustion engine gives."""
 
 
-def _clearance(compression_ratio: float | None, clearance: float | None) -> float:
-    """Return the clearance c = 1/(ε − 1) from the one of both that is given."""
-    return clearance or 0.0 if compression_ratio is None else 1 / (compression_ratio - 1)
-
-
 def _peak_fault(peak: float | None, card: _Engine, lift: float) -> str:
     """Return what to say of a peak below the end of the compression; lift makes the pressures absolute."""
     compressed = after_polytrope(card.intake + lift, 1 + card.clearance, card.clearance, card.exponent) - lift
@@ -177,6 +172,12 @@ class _Engine(Described):
     peak: float | None
     clearance: float
     exponent: float
+
+    @classmethod
+    def of_keys(cls, compression_ratio: float = 0.0, clearance: float = 0.0, **keys: Any) -> Any:
+        """Return the card with the clearance c = 1/(ε − 1); one of both is given."""
+        keys.setdefault("expansion_exponent", keys.get("exponent", AIR_EXPONENT))
+        return super().of_keys(clearance=clearance or 1 / (compression_ratio - 1), **keys)
 
     @property
     def cycles(self) -> tuple[str, ...]:
@@ -214,21 +215,6 @@ class Otto(_Engine):
 
     KEYS: ClassVar[Keys] = {**_ENGINE_KEYS, "peak": _pressure("Largest pressure, after combustion")}
 
-    @classmethod
-    def of_keys(
-        cls,
-        intake: float,
-        peak: float,
-        exhaust: float | None = None,
-        compression_ratio: float | None = None,
-        clearance: float | None = None,
-        exponent: float = AIR_EXPONENT,
-        expansion_exponent: float | None = None,
-    ) -> Otto:
-        """Return the card that these keys of a machine file describe; raises RuleError."""
-        volume = _clearance(compression_ratio, clearance)
-        return cls(intake, peak, volume, exhaust, exponent, expansion_exponent or exponent)
-
     def __post_init__(self) -> None:
         refuse(*_order_fault("peak", self.peak, "intake", self.intake))
 
@@ -254,22 +240,6 @@ class Diesel(_Engine):
         "cut_off": Key(Number(above=0, below=1), "Fraction of the stroke at which injection ends", required=True),
         "peak": _pressure("Pressure of injection, reached at constant volume", False, "that at the end of compression"),
     }
-
-    @classmethod
-    def of_keys(
-        cls,
-        intake: float,
-        cut_off: float,
-        exhaust: float | None = None,
-        peak: float | None = None,
-        compression_ratio: float | None = None,
-        clearance: float | None = None,
-        exponent: float = AIR_EXPONENT,
-        expansion_exponent: float | None = None,
-    ) -> Diesel:
-        """Return the card that these keys of a machine file describe; raises RuleError."""
-        volume = _clearance(compression_ratio, clearance)
-        return cls(intake, cut_off, volume, exhaust, peak, exponent, expansion_exponent or exponent)
 
     def __post_init__(self) -> None:
         if self.peak is not None:

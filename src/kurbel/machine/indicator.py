@@ -70,22 +70,16 @@ class Card(Described):
 
     @classmethod
     def of_keys(
-        cls,
-        unit: Factor,
-        expansion: list[Point] | None = None,
-        compression: list[Point] | None = None,
-        intake: list[Point] | None = None,
-        exhaust: list[Point] | None = None,
-        interpolate: str = "linear",
-        clearance: float | None = None,
+        cls, unit: Factor, interpolate: str = "linear", clearance: float | None = None, **given: list[Point]
     ) -> Card:
         """Return the card that these keys of a machine file describe; raises RuleError with every fault."""
-        given = {"expansion": expansion, "compression": compression, "intake": intake, "exhaust": exhaust}
-        cycle = "two-stroke" if intake is None and exhaust is None else "four-stroke"
+        cycle = "four-stroke" if given.keys() & {"intake", "exhaust"} else "two-stroke"
         faults = [
-            Fault((), f"the '{name}' line of the {cycle} card is missing") for name in STROKES[cycle] if not given[name]
+            Fault((), f"the '{name}' line of the {cycle} card is missing")
+            for name in STROKES[cycle]
+            if name not in given
         ]
-        drawn = [(name, points, index % 2) for index, name in enumerate(STROKES[cycle]) if (points := given[name])]
+        drawn = [(name, given[name], index % 2) for index, name in enumerate(STROKES[cycle]) if name in given]
         faults += [fault for name, points, _ in drawn for fault in cls.faults_of_key(name, points)]
         if interpolate == "polytropic" and clearance is None:
             faults.append(Fault(("interpolate",), "'polytropic' needs the 'clearance' volume over the stroke volume"))
@@ -137,11 +131,13 @@ def _line(name: str, points: list[Point], unit: Factor, start: int) -> Line:
 
 def _line_faults(name: str, points: list[Point]) -> list[Fault]:
     """Return what keeps a line from running once through the whole stroke."""
-    return [
-        Fault((name, i), f"{x:g} is no fraction of the stroke; fractions run from 0 to 1")
-        for i, (x, _) in enumerate(points)
-        if not 0 <= x <= 1
-    ] or _order_faults(name, points)
+    beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= 1]
+    if not beyond:
+        return _order_faults(name, points)
+    # told once: where there are more, they are of the same sort
+    first = points[beyond[0]][0]
+    hint = f"; write {first / 100:g} here if the line is in percent" if 1 < first <= 100 and len(beyond) > 1 else ""
+    return [Fault((name, beyond[0]), f"{first:g} is no fraction of the stroke; fractions run from 0 to 1{hint}")]
 
 
 def _order_faults(name: str, points: list[Point]) -> list[Fault]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kurbel.errors import Fault, refuse
-from kurbel.machine import CYCLES
+from kurbel.machine.angle_points import CYCLES
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array

@@ -11,7 +11,7 @@ from kurbel.declared.quantities import KEY_VALUES, NOISE_POWER
 from kurbel.declared.unit_systems import SI, show
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.fit import may_lock
+from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import Mechanism
 from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages
 from kurbel.report.notes import Note, machine_notes, of_cylinder
@@ -114,9 +114,7 @@ def _load(machine: Machine) -> str:
 def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
     if machine.crankshaft is None:
         return
-    from kurbel.machine.crankshaft import strength_obstacle
-
-    if obstacle := strength_obstacle(machine):
+    if obstacle := machine.strength_obstacle:
         yield Entry("left out", f"strength: {obstacle}")
         return
     yield Entry("computed", "forces on the bearings, stresses in pin and webs")

@@ -10,7 +10,7 @@ import numpy as np
 from kurbel.declared.unit_systems import show
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.machine.fit import may_lock
+from kurbel.machine.cylinder import may_lock
 from kurbel.report.left_out import left_out
 from kurbel.report.motion import (
     columns_of,

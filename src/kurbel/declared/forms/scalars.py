@@ -58,7 +58,7 @@ class _Bounded(Scalar):
 
     def __init__(
         self,
-        kind: str,
+        kind: str = "ratio",
         above: float | None = None,
         least: float | None = None,
         below: float | None = None,
@@ -84,6 +84,13 @@ class _Bounded(Scalar):
     @abstractmethod
     def number(self, text: str) -> float:
         """Return the number in the base of its kind; raises RuleError."""
+
+    def unquoted(self, text: str) -> str:
+        """Return a text without quotation marks; raises RuleError for one that has them."""
+        if not isinstance(text, Plain):
+            what = self.expected().partition(" or ")[0]
+            refused(f'expected {what}, got the text "{text}"; leave out the quotation marks')
+        return text
 
     def out_of_bounds(self, value: Any) -> str:
         """Compare a number with the bounds.
@@ -137,29 +144,14 @@ class Physical(_Bounded):
 class Number(_Bounded):
     """A bare number, a quotient such as `1/80` or `75 %` (a ratio, a fraction, a coefficient); becomes a float."""
 
-    def __init__(
-        self,
-        above: float | None = None,
-        least: float | None = None,
-        below: float | None = None,
-        most: float | None = None,
-        words: Words = (),
-    ) -> None:
-        super().__init__("ratio", above, least, below, most, words)
-
     def number(self, text: str) -> float:
-        if not isinstance(text, Plain):
-            refused(f'expected a number, got the text "{text}"; leave out the quotation marks')
-        return parse_ratio(text)
+        return parse_ratio(self.unquoted(text))
 
     def expected(self) -> str:
         return f"a number{self._or_words()}"
 
     def example(self) -> str:
         return "5" if (self.above or 0) >= 1 else "0.1"
-
-    def written(self) -> str:
-        return "a number"
 
     def schema(self, definitions: Schema) -> Schema:
         largest = SIZES["ratio"][1]
@@ -173,33 +165,25 @@ class Number(_Bounded):
         return self._schema({"type": ["number", "string"], **number, "pattern": f"^\\s*{RATIO.pattern}\\s*$"})
 
 
-class Count(Scalar):
+class Count(_Bounded):
     """A whole number; becomes an int."""
 
     def __init__(self, least: int = 1, most: int | None = None) -> None:
-        self.least, self.most = least, most
+        super().__init__(least=least, most=most)
 
-    def parse(self, text: str, folder: str) -> int:
-        if not isinstance(text, Plain):
-            refused(f'expected a whole number, got the text "{text}"; leave out the quotation marks')
-        if not re.fullmatch(r"[-+]?(0|[1-9][0-9]{0,8})", text):
+    def number(self, text: str) -> int:
+        if not re.fullmatch(r"[-+]?(0|[1-9][0-9]{0,8})", self.unquoted(text)):
             refused(f"expected a whole number, got '{text}'")
         whole = int(text)
         if self.most == self.least != whole:
             refused(f"{whole} is not supported; it must be {self.least}")
-        if whole < self.least:
-            refused(f"{whole} is too small; it must be at least {self.least}")
-        if self.most is not None and whole > self.most:
-            refused(f"{whole} is too large; it must be at most {self.most}")
         return whole
 
     def expected(self) -> str:
         return "a whole number"
 
-    written = expected
-
     def example(self) -> str:
-        return str(max(self.least, 3) if self.most is None else self.least)
+        return str(max(self.least or 0, 3) if self.most is None else self.least)
 
     def schema(self, definitions: Schema) -> Schema:
         return {"type": "integer", "minimum": self.least} | ({} if self.most is None else {"maximum": self.most})
@@ -213,9 +197,6 @@ class Text(Scalar):
 
     def expected(self) -> str:
         return "a text"
-
-    def written(self) -> str:
-        return "text"
 
     def schema(self, definitions: Schema) -> Schema:
         return {"type": ["string", "number"]}
@@ -263,9 +244,6 @@ class FilePath(Scalar):
     def expected(self) -> str:
         return "the name of a file"
 
-    def written(self) -> str:
-        return "a path"
-
     def schema(self, definitions: Schema) -> Schema:
         return {"type": "string", "minLength": 1}
 
@@ -284,9 +262,6 @@ class UnitName(Scalar):
 
     def example(self) -> str:
         return example(self.kind).split(" ", 1)[1]
-
-    def written(self) -> str:
-        return "a unit"
 
     def schema(self, definitions: Schema) -> Schema:
         return {"type": "string", "pattern": f"^\\s*{_units(self.kind)}\\s*$"}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable, Collection, Iterator
+from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms.records import Record, no_mapping
@@ -12,6 +12,9 @@ from kurbel.declared.keys import Form, Schema
 from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
 from kurbel.errors import Path
 from kurbel.near_words import did_you_mean, near
+
+if TYPE_CHECKING:
+    from kurbel.declared.quantities import Quantity
 
 
 class Listing(Form):
@@ -150,9 +153,15 @@ class Keyed(Form):
 
 
 class Limits(Form):
-    """A mapping from ids of key values to bounds; becomes pairs of id and bound in the base of its quantity."""
+    """A mapping from ids of key values to bounds; becomes pairs of id and bound in the base of its quantity.
+
+    known: returns the key values by id, and the ids of those that are lists; asked only where a machine has limits.
+    """
 
     shape = dict
+
+    def __init__(self, known: Callable[[], tuple[dict[str, Quantity], Collection[str]]]) -> None:
+        self.known = known
 
     def expected(self) -> str:
         return "a mapping of key values to bounds, such as 'c_max: 6 m/s'"
@@ -161,8 +170,11 @@ class Limits(Form):
         return "`{key value: bound}`"
 
     def schema(self, definitions: Schema) -> Schema:
+        known, lists = self.known()
         properties = {
-            name: {**form.schema(definitions), "description": text} for name, (form, text) in _bounds().items()
+            name: {**_bound(quantity).schema(definitions), "description": quantity.text}
+            for name, quantity in known.items()
+            if name not in lists
         }
         return {"type": "object", "additionalProperties": False, "minProperties": 1, "properties": properties}
 
@@ -170,31 +182,19 @@ class Limits(Form):
         """Read every bound by the form of its quantity."""
         if not isinstance(value, dict) or not value:
             refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
-        known = _bounds()
+        known, lists = self.known()
         bounds = []
         for name, bound in value.items():
-            if name in known:
-                bounds.append((name, known[name][0].read(reading, bound, (*path, name))))
+            if name not in known:
+                hint = did_you_mean(name, tuple(known)) or f"; known are {', '.join([*known][:6])}, …"
+                reading.fault((*path, name), f"unknown key value '{shown(name)}'{hint}", at_key=True)
+            elif name in lists:
+                reading.fault((*path, name), f"'{name}' is a list of values; no bound can be put on it", at_key=True)
             else:
-                reading.fault((*path, name), _no_bound(name, tuple(known)), at_key=True)
+                bounds.append((name, _bound(known[name]).read(reading, bound, (*path, name))))
         return REFUSED if any(bound is REFUSED for _, bound in bounds) else tuple(bounds)
 
 
-def _bounds() -> dict[str, tuple[Form, str]]:
-    """Return the form of a bound for every key value that may have one, with its sentence."""
-    from kurbel.declared.quantities import KEY_VALUES, LISTS
-
-    return {
-        name: (Number() if quantity.kind == "ratio" else Physical(quantity.kind), quantity.text)
-        for name, quantity in KEY_VALUES.items()
-        if name not in LISTS
-    }
-
-
-def _no_bound(name: str, known: tuple[str, ...]) -> str:
-    from kurbel.declared.quantities import KEY_VALUES
-
-    if name in KEY_VALUES:
-        return f"'{name}' is a list of values; no bound can be put on it"
-    hint = did_you_mean(name, tuple(KEY_VALUES)) or f"; known are {', '.join([*known[:6], '…'])}"
-    return f"unknown key value '{shown(name)}'{hint}"
+def _bound(quantity: Quantity) -> Form:
+    """Return the form of a bound for this quantity."""
+    return Number() if quantity.kind == "ratio" else Physical(quantity.kind)

@@ -12,7 +12,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.machine.crankshaft import Crankshaft, strength_obstacle
+from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid, Pieces, integral
 from kurbel.numerics.search import Extremes, Sampled, extremes, zeros
@@ -46,7 +46,7 @@ class CrankshaftStrength:
     """
 
     def __init__(self, machine: Machine, cylinders: tuple[CylinderForces, ...]) -> None:
-        obstacle = strength_obstacle(machine)
+        obstacle = machine.strength_obstacle
         if obstacle or machine.crankshaft is None:
             raise UsageError(f"{machine.name}: {obstacle}")
         self.machine = machine

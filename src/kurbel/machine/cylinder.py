@@ -1,0 +1,151 @@
+"""One cylinder with its mechanism, and which parts fit that: no piston on what only swings, no rod without one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.declared.forms import Choice, Inline, Listing, Physical, Record, Text, Variant
+from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.unit_systems import show
+from kurbel.errors import Fault, refuse
+from kurbel.machine.angle_points import CYCLES
+from kurbel.mechanisms import MECHANISMS, Mechanism
+
+if TYPE_CHECKING:
+    from kurbel.machine.friction import Friction
+    from kurbel.machine.masses import ConnectingRod, Masses
+    from kurbel.machine.piston import Piston
+    from kurbel.machine.resistance import Moment, RamForce
+
+_SLIDING = ("inclination", "masses", "friction", "ram_force")
+"""Keys of a cylinder that only something that slides can have, besides those of its pistons."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cylinder(Described):
+    """One cylinder with its crank mechanism and everything that hangs on the same rod.
+
+    pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
+    is left out; crank_position: degrees by which this crank follows crank 1; ram_force, moment: what the output works
+    against, where it slides or only swings. Raises RuleError for parts that the mechanism cannot have.
+    """
+
+    mechanism: Mechanism
+    name: str = "cylinder 1"
+    pistons: tuple[Piston, ...] = ()
+    masses: Masses | None = None
+    friction: Friction | None = None
+    inclination: float | None = None
+    crank_position: float = 0.0
+    ram_force: RamForce | None = None
+    moment: Moment | None = None
+    cycle: str | None = None
+
+    KEYS: ClassVar[Keys] = {
+        "name": Key(Text(), "Name of the cylinder", absent="cylinder 1, cylinder 2, …"),
+        "mechanism": Key(
+            Variant("slider-crank", MECHANISMS),
+            "Kind of crank mechanism",
+            absent="slider-crank",
+        ),
+        "inclination": Key(
+            Physical("angle", least=-180, most=180),
+            "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft, beyond it leaning over",
+            absent="weight left out",
+        ),
+        "piston": Key(Inline(Record("kurbel.machine.piston:Piston")), "The cylinder's own piston"),
+        "tandem": Key(
+            Listing(Record("kurbel.machine.piston:Piston"), inline_too=True),
+            "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
+            absent="none",
+        ),
+        "masses": Key(Record("kurbel.machine.masses:Masses"), "Masses of the moving parts", absent="no inertia"),
+        "friction": Key(
+            Record("kurbel.machine.friction:Friction"), "Friction of crosshead and piston rings", absent="no friction"
+        ),
+        "crank_position": Key(Physical("angle"), "Angle by which this crank follows crank 1", absent="0 deg"),
+        "ram_force": Key(
+            Record("kurbel.machine.resistance:RamForce"),
+            "Force on a ram against its motion, constant on each stroke",
+            absent="none",
+        ),
+        "moment": Key(
+            Record("kurbel.machine.resistance:Moment"),
+            "Moment against the motion of a mechanism whose output only swings or turns",
+            absent="none",
+        ),
+        "cycle": Key(
+            Choice(tuple(CYCLES)), "Working cycle of this cylinder, among others", absent="that of the machine"
+        ),
+    }
+
+    @classmethod
+    def of_keys(cls, piston: Piston | None = None, tandem: tuple[Piston, ...] = (), **keys: Any) -> Cylinder:
+        """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
+        if tandem and piston is None:
+            refuse(Fault(("tandem",), "a tandem piston stands beside the cylinder's own one; give its 'bore'"))
+        return cls(pistons=() if piston is None else (piston, *tandem), **{"name": "", **keys})
+
+    def __post_init__(self) -> None:
+        refuse(*_of_output(self), *(_of_rod(self) if self.mechanism.slides else ()))
+
+
+def may_lock(cylinder: Cylinder) -> bool:
+    """Return whether the friction of the crosshead is great enough to lock it where it is driven: f tan ψ ≥ 1."""
+    coefficient = cylinder.friction.crosshead if cylinder.friction else None
+    widest = [rod for centre in (90.0, 270.0) if (rod := cylinder.mechanism.rod_angle(CrankAngle.of(centre)))]
+    return bool(coefficient) and any(coefficient * abs(sin_psi) >= cos_psi for sin_psi, cos_psi in widest)
+
+
+def _of_output(cylinder: Cylinder) -> Iterator[Fault]:
+    kind = cylinder.mechanism.name
+    if cylinder.mechanism.slides:
+        if cylinder.moment is not None:
+            yield Fault(("moment",), f"a {kind} moves its output to and fro; give 'ram_force', a force, instead")
+        return
+    own = ("bore",) if cylinder.pistons else ()
+    for key in (*own, *(key for key in _SLIDING if getattr(cylinder, key) is not None)):
+        yield Fault((key,), f"nothing slides in a {kind}; leave '{key}' out{_instead(key)}")
+    if cylinder.mechanism.turns and cylinder.moment and cylinder.moment.back:
+        yield Fault(
+            ("moment", "return"), f"the output of a {kind} turns on and has no return stroke; give 'work' alone"
+        )
+
+
+def _instead(key: str) -> str:
+    return {
+        "bore": ", with the indicator, or choose a mechanism with a piston",
+        "ram_force": "; the resistance of what swings is a 'moment'",
+    }.get(key, "")
+
+
+def _of_rod(cylinder: Cylinder) -> Iterator[Fault]:
+    """Friction of a crosshead needs a side force N and a guide for it; the mass of a rod needs a rod."""
+    mechanism, masses, friction = cylinder.mechanism, cylinder.masses, cylinder.friction
+    if friction and friction.rings and not cylinder.pistons:
+        yield Fault(("friction", "rings"), "rings rub on the bore; give the cylinder a 'bore'")
+    if friction is not None and friction.crosshead is not None and not (mechanism.has_rod and mechanism.guided):
+        reason = "crosshead guide" if mechanism.has_rod else "connecting rod to press a crosshead on its guide"
+        yield Fault(("friction", "crosshead"), f"a {mechanism.name} has no {reason}; leave 'crosshead' out")
+    if masses is not None and masses.connecting_rod is not None and not mechanism.has_rod:
+        message = f"a {mechanism.name} has no connecting rod; give what goes to and fro as 'other'"
+        yield Fault(("masses", "connecting_rod"), message)
+    elif masses is not None and masses.connecting_rod and (message := _off_rod(masses.connecting_rod, mechanism)):
+        yield Fault(("masses", "connecting_rod", "center_of_gravity"), message)
+
+
+def _off_rod(rod: ConnectingRod, mechanism: Mechanism) -> str:
+    """Return what is wrong with the place of the centre of gravity of a rod, or an empty text."""
+    if rod.center_of_gravity is None:
+        return ""
+    if math.isinf(mechanism.rod_length):
+        return "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+    # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
+    if rod.center_of_gravity > mechanism.rod_length:
+        place, length = show(rod.center_of_gravity, "length"), show(mechanism.rod_length, "length")
+        return f"{place} from the crosshead pin is beyond the crank pin: the rod is {length} long"
+    return ""

@@ -1,0 +1,114 @@
+"""What keys say of one another holds alike for the file, for the schema and for records made in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+
+from kurbel.declared.forms import Record
+from kurbel.declared.keys import Key
+from kurbel.errors import MachineFileError, RuleError
+from kurbel.machine.masses import ConnectingRod
+from kurbel.machine.trace import Trace
+from kurbel.machine_file import loads
+from kurbel.machine_file.reader import ROOT
+from kurbel.machine_file.schema import json_schema
+from kurbel.mechanisms.slider_crank import SliderCrank
+
+
+def all_records() -> Iterator[Record]:
+    """Every record that the keys of a machine lead to."""
+    found = {ROOT.target: ROOT}
+    waiting = [ROOT]
+    while waiting:
+        record = waiting.pop()
+        for name, key in record.keys.items():
+            for _, inner in key.form.records(name):
+                if inner.target not in found:
+                    found[inner.target] = inner
+                    waiting.append(inner)
+    return iter(found.values())
+
+
+def declared(field: str) -> list[Any]:
+    return [
+        pytest.param(record, name, key, id=f"{record.target.split(':')[1]}.{name}")
+        for record in all_records()
+        for name, key in record.keys.items()
+        if getattr(key, field)
+    ]
+
+
+def allowed_by_schema(record: Record, *names: str) -> bool:
+    """Whether the rules between keys let these stand together, whatever their values."""
+    properties: dict[str, Any] = {}
+    rules: list[dict[str, Any]] = []
+    record.describe_all(properties, rules, json_schema()["definitions"])
+    return jsonschema.Draft7Validator({"allOf": rules}).is_valid(dict.fromkeys(names, 1))
+
+
+@pytest.mark.parametrize(("record", "name", "key"), declared("instead"))
+def test_two_keys_that_say_the_same_thing_are_a_contradiction(record: Record, name: str, key: Key) -> None:
+    with pytest.raises(RuleError, match=f"{name}: '{key.instead}' and '{name}' say the same thing"):
+        record.load().from_keys(**{name: 1.5, key.instead: 1.5})
+    assert not allowed_by_schema(record, name, key.instead)
+
+
+@pytest.mark.parametrize(("record", "name", "key"), declared("needs"))
+def test_a_key_needs_the_one_beside_it(record: Record, name: str, key: Key) -> None:
+    with pytest.raises(RuleError, match=f"{name}: '{name}' needs '{key.needs}' beside it"):
+        record.load().from_keys(**{name: 1.5})
+    assert not allowed_by_schema(record, name)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{crank: 1 m, stroke: 2 m, rod_ratio: 5}", "stroke: 'crank' and 'stroke' say the same thing"),
+        ("{crank: 1 m, rod: 5 m, rod_ratio: 5}", "rod_ratio: 'rod' and 'rod_ratio' say the same thing"),
+        ("{rod_ratio: 5}", "'crank' or 'stroke' is missing; write for instance 'crank: 400 mm'"),
+        (
+            "{crank: 1 m, rod_ratio: 5, masses: {connecting_rod: {mass: 1 kg, share: 1/3, center_of_gravity: 1 m,"
+            " inertia: 1 kg m2}}}",
+            "center_of_gravity: 'share' and 'center_of_gravity' say the same thing",
+        ),
+    ],
+)
+def test_the_reader_tells_them_with_their_place(text: str, message: str) -> None:
+    with pytest.raises(MachineFileError) as caught:
+        loads(text)
+    assert message in str(caught.value)
+    assert len(caught.value.faults) == 1
+
+
+def test_the_same_words_in_python() -> None:
+    with pytest.raises(RuleError, match="write for instance 'rod_ratio: 5'"):
+        SliderCrank.from_keys(crank=0.4)
+    with pytest.raises(RuleError, match="'inertia' needs 'center_of_gravity' beside it"):
+        ConnectingRod(2.0, inertia=0.1)
+    with pytest.raises(RuleError, match="is too large; it must be at most 1"):
+        ConnectingRod(2.0, share=1.5)
+
+
+@pytest.mark.parametrize(
+    ("angles", "pressures", "message"),
+    [
+        ([0, 180], [1, 2], "rise over one whole cycle"),
+        ([0, 200, 180, 360], [1, 2, 3, 1], "rise over one whole cycle"),
+        ([0, 180, 360], [1, np.nan, 1], "finite samples"),
+        ([0, 180, 360], [1, 2], "as many pressures as angles"),
+        ([0], [1], "two or more"),
+    ],
+)
+def test_a_trace_is_one_cycle_at_birth(angles: list[float], pressures: list[float], message: str) -> None:
+    with pytest.raises(RuleError, match=message):
+        Trace(np.array(angles, dtype=float), np.array(pressures, dtype=float))
+
+
+def test_a_trace_from_arrays_needs_no_file() -> None:
+    trace = Trace(np.array([10.0, 190.0, 370.0]), np.array([1e5, 2e5, 1e5]))
+    assert (trace.period, trace.even, trace.cycles, trace.file) == (360, True, ("two-stroke",), None)
