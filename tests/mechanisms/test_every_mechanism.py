@@ -244,11 +244,17 @@ def test_lengths_must_be_positive_and_finite(machine, wrong):
         type(machine)(**{**fields, "crank": wrong})
 
 
+def resized(machine, scale):
+    """Return the mechanism with all its lengths, and nothing else, times the scale."""
+    fields = {field.name: getattr(machine, field.name) for field in dataclasses.fields(machine)}
+    lengths = {key for key, one in machine.KEYS.items() if isinstance(one.form, Physical) and one.form.kind == "length"}
+    return type(machine)(**{key: value * scale if value and key in lengths else value for key, value in fields.items()})
+
+
 @every(STROKES)
 @pytest.mark.parametrize("scale", [2.0**-1000, 2.0**1000])
 def test_size_does_not_matter(machine, scale):
-    fields = {field.name: getattr(machine, field.name) for field in dataclasses.fields(machine)}
-    scaled = type(machine)(**{name: value * scale if value is not None else None for name, value in fields.items()})
+    scaled = resized(machine, scale)
     angle = CrankAngle.of(np.array([0.0, 33.0, 180.0, 271.0]))
     unit = scale if machine.slides else 1.0
     assert scaled.dead_centres() == pytest.approx(machine.dead_centres(), rel=1e-15)
@@ -256,13 +262,6 @@ def test_size_does_not_matter(machine, scale):
         (scaled.coordinate, scaled.slope, scaled.curvature), (machine.coordinate, machine.slope, machine.curvature)
     ):
         assert function(angle) / unit == pytest.approx(original(angle), rel=1e-13, abs=1e-15 * machine.stroke)
-
-
-def resized(machine, scale):
-    """Return the mechanism with all its lengths, and nothing else, times the scale."""
-    fields = {field.name: getattr(machine, field.name) for field in dataclasses.fields(machine)}
-    lengths = {key for key, one in machine.KEYS.items() if isinstance(one.form, Physical) and one.form.kind == "length"}
-    return type(machine)(**{key: value * scale if value and key in lengths else value for key, value in fields.items()})
 
 
 POWERS = {"m": 1, "m/s": 1, "m/s^2": 1, "N m": 1, "J": 1, "W": 1, "Pa": -2}
