@@ -11,9 +11,10 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 from kurbel.declared.bounds import SIZES
+from kurbel.declared.forms import points
 from kurbel.declared.unit_systems import SI
 from kurbel.errors import KurbelError, MachineFileError
-from kurbel.machine_file import columns, load, loads
+from kurbel.machine_file import columns, events, load, loads
 from kurbel.machine_file.schema import json_schema
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod_ratio: 5\n"
@@ -178,3 +179,16 @@ def test_a_line_without_end_is_not_loaded(tmp_path: Path) -> None:
 
 def test_json_of_the_schema_is_finite() -> None:
     assert json.loads(json.dumps(json_schema(), allow_nan=False))
+
+
+def test_more_points_than_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(points, "MOST_POINTS", 500)
+    flow = ", ".join(f"[{i * 0.5}, 1]" for i in range(501))
+    with pytest.raises(KurbelError, match="501 points; more than 500 are not taken, thin them out"):
+        loads(f"effort: {{unit: N m, points: [{flow}]}}")
+
+
+def test_more_values_than_any_machine_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(events, "_MOST_SCALARS", 500)
+    with pytest.raises(KurbelError, match="more than 500 values; put measurements into a file"):
+        loads(f"name: [{'1,' * 501}]")
