@@ -230,11 +230,11 @@ def _linear_step(at: _State) -> tuple[Array, Array]:
     sides = np.stack((at.residual, np.ones_like(at.residual)), axis=-1)
     try:
         response, gain = np.moveaxis(np.linalg.solve(systems, sides), -1, 0)
-    except np.linalg.LinAlgError:
+        # δ_start of element k + 1 is more[k] + gain[k] δ_start(k)
+        more = response[:, -1:] + np.roll(at.jump, -1)[:, None]
+        step_start = around(-gain[:, -1:, None], np.ones((len(more), 1, 1)), more)[:, 0]
+    except np.linalg.LinAlgError:  # singular, or beyond the range of floats
         raise Unsettled from None
-    # δ_start of element k + 1 is more[k] + gain[k] δ_start(k)
-    more = response[:, -1:] + np.roll(at.jump, -1)[:, None]
-    step_start = around(-gain[:, -1:, None], np.ones((len(more), 1, 1)), more)[:, 0]
     return step_start, response + gain * step_start[:, None]
 
 

@@ -15,7 +15,7 @@ from kurbel.machine import Machine
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid, Pieces, integral
-from kurbel.numerics.search import Extremes, Sampled, extremes, zeros
+from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.columns import StrengthColumns, strength_columns
@@ -24,7 +24,7 @@ from kurbel.solver.strength.sections import norm
 from kurbel.solver.strength.statics import FreeBody, Vector, equilibrium_residual, weight_in_throw
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable
 
     from kurbel.arrays import Array
 
@@ -98,11 +98,21 @@ class CrankshaftStrength:
     def _grid(self) -> Grid:
         """The cycle in smooth pieces, cut also where a stress changes its sign: its magnitude has a kink there."""
         grid = self.forces.grid
-        jets = self.forces.drive.jets_at(grid.degrees, grid.within, grid.beyond)
-        sampled = self._signed(jets)
-        self._refuse_infinite(quantity.value for quantity in sampled.values())
-        found = zeros(grid, sampled, lambda phi, within: self._signed(self.forces.drive.jets_at(phi, within)))
+        found = zeros(grid, self._on(grid, self._signed), self._evaluated(self._signed))
         return grid.split_at(np.concatenate(tuple(found.values())))
+
+    def _on(self, grid: Grid, asked: Callable[[State], dict[str, Sampled]]) -> dict[str, Sampled]:
+        """Return what is asked of the state, on a grid."""
+        samples = asked(self.forces.drive.jets_at(grid.degrees, grid.within, grid.beyond))
+        if not all(np.isfinite(sampled.value).all() for sampled in samples.values()):
+            raise UsageError(
+                f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
+                "check the numbers and units of the machine file"
+            )
+        return samples
+
+    def _evaluated(self, asked: Callable[[State], dict[str, Sampled]]) -> Evaluate:
+        return lambda degrees, within: asked(self.forces.drive.jets_at(degrees, within))
 
     def _signed(self, state: State) -> dict[str, Sampled]:
         return _sampled(_with_kinks(self._running(state)), state)
@@ -116,24 +126,12 @@ class CrankshaftStrength:
 
     @cached_property
     def _samples(self) -> dict[str, Sampled]:
-        grid = self._grid
-        samples = self._quantities(self.forces.drive.jets_at(grid.degrees, grid.within, grid.beyond))
-        self._refuse_infinite(sampled.value for sampled in samples.values())
-        return samples
-
-    def _refuse_infinite(self, found: Iterable[Array]) -> None:
-        if not all(np.isfinite(values).all() for values in found):
-            raise UsageError(
-                f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
-                "check the numbers and units of the machine file"
-            )
+        return self._on(self._grid, self._quantities)
 
     @cached_property
     def _extremes(self) -> dict[str, Extreme]:
         """The largest of every quantity over the cycle: exact roots of the slopes that the jets carry."""
-        found = extremes(
-            self._grid, self._samples, lambda phi, within: self._quantities(self.forces.drive.jets_at(phi, within))
-        )
+        found = extremes(self._grid, self._samples, self._evaluated(self._quantities))
         return {name: both.largest for name, both in found.items()}
 
     def _body_beside(self, degrees: float, quantity: Any, value: float) -> FreeBody:

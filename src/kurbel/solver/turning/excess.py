@@ -6,6 +6,7 @@ One sampling of both torques on the grid of their common pieces serves the mean,
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -14,7 +15,7 @@ import numpy as np
 
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.piecewise import Piecewise
-from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, sign_changes
+from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
 from kurbel.solver.turning.torques import Sum, Torque, Uniform
 
 if TYPE_CHECKING:
@@ -61,35 +62,22 @@ class Excess:
         """The excess in N m as polynomials on the pieces of the grid."""
         return Piecewise(self.grid, self._sampled.value)
 
-    def _evaluate(self, degrees: Array, within: Array) -> dict[str, Sampled]:
-        """Return effort and excess at crank angles (n,)."""
-        effort = self.effort.torque(degrees, within)
-        return self._named(effort, effort - self.load.torque(degrees, within))
-
-    def _named(self, effort: Jet, excess: Jet) -> dict[str, Sampled]:
-        shape = effort.value.shape
-        return {"effort": Sampled.of(effort, shape), "excess": Sampled.of(excess, shape)}
-
-    @cached_property
-    def _curves(self) -> dict[str, Curve]:
-        return curves(self.grid, self._named(self._sampled_effort, self._sampled), self._evaluate)
-
     @cached_property
     def effort_extremes(self) -> Extremes:
         """Largest and smallest turning effort in N m, one-sided values at jumps included."""
-        return extremes_of(self._curves["effort"])
+        sampled = Sampled.of(self._sampled_effort, self.grid.degrees.shape)
+        return extremes(self.grid, {"M": sampled}, _evaluated(self.effort.torque))["M"]
 
     @cached_property
     def crossings(self) -> tuple[float, ...]:
-        """Crank angles in degrees, ascending, at which the effort crosses the resistance, by a jump or through zero."""
+        """Crank angles in degrees, ascending, at which the effort crosses the resistance, by a jump or through zero.
 
-        def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
-            return {"excess": self._evaluate(degrees, within)["excess"]}
-
+        They are those of the polynomials whose integral E is.
+        """
         # an effort that equals the resistance over a while differs from it by rounding only
         size = max(abs(extreme.value) for extreme in self.effort_extremes)
-        found = sign_changes(self.grid, {"excess": self._curves["excess"]}, evaluate, size)
-        return tuple(found["excess"].tolist())
+        sampled = Sampled.of(self._sampled, self.grid.degrees.shape)
+        return tuple(zeros(self.grid, {"M": sampled}, _evaluated(self.line.at), size)["M"].tolist())
 
     def at(self, degrees: Array) -> Array:
         """Return E in J at crank angles (…,) in degrees, counted from φ = 0; an angle's E hangs on no other one."""
@@ -132,3 +120,7 @@ class Excess:
     def dE(self) -> float:
         """ΔE in J, the largest swing of the excess work."""
         return self.largest.value - self.smallest.value if self.largest and self.smallest else 0.0
+
+
+def _evaluated(torque: Callable[[Array, Array], Jet]) -> Evaluate:
+    return lambda degrees, within: {"M": Sampled.of(torque(degrees, within), degrees.shape)}
