@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.keys import Key, Keys, Physical
-from kurbel.mechanisms import Mechanism, check_lengths
+from kurbel.declared.quantity import Quantity
+from kurbel.mechanisms import Mechanism, Offer, check_lengths
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +23,22 @@ class HarmonicCam(Mechanism):
         "crank": Key(Physical("length", above=0), "Half the lift", "a", required=True),
         "second": Key(Physical("length", above=0), "Second harmonic", "k", required=True),
     }
+    OFFERS: ClassVar[tuple[Offer, ...]] = (
+        Offer(
+            Quantity(
+                "M_tilt",
+                "M_t",
+                "torque",
+                "Moment of P on the flat follower, which the cam touches dx/dφ beside its axis",
+                commands=("forces",),
+                extremes=("forces",),
+                called="moment of P on the follower",
+                after="P",
+            ),
+            lambda cam, angle: cam.slope(angle),
+            ("P",),
+        ),
+    )
 
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank, second=self.second)

@@ -206,8 +206,8 @@ def test_a_resonance_is_told() -> None:
 
 def test_limits_reach_the_flywheel() -> None:
     text = ENGINE + "flywheel: {inertia: 50000 kg m2}\nlimits: {delta: 1/50, dE: 30 kJ}\n"
-    assert not checked(loads(text), ("forces", "flywheel")).broken
-    assert checked(loads(text.replace("1/50", "1/200")), ("forces", "flywheel")).broken
+    assert not checked(loads(text)).broken
+    assert checked(loads(text.replace("1/50", "1/200"))).broken
 
 
 @pytest.mark.parametrize("name", ["waterworks-two-cranks", "four-cylinder-generator", "punch"])
@@ -264,7 +264,7 @@ TWO = (CONFIGS / "waterworks-two-cranks.yaml").read_text(encoding="utf-8")
 
 
 def entries(text: str, title: str) -> list[tuple[str, str]]:
-    sections = {section.title: section.entries for section in checked(loads(text), ("forces", "flywheel")).sections}
+    sections = {section.title: section.entries for section in checked(loads(text)).sections}
     return [(entry.what, entry.text) for entry in sections[title]]
 
 
@@ -281,8 +281,8 @@ def test_a_limit_on_T_is_for_every_cylinder_and_for_the_whole_machine() -> None:
 def test_a_limit_on_the_flywheel_needed_is_kept_though_it_is_not_printed() -> None:
     text = ENGINE + "flywheel: {fluctuation: 0.01}\n"
     assert "J_needed" not in values(text)
-    assert not checked(loads(text + "limits: {J_needed: 1000 t m2}\n"), ("forces", "flywheel")).broken
-    (error,) = checked(loads(ENGINE + "limits: {delta: 0.1}\n"), ("forces", "flywheel")).errors
+    assert not checked(loads(text + "limits: {J_needed: 1000 t m2}\n")).broken
+    (error,) = checked(loads(ENGINE + "limits: {delta: 0.1}\n")).errors
     assert "this machine has no delta: coefficient" in str(error)
 
 

@@ -480,7 +480,7 @@ def test_indicated_below_brake_power(tmp_path: Path) -> None:
     machine = machine_of(tmp_path, "\n".join(GOOD), more="brake_power: 500 kW\n")
     (warning,) = brake_warnings(machine, Case(machine).cylinders)
     assert "is below the brake power, 500000 W" in warning
-    notes = [entry.text for section in checked(machine, ("forces",)).sections for entry in section.entries]
+    notes = [entry.text for section in checked(machine).sections for entry in section.entries]
     assert warning in notes
 
 

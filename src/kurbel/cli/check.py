@@ -15,13 +15,12 @@ def check(file: str) -> int:
 
     Where the file gives 'limits', compare the key values with them.
     """
-    from kurbel.cli import COMMANDS
     from kurbel.machine_file import load
     from kurbel.render.listing import listing
     from kurbel.render.output import stdout_charset, write_stdout
     from kurbel.report.check import checked
 
-    result = checked(load(file), COMMANDS)
+    result = checked(load(file))
     write_stdout((listing(result, stdout_charset()),))
     if result.errors:  # all of them, as one of the gravest kind
         gravest = min(result.errors, key=lambda error: error.exit_status)

@@ -139,21 +139,22 @@ def unit_name(reading: Reading, form: forms.UnitName, value: Any, path: Path) ->
 
 def limits(reading: Reading, form: forms.Limits, value: Any, path: Path) -> Any:
     """Read bounds for key values into pairs of id and bound in the base of its quantity."""
-    from kurbel.declared.quantities import KEY_VALUES, LISTS
+    from kurbel.declared.quantity import by_id
+    from kurbel.mechanisms import every_quantity
 
     if not isinstance(value, dict) or not value:
         got = "nothing" if isinstance(value, Plain) and value in _NOTHING else kind_of(value)
         return reading.fault(path, f"expected {expected(form)}, got {got}")
-    bounds = []
+    bounds, known = [], by_id(every_quantity().all_key_values)
     for name, bound in value.items():
-        if name not in KEY_VALUES:
-            hint = did_you_mean(name, tuple(KEY_VALUES)) or f"; known are {listed([*KEY_VALUES][:6], '…')}"
+        if name not in known:
+            hint = did_you_mean(name, tuple(known)) or f"; known are {listed([*known][:6], '…')}"
             reading.fault((*path, name), f"unknown key value '{shown(name)}'{hint}", at_key=True)
             continue
-        if name in LISTS:
+        if known[name].listed:
             reading.fault((*path, name), f"'{name}' is a list of values; no bound can be put on it", at_key=True)
             continue
-        bounds.append((name, _limit(reading, KEY_VALUES[name].kind, bound, (*path, name))))
+        bounds.append((name, _limit(reading, known[name].kind, bound, (*path, name))))
     return REFUSED if any(bound is REFUSED for _, bound in bounds) else tuple(bounds)
 
 

@@ -193,7 +193,7 @@ def _spellings(unit: str) -> str:
 
 
 def _limits(definitions: dict[str, Schema]) -> Schema:
-    from kurbel.declared.quantities import KEY_VALUES, LISTS
+    from kurbel.mechanisms import every_quantity
 
     quotient = {"type": "string", "pattern": f"^\\s*{NUMBER.pattern}\\s*/\\s*{NUMBER.pattern}\\s*$"}
     ratio = {"anyOf": [{"type": "number"}, quotient]}
@@ -202,7 +202,7 @@ def _limits(definitions: dict[str, Schema]) -> Schema:
             **(ratio if quantity.kind == "ratio" else _quantity(quantity.kind, definitions)),
             "description": quantity.text,
         }
-        for quantity in KEY_VALUES.values()
-        if quantity.id not in LISTS
+        for quantity in every_quantity().all_key_values
+        if not quantity.listed
     }
     return {"type": "object", "additionalProperties": False, "minProperties": 1, "properties": properties}

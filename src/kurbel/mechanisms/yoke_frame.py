@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.declared.keys import Key, Keys, Physical
 from kurbel.errors import Fault, RuleError
+from kurbel.mechanisms import Offer, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 
 if TYPE_CHECKING:
@@ -29,6 +30,19 @@ class YokeFrame(SliderCrank):
 
     name: ClassVar[str] = "yoke-frame"
     guided: ClassVar[bool] = False
+    OFFERS: ClassVar[tuple[Offer, ...]] = (
+        Offer(
+            own_force(
+                "M_bend",
+                "M_b",
+                "torque",
+                "Bending moment of N on the piston rod at its stuffing box",
+                "bending moment of N on the piston rod",
+            ),
+            lambda drive, angle: drive.bending_arm(angle),
+            ("N",),
+        ),
+    )
     KEYS: ClassVar[Keys] = {
         **SliderCrank.KEYS,
         "gland": Key(

@@ -1,4 +1,4 @@
-"""The report of `kurbel check`: what a machine has, what is left out, what nothing uses, and how its limits stand."""
+"""The report of `kurbel check`: what a machine has, what is left out, and how its limits stand."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from kurbel.declared.keys import Key, Physical
-from kurbel.declared.quantities import KEY_VALUES, NOISE_POWER
+from kurbel.declared.keys import Physical
+from kurbel.declared.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.declared.units import SI, show
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.fit import may_lock
-from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms import Mechanism, every_quantity
 from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages
 from kurbel.report.notes import Note, machine_notes, of_cylinder
 
@@ -41,12 +41,9 @@ class Checked(NamedTuple):
     errors: tuple[KurbelError, ...]
 
 
-def checked(machine: Machine, commands: Sequence[str]) -> Checked:
-    """Return what is to be said of a machine; `commands` are those that exist.
-
-    Key values are computed only where the machine has limits.
-    """
-    judged = tuple(_limits(machine, commands))
+def checked(machine: Machine) -> Checked:
+    """Return what is to be said of a machine; key values are computed only where it has limits."""
+    judged = tuple(_limits(machine))
     limits = tuple(one for one in judged if isinstance(one, Entry))
     found = machine_notes(machine)
     sections = (
@@ -54,7 +51,6 @@ def checked(machine: Machine, commands: Sequence[str]) -> Checked:
         *(_cylinder_section(machine, cylinder, found) for cylinder in machine.cylinders),
         Section("Whole machine", tuple(_turning_entries(machine))),
         Section("Crankshaft", tuple(_crankshaft_entries(machine))),
-        Section("Not used yet", tuple(_unused(machine, commands))),
         Section("Limits", limits),
     )
     broken = any(entry.bad for entry in limits)
@@ -138,54 +134,40 @@ def _described(mechanism: Mechanism) -> str:
     return f"{mechanism.name}: {', '.join(lengths)}"
 
 
-def _unused(machine: Machine, commands: Sequence[str]) -> Iterable[Entry]:
-    """Yield the keys that are given, but belong to commands that do not exist."""
-    for name, key in Machine.KEYS.items():
-        if _pending(key, commands) and getattr(machine, name, None) not in (None, 1.0):
-            yield Entry(
-                name, f"read and checked; it is for kurbel {' and '.join(key.commands)}, which does not exist yet"
-            )
-
-
-def _pending(key: Key, commands: Sequence[str]) -> bool:
-    return bool(key.commands) and not any(command in commands for command in key.commands)
-
-
-def _limits(machine: Machine, commands: Sequence[str]) -> Iterable[Entry | KurbelError]:
+def _limits(machine: Machine) -> Iterable[Entry | KurbelError]:
     """Yield how each limit stands, or why that cannot be told."""
     if not machine.limits:
         return
-    from kurbel.report.limits import command_of, limited_values
+    from kurbel.report.limits import limited_values
 
-    values, errors = limited_values(machine, (name for name, _ in machine.limits if command_of(name) in commands))
+    values = limited_values(machine, (name for name, _ in machine.limits))
+    declared = by_id(every_quantity().all_key_values)
     for name, bound in machine.limits:
-        found = [(where, value) for where, id, value in values if id == name]
-        if command_of(name) not in commands:
-            yield Entry(name, f"not checked: kurbel {command_of(name)} does not exist yet")
-        elif name in errors:
-            yield type(errors[name])(f"limits.{name}: {errors[name]}")
+        found, quantity = values[name], declared[name]
+        if isinstance(found, KurbelError):
+            yield type(found)(f"limits.{name}: {found}")
         elif not found:
-            text = KEY_VALUES[name].text
-            yield UsageError(f"limits.{name}: this machine has no {name}: {text[:1].lower()}{text[1:]}")
-        for where, value in found:
-            yield _compared(name, bound, where, value)
+            yield UsageError(
+                f"limits.{name}: this machine has no {name}: {quantity.text[:1].lower()}{quantity.text[1:]}"
+            )
+        else:
+            yield from (_compared(quantity, bound, where, value) for where, value in found)
 
 
 _ROUNDING = 1e-9
 """A bound is no more exact than what is printed of it: a stroke of 110 mm does not break a limit of 110 mm."""
 
 
-def _compared(name: str, bound: float, where: str, value: float) -> Entry | KurbelError:
+def _compared(quantity: Quantity, bound: float, where: str, value: float) -> Entry | KurbelError:
     """Compare a value with its bound: a `_min` may not fall below it, everything else may not exceed it.
 
     Of a residual the magnitude counts. What is not finite cannot be compared.
     """
+    name, kind = quantity.id, quantity.kind
     if not math.isfinite(value):
         from kurbel.report.shown import too_large
 
-        return UsageError(f"limits.{name} ({where}): {too_large(KEY_VALUES[name])}")
-    quantity = KEY_VALUES[name]
-    kind = quantity.kind
+        return UsageError(f"limits.{name} ({where}): {too_large(quantity)}")
     lower, bars = name.endswith("_min"), "|" if name.endswith("_residual") else ""
     excess = bound - value if lower else (abs(value) if bars else value) - bound
     broken = excess > _ROUNDING * abs(bound)

@@ -61,6 +61,11 @@ class MachineSpeed(MachineTurning):
         return None if self.J_needed is None else 4 * self.J_needed
 
     @property
+    def is_the_needed(self) -> bool:
+        """Whether the flywheel is the one for the wanted δ."""
+        return self.J_needed == self.J
+
+    @property
     def J(self) -> float | None:
         """Flywheel in kg m²: the given one, or else the one for the wanted δ."""
         given = self.machine.flywheel.inertia if self.machine.flywheel else None
