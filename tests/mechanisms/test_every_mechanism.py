@@ -14,7 +14,7 @@ from precise import by_radian, exact_angle
 from kurbel.crank_angle import CrankAngle, jet_angle
 from kurbel.declared.keys import load
 from kurbel.errors import RuleError
-from kurbel.mechanisms import MECHANISMS
+from kurbel.mechanisms import MECHANISMS, Mechanism
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
@@ -116,9 +116,11 @@ def test_the_stroke_runs_from_dead_centre_to_dead_centre(machine):
 
 @every(STROKES)
 @pytest.mark.parametrize("outstroke", [True, False])
-def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, outstroke):
+@pytest.mark.parametrize("searched", [True, False])
+def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, outstroke, searched):
+    inverse = Mechanism.crank_angles_at if searched else type(machine).crank_angles_at
     way = machine.stroke * np.array([0.0, 1e-12, 1e-6, 0.01, 0.3, 0.5, 0.77, 0.999, 1 - 1e-9, 1.0])
-    angles = machine.crank_angles_at(way, outstroke)
+    angles = inverse(machine, way, outstroke)
     inner, outer = machine.dead_centres()
     low, high = (inner, outer) if outstroke else (outer, inner + 360)
     assert ((low - 1e-5 <= angles) & (angles <= high + 1e-5)).all()

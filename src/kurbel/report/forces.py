@@ -48,7 +48,10 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
         yield from _balance_warnings(forces)
         yield from _bound_warnings(forces)
 
-    left = lambda: (*left_out(case.machine, cylinder), *_no_loss(forces))  # noqa: E731
+    def left() -> Iterable[LeftOut]:
+        yield from left_out(case.machine, cylinder)
+        yield from _no_loss(forces)
+
     return Subject(cylinder.name, (forces, forces.motion), at, cylinder.mechanism, left, warnings)
 
 
