@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 
 import kurbel
-from kurbel.report.forces import FORCE_COLUMNS, key_values
+from kurbel.report.forces import subjects
+from kurbel.report.frame import Subject
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 ANGLES = np.arange(361.0)
@@ -23,16 +24,17 @@ ANGLES = np.arange(361.0)
 
 def everything(machine: kurbel.Machine) -> None:
     """All columns and key values of all cylinders."""
-    for forces in kurbel.solve(machine).cylinders:
-        columns_only(forces)
-        list(key_values(forces))
+    for subject in subjects(kurbel.solve(machine)):
+        columns_only(subject)
+        list(subject.key_values("forces"))
 
 
-def columns_only(forces: object) -> None:
+def columns_only(subject: Subject) -> None:
     """All columns of one cylinder."""
-    state = forces.at(ANGLES)  # type: ignore[attr-defined]
-    for column in FORCE_COLUMNS:
-        getattr(state, column)
+    assert subject.at
+    answer = subject.at(ANGLES)
+    for column in subject.lists.columns("forces").values():
+        answer(column)
 
 
 def naive_motion(crank: float, rod: float, omega: float) -> list[tuple[float, float, float]]:

@@ -9,6 +9,8 @@ from click.testing import CliRunner
 
 from kurbel import loads, solve
 from kurbel.cli import kurbel
+from kurbel.declared.quantities import COMMON
+from kurbel.declared.quantity import by_id
 from kurbel.errors import UsageError
 from kurbel.report.check import _compared, checked
 
@@ -43,7 +45,7 @@ def test_what_overflows_is_neither_kept_nor_broken() -> None:
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize("name", ["mean_pressure", "T_min", "energy_residual"])
 def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
-    found = _compared(name, 1.0, "cylinder 1", value)
+    found = _compared(by_id(COMMON.all_key_values)[name], 1.0, "cylinder 1", value)
     assert isinstance(found, UsageError)
     assert f"limits.{name} (cylinder 1): {name} is too large to compute with" in str(found)
 

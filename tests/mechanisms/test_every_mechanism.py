@@ -18,7 +18,7 @@ from kurbel.declared.keys import Described, required
 from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.resistance import Moment, RamForce
-from kurbel.mechanisms import MECHANISMS
+from kurbel.mechanisms import MECHANISMS, Mechanism
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
@@ -128,9 +128,11 @@ def test_the_stroke_runs_from_dead_centre_to_dead_centre(machine):
 
 @every(STROKES)
 @pytest.mark.parametrize("outstroke", [True, False])
-def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, outstroke):
+@pytest.mark.parametrize("searched", [True, False])
+def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, outstroke, searched):
+    inverse = Mechanism.crank_angles_at if searched else type(machine).crank_angles_at
     way = machine.stroke * np.array([0.0, 1e-12, 1e-6, 0.01, 0.3, 0.5, 0.77, 0.999, 1 - 1e-9, 1.0])
-    angles = machine.crank_angles_at(way, outstroke)
+    angles = inverse(machine, way, outstroke)
     inner, outer = machine.dead_centres()
     low, high = (inner, outer) if outstroke else (outer, inner + 360)
     assert ((low - 1e-5 <= angles) & (angles <= high + 1e-5)).all()
@@ -146,7 +148,6 @@ def test_closed_extremes_are_the_largest_of_many(machine):
     for function, extremes in (
         (machine.slope, machine.velocity_extremes()),
         (machine.curvature, machine.acceleration_extremes()),
-        (lambda angle: machine.swing_at(angle).slope, machine.swing_extremes()),
     ):
         for extreme in extremes:
             assert function(CrankAngle.of(extreme.degrees)) == pytest.approx(extreme.value, rel=1e-14)
@@ -169,8 +170,10 @@ def test_the_two_strokes_fill_the_turn(machine):
 @every()
 def test_what_it_offers_fits_what_it_says(machine):
     angle = CrankAngle.of(40.0)
-    assert (machine.swing_at(angle) is not None) == machine.swings
-    assert machine.slides or machine.swings
+    offered = {offer.quantity.id: offer.factor(machine, angle) for offer in machine.OFFERS}
+    assert machine.slides or "theta" in offered
+    assert ("theta" in offered) == hasattr(machine, "swing_at")
+    assert all(value is None or math.isfinite(value) for value in offered.values())
     if machine.rod_angle(angle) is not None:
         assert math.hypot(*machine.rod_angle(angle)) == pytest.approx(1, rel=1e-15)
 

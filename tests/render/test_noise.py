@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from kurbel.declared.quantities import KEY_VALUES
+from kurbel.declared.quantities import COMMON
+from kurbel.declared.quantity import by_id
 from kurbel.machine_file import loads
 from kurbel.render import Look, render
 from kurbel.report.check import checked
@@ -15,6 +16,7 @@ from kurbel.report.shown import shown_key_value
 from kurbel.report.tables import Column, Part, Report
 
 CONFIGS = Path(__file__).parents[2] / "configs"
+KEY_VALUES = by_id(COMMON.all_key_values)
 ROUNDING = (0.0, 5e-324, -8.568e-17, 9.99e-15)
 LOOKS = (Look(), Look(layout="rows"), Look(digits=17), Look(comma=True), Look(encoding="ascii"), Look("markdown"))
 
@@ -22,7 +24,7 @@ LOOKS = (Look(), Look(layout="rows"), Look(digits=17), Look(comma=True), Look(en
 def report(residual: float) -> Report:
     values = (("work", 12345.678), ("loss_crosshead", 0.0123), ("energy_residual", residual))
     phi = Column("phi", "φ", "phi", "deg", (0, 90))
-    part = Part("one", (phi,), tuple(shown_key_value(name, value, "si") for name, value in values))
+    part = Part("one", (phi,), tuple(shown_key_value(KEY_VALUES[name], value, "si") for name, value in values))
     return Report("Forces", "forces", "Demo", "cylinders", (part,))
 
 
@@ -53,7 +55,7 @@ def test_a_limit_is_not_compared_with_rounding_in_sight() -> None:
 
 def test_only_residuals_are_taken_for_rounding() -> None:
     """A disturbance that dies away to 1e-60 in a cycle is no rounding."""
-    assert not shown_key_value("multiplier", 1e-60, "si").noise
+    assert not shown_key_value(KEY_VALUES["multiplier"], 1e-60, "si").noise
     assert [name for name, quantity in KEY_VALUES.items() if quantity.residual] == [
         "energy_residual",
         "equilibrium_residual",

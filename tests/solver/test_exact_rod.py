@@ -194,6 +194,6 @@ def test_bounds_hold_in_python_too() -> None:
 
 def test_largest_and_smallest_inertia_force_by_value() -> None:
     forces = one_cylinder(SliderCrank(CRANK, LENGTH), RPM, masses=Masses(-5.0))
-    found = forces.extremes_of("P_inertia")
-    assert found is not None
-    assert found.largest.value > 0 > found.smallest.value
+    assert forces.P_inertia_max is not None
+    assert forces.P_inertia_min is not None
+    assert forces.P_inertia_max.value > 0 > forces.P_inertia_min.value

@@ -135,8 +135,7 @@ def test_guides_and_pin_of_a_scotch_yoke() -> None:
     assert state.N_pair * 0.9 == pytest.approx(state.P * 0.25 * np.sin(np.radians(DENSE)), rel=1e-12, abs=1e-9)
     assert state.F_pin == pytest.approx(state.P, rel=1e-15)
     force = (9.5 * STEAM.head_area - 1.2 * STEAM.crank_area) * AT  # the same on the return stroke is less
-    assert forces.pin_pressure is not None
-    assert forces.pin_pressure.value == pytest.approx(force / (0.05 * 0.06), rel=1e-14)
+    assert forces.offered("pin_pressure").value == pytest.approx(force / (0.05 * 0.06), rel=1e-14)
 
 
 def test_pin_pressure_above_that_of_the_book_is_a_warning() -> None:
@@ -203,11 +202,11 @@ def test_the_force_in_the_coupler_turns_the_rocker() -> None:
 def test_inertia_of_a_coupling_rod() -> None:
     """m v²/R, R ch. 14 A."""
     forces = solved(ParallelCrank(0.305, 2.1, 145.0), rpm=240, moment=Moment(9000))
-    assert forces.coupler_inertia == pytest.approx(145 * (0.305 * 8 * math.pi) ** 2 / 0.305, rel=1e-14)
+    assert forces.offered("coupler_inertia") == pytest.approx(145 * (0.305 * 8 * math.pi) ** 2 / 0.305, rel=1e-14)
     found = forces.extremes_of("F_coupler")
     assert found is not None
     assert found.largest.value == pytest.approx(9000 / 0.305, rel=1e-14)
-    assert solved(ParallelCrank(0.305, 2.1), moment=Moment(9000)).coupler_inertia is None
+    assert solved(ParallelCrank(0.305, 2.1), moment=Moment(9000)).offered("coupler_inertia") is None
 
 
 @pytest.mark.parametrize(
@@ -249,12 +248,12 @@ def test_extremes_of_the_motion_are_exact(mechanism: Mechanism) -> None:
     """Each is a value of the motion at its angle, and no angle of a dense row goes beyond it."""
     forces = solved(mechanism)
     row = forces.at(np.arange(0.0, 360.0, 0.05))
-    columns = {"c": ("c_max", "c_min"), "b": ("b_max", "b_min")}
-    columns |= {name: (f"{name}_max", f"{name}_min") for name in ("theta_dot", "theta_ddot")}
+    motion = forces.motion
+    columns = {"c": (motion.c_max, motion.c_min), "b": (motion.b_max, motion.b_min)}
+    columns |= {name: motion.extremes_of(name) or (None, None) for name in ("theta_dot", "theta_ddot")}
     for column, (largest, smallest) in columns.items():
         values = getattr(row, column)
-        for name, sign in ((largest, 1.0), (smallest, -1.0)):
-            extreme = getattr(forces.motion, name)
+        for extreme, sign in ((largest, 1.0), (smallest, -1.0)):
             if values is None or extreme is None:
                 continue
             at = getattr(forces.at([extreme.degrees]), column)[0]

@@ -76,14 +76,20 @@ class Columns(Words):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
         """Return the ids in the order given."""
         from kurbel.declared.quantities import COLUMNS
-        from kurbel.near_words import did_you_mean
 
         ids = super().convert(value, param, ctx)
         for id in ids:
             if id not in COLUMNS:
-                near = did_you_mean(id, tuple(COLUMNS))
-                self.fail(f"unknown column '{id}'{near} (known: {', '.join(COLUMNS)})", param, ctx)
+                self._refuse_unknown(id, param, ctx)
         return ids
+
+    def _refuse_unknown(self, id: str, param: click.Parameter | None, ctx: click.Context | None) -> None:
+        from kurbel.mechanisms import every_quantity
+        from kurbel.near_words import did_you_mean
+
+        known = [column.id for column in every_quantity().all_columns if column.commands]
+        if id not in known:
+            self.fail(f"unknown column '{id}'{did_you_mean(id, tuple(known))} (known: {', '.join(known)})", param, ctx)
 
 
 class Output(NamedTuple):

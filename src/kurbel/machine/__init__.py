@@ -17,7 +17,7 @@ from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import Cylinder
 
 if TYPE_CHECKING:
-    from kurbel.declared.quantities import Quantity
+    from kurbel.declared.quantity import Quantity
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.turning import Coupling, Effort, Flywheel, Load
 
@@ -29,9 +29,11 @@ STANDARD_ATMOSPHERE = 101325.0
 
 
 def _key_values() -> tuple[dict[str, Quantity], tuple[str, ...]]:
-    from kurbel.declared.quantities import KEY_VALUES, LISTS
+    from kurbel.declared.quantity import by_id
+    from kurbel.mechanisms import every_quantity
 
-    return KEY_VALUES, LISTS
+    known = by_id(every_quantity().all_key_values)
+    return known, tuple(id for id, quantity in known.items() if quantity.listed)
 
 
 @dataclass(frozen=True, eq=False)

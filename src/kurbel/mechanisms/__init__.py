@@ -6,11 +6,15 @@ the crank angle is made of. What a new mechanism must supply stands in `Mechanis
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Described, Keys
-from kurbel.errors import Fault, refuse
+from kurbel.declared.quantities import Lists
+from kurbel.declared.quantity import Quantity
+from kurbel.errors import Fault, UsageError, refuse
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -27,40 +31,78 @@ MECHANISMS = {
 """Word in the machine file -> class; imported only when a machine names it."""
 
 
-class Swing(NamedTuple):
-    """The swinging member at a crank angle: θ in degrees, dθ/dφ and d²θ/dφ² (radian per radian), each as the angle."""
+class Offer(NamedTuple):
+    """A column that only some mechanisms have, with its formula.
 
-    degrees: Any
-    slope: Any
-    curvature: Any
+    factor: takes the mechanism and a crank angle and returns the value in SI over the product of `times`, of the shape
+    of the angle, or None where it is not known. times: what else it is proportional to, as the state of a cylinder
+    names it: `omega` once or twice, or a force such as `along_rod`, `N` or `M_out`.
+    """
+
+    quantity: Quantity
+    factor: Callable[[Any, CrankAngle], Any]
+    times: tuple[str, ...] = ()
+
+
+def own_motion(id: str, symbol: str, kind: str, text: str) -> Quantity:
+    """Declare a column that a mechanism adds to `kurbel motion`."""
+    return Quantity(id, symbol, kind, text, commands=("motion",), after="b")
+
+
+def own_force(id: str, symbol: str, kind: str, text: str, called: str, after: str = "N") -> Quantity:
+    """Declare a column that a mechanism adds to `kurbel forces`, with its extremes, and what those are called."""
+    return Quantity(id, symbol, kind, text, "", ("forces",), ("forces",), called, after=after)
+
+
+class KeyOffer(NamedTuple):
+    """A key value that only some mechanisms have, with its formula.
+
+    value: takes the mechanism and the results of its command, and returns a number in SI, an Extreme, or None.
+    bound: how large it may be after the sources, in SI; what is larger is told as a warning.
+    """
+
+    quantity: Quantity
+    value: Callable[[Any, Any], Any]
+    bound: float | None = None
 
 
 class Mechanism(Described):
     """What every mechanism supplies. It serves forces, work and torque through these alone:
 
-    1. `KEYS`, its keys in the machine file, and its geometric rules, raised as RuleError at birth;
+    1. `name`, the word in the machine file, `KEYS`, its keys there, and its geometric rules, raised as RuleError at
+       birth; `crank`, the radius that T is referred to;
     2. `coordinate`, `slope`, `curvature`: q, dq/dφ and d²q/dφ² at a crank angle, pointwise, so that c = q′ω, b = q″ω²
-       and torque = P q′. q is a length in m where the output slides, an angle in radians where it only swings. It
+       and torque = P q′. q is a length in m where the output `slides`, an angle in radians where it only swings. It
        rises from `start` at the inner dead centre (0 unless the book counts otherwise) by `stroke`;
-    3. `slides` and `swings`: whether it has a path (columns x, c, b, and a place where a force acts) and a swinging
-       member (columns theta, theta_dot, theta_ddot, from `swing_at`). The slotted lever has both;
-    4. `dead_centres` in degrees, the end of the outstroke after its beginning;
-    5. `crank_angles_at`: the inverse of `coordinate` on the outstroke or the return stroke;
-    6. `landmarks`: crank angles in degrees at which its functions bend sharply; searches and quadratures split there.
+    3. `dead_centres` in degrees, the end of the outstroke after its beginning.
 
-    What else it has it offers by the methods below that answer None here: a connecting rod, a sliding block, a coupler,
-    closed extremes, transmission angles, `notes`. Nobody asks for its class.
+    A class without one of these is refused. All else has an answer here that a mechanism may better: `crank_angles_at`,
+    the inverse of `coordinate`; `landmarks`, where its functions bend sharply; the connecting rod, the radial force;
+    closed extremes; `lacks` and `notes`. What only some mechanisms have (a swinging lever, a sliding block, a coupler)
+    they hand out as columns in OFFERS and key values in KEY_OFFERS. Nobody asks for the class of a mechanism.
     """
 
     KEYS: ClassVar[Keys]
     name: ClassVar[str]
+    OFFERS: ClassVar[tuple[Offer, ...]] = ()
+    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = ()
     slides: ClassVar[bool] = True
-    swings: ClassVar[bool] = False
+    turns: ClassVar[bool] = False
+    """Whether the output turns on and on, so that it has no return stroke."""
     quick_return: ClassVar[bool] = False
     """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
     guided: ClassVar[bool] = True
     """Whether the side force N rests on a guide; otherwise it bends the piston rod."""
+    known_across: ClassVar[bool] = False
+    """Whether, without a connecting rod, nothing but its weight pushes the output across the stroke line onto N."""
     crank: float
+
+    def __init_subclass__(cls) -> None:
+        own = [one for one in cls.__mro__ if issubclass(one, Mechanism) and one is not Mechanism]
+        given = {name for one in own for name in (*vars(one), *getattr(one, "__annotations__", ()))}
+        missing = [name for name in _REQUIRED if name not in given]
+        if missing:
+            raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
 
     @property
     def stroke(self) -> float:
@@ -71,11 +113,6 @@ class Mechanism(Described):
     def start(self) -> float:
         """The coordinate at the inner dead centre."""
         return 0.0
-
-    @property
-    def swing(self) -> float | None:
-        """The angle in degrees through which the member swings; None where nothing swings, or it turns fully."""
-        return None
 
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return q at the crank angle, in m (or rad), of the shape of the angle."""
@@ -94,8 +131,22 @@ class Mechanism(Described):
         raise AssertionError
 
     def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
-        """Return the crank angles in degrees where q − start (n,), from 0 to the stroke, is passed on that stroke."""
-        raise AssertionError
+        """Return the crank angles in degrees where q − start (n,), from 0 to the stroke, is passed on that stroke.
+
+        Here by search between the dead centres, to the rounding of `coordinate`.
+        """
+        import numpy as np
+
+        from kurbel.crank_angle import CrankAngle
+        from kurbel.numerics.roots import bracketed_roots
+
+        way = np.asarray(displacement, dtype=float)
+        inner, outer = (np.full_like(way, degrees) for degrees in self.dead_centres())
+        ends = ((inner, -way), (outer, self.stroke - way))
+        (low, f_low), (high, f_high) = ends if outstroke else (ends[1], (inner + 360.0, -way))
+        return bracketed_roots(
+            lambda degrees: self.coordinate(CrankAngle.of(degrees)) - self.start - way, low, high, f_low, f_high
+        )
 
     def landmarks(self) -> tuple[float, ...]:
         """Return the crank angles in degrees, besides the dead centres, at which searches should split."""
@@ -122,18 +173,9 @@ class Mechanism(Described):
         return True
 
     @property
-    def turns(self) -> bool:
-        """Whether the output turns on and on, so that it has no return stroke."""
-        return not self.slides and self.swing is None
-
-    @property
     def time_ratio(self) -> float:
         """Time of the outstroke (working stroke) over that of the return stroke, at uniform rotation."""
         return self.phi_work / self.phi_return
-
-    def swing_at(self, angle: CrankAngle) -> Swing | None:
-        """Return the swinging member at the crank angle, or None where there is none."""
-        return None
 
     def rod_angle(self, angle: CrankAngle) -> tuple[Any, Any] | None:
         """Return (sin ψ, cos ψ) of the connecting rod, or None where there is none."""
@@ -160,49 +202,6 @@ class Mechanism(Described):
         """Return D/P, the radial force at the crank pin (positive toward the shaft) over the force at the output."""
         return None
 
-    def block_slope(self, angle: CrankAngle) -> Any | None:
-        """Return the speed over ω in m of the block that slides on the crank pin's guide, or None without one."""
-        return None
-
-    def pin_force_factor(self, angle: CrankAngle) -> Any | None:
-        """Return the force of that block on the crank pin over P, or None without one."""
-        return None
-
-    @property
-    def pin_area(self) -> float | None:
-        """Projected area of the crank pin in m², or None where its size is not given."""
-        return None
-
-    @property
-    def pin_pressure_bound(self) -> float | None:
-        """Pressure in Pa up to which the sources let such a crank pin go, or None where they are silent."""
-        return None
-
-    def guide_pair_factor(self, angle: CrankAngle) -> Any | None:
-        """Return the force over P on each of two guides that hold the output against tilting, or None."""
-        return None
-
-    def bending_arm(self, angle: CrankAngle) -> Any | None:
-        """Return the arm in m on which N bends the piston rod, or None where it does not, or is not known."""
-        return None
-
-    def coupler_force_factor(self, angle: CrankAngle) -> Any | None:
-        """Return the force in a coupler over the moment on the swinging member in 1/m, or None without one."""
-        return None
-
-    def coupler_path(self, angle: CrankAngle) -> tuple[Any, Any] | None:
-        """Return the way (along, across) the frame in m of a coupler all of whose points move alike, or None."""
-        return None
-
-    def coupler_acceleration(self, angle: CrankAngle) -> tuple[Any, Any] | None:
-        """Return its acceleration (along, across) the frame over ω² in m, or None."""
-        return None
-
-    @property
-    def coupler_inertia(self) -> float | None:
-        """Size over ω² in kg m of the inertia force of that coupler, or None where its mass is not given."""
-        return None
-
     def velocity_extremes(self) -> tuple[Extreme, ...]:
         """Return closed extremes of `slope`, where there are any; otherwise they are searched."""
         return ()
@@ -211,14 +210,9 @@ class Mechanism(Described):
         """Return closed extremes of `curvature`, where there are any; otherwise they are searched."""
         return ()
 
-    def swing_extremes(self) -> tuple[Extreme, ...]:
-        """Return closed extremes of dθ/dφ, where there are any; otherwise they are searched."""
-        return ()
-
-    @property
-    def transmission(self) -> tuple[Extreme, Extreme] | None:
-        """Smallest and largest transmission angle in degrees, or None where the word means nothing."""
-        return None
+    def offered(self, id: str, results: Any) -> Any:
+        """Return a key value that this mechanism offers, from the results of its command; None where it has none."""
+        return next((one.value(self, results) for one in self.KEY_OFFERS if one.quantity.id == id), None)
 
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
@@ -229,6 +223,26 @@ class Mechanism(Described):
     def notes(self) -> tuple[str, ...]:
         """What a reader of the results should know about this mechanism, each in one sentence."""
         return ()
+
+
+_REQUIRED = ("name", "KEYS", "crank", "stroke", "dead_centres", "coordinate", "slope", "curvature")
+
+
+def quantities_of(mechanism: Mechanism) -> Lists:
+    """Return what a machine with this mechanism may have."""
+    return _lists(mechanism.OFFERS, mechanism.KEY_OFFERS)
+
+
+def every_quantity() -> Lists:
+    """Return what machines may have, whatever their mechanism; this imports all of them."""
+    every: list[Any] = [record.load() for record in MECHANISMS.values()]
+    return _lists(tuple(o for one in every for o in one.OFFERS), tuple(o for one in every for o in one.KEY_OFFERS))
+
+
+@cache
+def _lists(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...]) -> Lists:
+    key_values = (offer.quantity._replace(asks=("offered", offer.quantity.id)) for offer in key_offers)
+    return Lists.of(dict.fromkeys(offer.quantity for offer in offers), dict.fromkeys(key_values))
 
 
 def check_lengths(**lengths: float) -> None:

@@ -1,10 +1,15 @@
-"""The crank pin of a mechanism whose block slides in a slot: its size, for the pressure between pin and block."""
+"""The crank pin of a mechanism whose block slides in a slot: speed of the block, force and pressure on the pin."""
 
 from __future__ import annotations
 
+from typing import Any
+
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Key, Keys, check
+from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, RuleError
+from kurbel.mechanisms import KeyOffer, Offer, own_force, own_motion
+from kurbel.numerics.extreme import Extreme
 
 PIN_KEYS: Keys = {
     "pin_diameter": Key(
@@ -40,3 +45,32 @@ def projected_area(diameter: float | None, length: float | None) -> float | None
         if not 0 < value < float("inf"):
             raise RuleError(Fault((name,), "must be a positive, finite length"))
     return diameter * length
+
+
+_SPEED = "Speed at which the block on the crank pin slides along its slot"
+_FORCE = "force of the sliding block on the crank pin"
+BLOCK_OFFERS = (
+    Offer(own_motion("c_block", "c_b", "velocity", _SPEED), lambda one, angle: one.block_slope(angle), ("omega",)),
+    Offer(
+        own_force("F_pin", "F_z", "force", "Force of the sliding block on the crank pin, in the sense of P", _FORCE),
+        lambda one, angle: one.pin_force_factor(angle),
+        ("along_rod",),
+    ),
+)
+"""Of a mechanism with `block_slope`, the speed of the block over ω in m, and `pin_force_factor`, its force over P."""
+
+
+def _pressure(mechanism: Any, forces: Any) -> Extreme | None:
+    area = projected_area(mechanism.pin_diameter, mechanism.pin_length)
+    found = area and forces.extremes_of("F_pin")
+    if not area or not found:
+        return None
+    largest = max(found, key=lambda extreme: abs(extreme.value))
+    return Extreme(abs(largest.value) / area, largest.degrees)
+
+
+def pin_pressure(bound: float | None = None) -> KeyOffer:
+    """Return the pressure between pin and block; bound: in Pa, up to which the sources let such a pin go."""
+    text = "Largest pressure of the sliding block on the crank pin"
+    quantity = Quantity("pin_pressure", "p_z", "pressure", text, commands=("forces",), after="T_min")
+    return KeyOffer(quantity, _pressure, bound)

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Key, Keys
+from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
-from kurbel.mechanisms import Mechanism, Swing, check_lengths, fan
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
+from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
 
@@ -108,6 +110,13 @@ class Closure(NamedTuple):
         return self.area / (self.loop.coupler * self.loop.rocker)
 
 
+def _transmission(id: str, end: str, text: str) -> KeyOffer:
+    return KeyOffer(
+        Quantity(id, f"μ_{end}", "angle", text, f"mu_{end}", ("motion", "forces"), after="theta_ddot_min"),
+        lambda four_bar, _: four_bar.transmission[0 if end == "min" else 1],
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class FourBar(Mechanism):
     """A crank that turns fully and swings a rocker through a coupler.
@@ -124,7 +133,12 @@ class FourBar(Mechanism):
 
     name: ClassVar[str] = "four-bar"
     slides: ClassVar[bool] = False
-    swings: ClassVar[bool] = True
+    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, F_COUPLER)
+    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (
+        *SWING_VALUES,
+        _transmission("transmission_min", "min", "Smallest transmission angle"),
+        _transmission("transmission_max", "max", "Largest transmission angle"),
+    )
     quick_return: ClassVar[bool] = True
     KEYS: ClassVar[Keys] = {
         "crank": Key(Physical("length", above=0), "Crank radius", "a", required=True),

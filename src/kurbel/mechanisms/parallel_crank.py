@@ -8,11 +8,35 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Key, Keys, check
-from kurbel.mechanisms import Mechanism, Swing, check_lengths
-from kurbel.numerics.extreme import Extreme
+from kurbel.declared.quantity import Quantity
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_motion
+from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
 
 if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle
+
+
+def _way(id: str, symbol: str, along: str, index: int) -> Offer:
+    quantity = own_motion(id, symbol, "length", f"Way of every coupler point {along} the frame")
+    return Offer(quantity, lambda one, angle: one.coupler_path(angle)[index])
+
+
+def _acceleration(id: str, symbol: str, along: str, index: int) -> Offer:
+    quantity = own_motion(id, symbol, "acceleration", f"Acceleration of every coupler point {along} the frame")
+    return Offer(quantity, lambda one, angle: one.coupler_acceleration(angle)[index], ("omega", "omega"))
+
+
+def _squared(omega: float | None, *factors: float | None) -> float | None:
+    """Return the product of the factors times ω²; None where one is not known."""
+    known = [factor for factor in factors if factor is not None]
+    return None if omega is None or len(known) < len(factors) else math.prod(known) * (omega * omega)
+
+
+_ACCELERATION = "Acceleration v²/R of every coupler point, toward its centre"
+_FORCE = "Inertia force m v²/R of the coupler, turning with the cranks"
+_BOTH = ("motion", "forces")
+_B_COUPLER = Quantity("b_coupler", "b_K", "acceleration", _ACCELERATION, "", _BOTH, after="theta_ddot_min")
+_INERTIA = Quantity("coupler_inertia", "F_b", "force", _FORCE, commands=("forces",), after="T_min")
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +54,21 @@ class ParallelCrank(Mechanism):
 
     name: ClassVar[str] = "parallel-crank"
     slides: ClassVar[bool] = False
-    swings: ClassVar[bool] = True
+    turns: ClassVar[bool] = True
+    swing: ClassVar[None] = None
+    OFFERS: ClassVar[tuple[Offer, ...]] = (
+        *SWING_OFFERS,
+        _way("x_coupler", "x_K", "along", 0),
+        _way("y_coupler", "y_K", "across", 1),
+        _acceleration("bx_coupler", "b_Kx", "along", 0),
+        _acceleration("by_coupler", "b_Ky", "across", 1),
+        F_COUPLER,
+    )
+    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (
+        *SWING_VALUES,
+        KeyOffer(_B_COUPLER, lambda one, motion: _squared(motion.omega, one.crank)),
+        KeyOffer(_INERTIA, lambda one, forces: _squared(forces.omega, one.coupler_mass, one.crank)),
+    )
     KEYS: ClassVar[Keys] = {
         "crank": Key(Physical("length", above=0), "Radius of both cranks", "R", required=True),
         "frame": Key(Physical("length", above=0), "Distance of the shafts; the coupler is as long", "d", required=True),
@@ -62,10 +100,6 @@ class ParallelCrank(Mechanism):
         """Return d²θ/dφ² = 0."""
         return angle.sin * 0
 
-    def swing_extremes(self) -> tuple[Extreme, ...]:
-        """Return 1 and 1: the second crank turns evenly."""
-        return Extreme(1.0, 0.0), Extreme(1.0, 0.0)
-
     def swing_at(self, angle: CrankAngle) -> Swing:
         """Return the second crank, which turns as the first does."""
         return Swing(angle.degrees, self.slope(angle), self.curvature(angle))
@@ -80,11 +114,6 @@ class ParallelCrank(Mechanism):
     def coupler_acceleration(self, angle: CrankAngle) -> tuple[Any, Any]:
         """Return the acceleration (along, across) of every coupler point over ω², in m: of size R, R ch. 14 A."""
         return -self.crank * angle.cos, -self.crank * angle.sin
-
-    @property
-    def coupler_inertia(self) -> float | None:
-        """m R in kg m: the inertia force m v²/R over ω², R ch. 14 A."""
-        return None if self.coupler_mass is None else self.coupler_mass * self.crank
 
     def coupler_force_factor(self, angle: CrankAngle) -> Any:
         """Return the coupler's force over the torque it passes on, sin φ/R in 1/m, with a second pair at 90°.

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Key, Keys
-from kurbel.mechanisms import Mechanism, check_lengths
-from kurbel.mechanisms.crank_pin import NO_PIN, PIN_KEYS, projected_area
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_force
+from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area
 from kurbel.mechanisms.slider_crank import CRANK_KEYS
 from kurbel.numerics.extreme import Extreme
 
@@ -32,6 +32,7 @@ class ScotchYoke(Mechanism):
     pin_length: float | None = None
 
     name: ClassVar[str] = "scotch-yoke"
+    known_across: ClassVar[bool] = True
     KEYS: ClassVar[Keys] = {
         **CRANK_KEYS,
         "guide_length": Key(
@@ -42,6 +43,22 @@ class ScotchYoke(Mechanism):
         ),
         **PIN_KEYS,
     }
+    OFFERS: ClassVar[tuple[Offer, ...]] = (
+        *BLOCK_OFFERS,
+        Offer(
+            own_force(
+                "N_pair",
+                "N_2",
+                "force",
+                "Force on each of the two guides of a yoke, opposite to one another",
+                "force on each of the two guides of a yoke",
+            ),
+            lambda yoke, angle: yoke.guide_pair_factor(angle),
+            ("along_rod",),
+        ),
+    )
+    # R p. 617: up to 200 kgf/cm²
+    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (pin_pressure(bound=200 * 98066.5),)
 
     @classmethod
     def of_keys(
@@ -99,20 +116,10 @@ class ScotchYoke(Mechanism):
         return None if self.guide_length is None else self.crank / self.guide_length * angle.sin
 
     @property
-    def pin_area(self) -> float | None:
-        """d_z l_z in m²."""
-        return projected_area(self.pin_diameter, self.pin_length)
-
-    @property
-    def pin_pressure_bound(self) -> float:
-        """200 kgf/cm², to which the pressure on such a pin may go, R p. 617."""
-        return 200 * 98066.5
-
-    @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
         """Name the guides and the pin, where their sizes are not given."""
         guides = () if self.guide_length is not None else (("force on the guides", "no guide_length given"),)
-        return guides if self.pin_area is not None else (*guides, NO_PIN)
+        return guides if self.pin_diameter is not None else (*guides, NO_PIN)
 
     def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
         """Return φ = 2 arctan √(x/(2R − x)) in degrees, and 360° less on the return stroke."""

@@ -11,9 +11,10 @@ from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
-from kurbel.mechanisms import Mechanism, Swing, check_lengths, fan
-from kurbel.mechanisms.crank_pin import NO_PIN, PIN_KEYS, projected_area
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
+from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area
 from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
+from kurbel.mechanisms.swing import SWING_OFFERS, SWING_VALUES, Swing
 from kurbel.numerics.arithmetic import bearing, sqrt, where
 from kurbel.numerics.extreme import Extreme
 
@@ -48,7 +49,8 @@ class SlottedLever(Mechanism):
     pin_length: float | None = None
 
     name: ClassVar[str] = "slotted-lever"
-    swings: ClassVar[bool] = True
+    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *BLOCK_OFFERS)
+    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (*SWING_VALUES, pin_pressure())
     quick_return: ClassVar[bool] = True
     KEYS: ClassVar[Keys] = {
         "crank": Key(Physical("length", above=0), "Crank radius", "r", required=True),
@@ -249,16 +251,11 @@ class SlottedLever(Mechanism):
         return -self.pin_force_factor(angle) * (frame * angle.sin / lever.reach)
 
     @property
-    def pin_area(self) -> float | None:
-        """d_z l_z in m²."""
-        return projected_area(self.pin_diameter, self.pin_length)
-
-    @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
         """Name the forces of a link, the lever, and the pin where its size is not given."""
         link = () if self._forked else (("S, N", "the forces of the link on the ram are not computed"),)
         lever = ("inertia of the lever", "kurbel takes masses on the ram only")
-        return (*link, lever) if self.pin_area is not None else (*link, lever, NO_PIN)
+        return (*link, lever) if self.pin_diameter is not None else (*link, lever, NO_PIN)
 
     def block_slope(self, angle: CrankAngle) -> Any:
         """Return dρ/dφ = −r e sin φ/ρ in m: times ω, the speed at which the block slides along the lever."""
@@ -297,11 +294,6 @@ class SlottedLever(Mechanism):
             return ()
         crank, frame, gap = self._shares
         return Extreme(self.lever * crank / (crank + frame), 0.0), Extreme(-self.lever * crank / abs(gap), 180.0)
-
-    def swing_extremes(self) -> tuple[Extreme, ...]:
-        """Return dθ/dφ at 0°, r/(e + r), and at 180°, −r/(e − r)."""
-        crank, frame, gap = self._shares
-        return Extreme(crank / (crank + frame), 0.0), Extreme(-crank / gap, 180.0)
 
     @property
     def notes(self) -> tuple[str, ...]:

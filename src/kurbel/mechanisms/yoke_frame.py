@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Key, Keys
 from kurbel.errors import Fault, RuleError
+from kurbel.mechanisms import Offer, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 
 if TYPE_CHECKING:
@@ -30,6 +31,19 @@ class YokeFrame(SliderCrank):
 
     name: ClassVar[str] = "yoke-frame"
     guided: ClassVar[bool] = False
+    OFFERS: ClassVar[tuple[Offer, ...]] = (
+        Offer(
+            own_force(
+                "M_bend",
+                "M_b",
+                "torque",
+                "Bending moment of N on the piston rod at its stuffing box",
+                "bending moment of N on the piston rod",
+            ),
+            lambda drive, angle: drive.bending_arm(angle),
+            ("N",),
+        ),
+    )
     KEYS: ClassVar[Keys] = {
         **SliderCrank.KEYS,
         "gland": Key(

@@ -65,13 +65,14 @@ def _measured(scene: Scene, quick: bool) -> Measured:
 
 def everything(case: Case) -> None:
     """Ask a case for all that `kurbel forces` prints: every column at 37 angles, and every key value."""
-    from kurbel.report.forces import FORCE_COLUMNS, key_values
+    from kurbel.report.forces import subjects
 
-    for forces in case.cylinders:
-        state = forces.at(np.arange(0.0, 361.0, 10.0))
-        for column in FORCE_COLUMNS:
-            getattr(state, column)
-        for _ in key_values(forces):
+    for subject in subjects(case):
+        assert subject.at
+        answer = subject.at(np.arange(0.0, 361.0, 10.0))
+        for column in subject.lists.columns("forces").values():
+            answer(column)
+        for _ in subject.key_values("forces"):
             pass
 
 

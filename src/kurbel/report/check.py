@@ -1,4 +1,4 @@
-"""The report of `kurbel check`: what a machine has, what is left out, what nothing uses, and how its limits stand."""
+"""The report of `kurbel check`: what a machine has, what is left out, and how its limits stand."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from kurbel.declared.forms import Physical
-from kurbel.declared.quantities import KEY_VALUES, NOISE_POWER
+from kurbel.declared.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.declared.unit_systems import SI, show
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.cylinder import may_lock
-from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms import Mechanism, every_quantity
 from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages
 from kurbel.report.notes import Note, machine_notes, of_cylinder
 
@@ -138,33 +138,34 @@ def _limits(machine: Machine) -> Iterable[Entry | KurbelError]:
         return
     from kurbel.report.limits import limited_values
 
-    values, errors = limited_values(machine, (name for name, _ in machine.limits))
+    values = limited_values(machine, (name for name, _ in machine.limits))
+    declared = by_id(every_quantity().all_key_values)
     for name, bound in machine.limits:
-        found = [(where, value) for where, id, value in values if id == name]
-        if name in errors:
-            yield type(errors[name])(f"limits.{name}: {errors[name]}")
+        found, quantity = values[name], declared[name]
+        if isinstance(found, KurbelError):
+            yield type(found)(f"limits.{name}: {found}")
         elif not found:
-            text = KEY_VALUES[name].text
-            yield UsageError(f"limits.{name}: this machine has no {name}: {text[:1].lower()}{text[1:]}")
-        for where, value in found:
-            yield _compared(name, bound, where, value)
+            yield UsageError(
+                f"limits.{name}: this machine has no {name}: {quantity.text[:1].lower()}{quantity.text[1:]}"
+            )
+        else:
+            yield from (_compared(quantity, bound, where, value) for where, value in found)
 
 
 _ROUNDING = 1e-9
 """A bound is no more exact than what is printed of it: a stroke of 110 mm does not break a limit of 110 mm."""
 
 
-def _compared(name: str, bound: float, where: str, value: float) -> Entry | KurbelError:
+def _compared(quantity: Quantity, bound: float, where: str, value: float) -> Entry | KurbelError:
     """Compare a value with its bound: a `_min` may not fall below it, everything else may not exceed it.
 
     Of a residual the magnitude counts. What is not finite cannot be compared.
     """
+    name, kind = quantity.id, quantity.kind
     if not math.isfinite(value):
         from kurbel.report.shown import too_large
 
-        return UsageError(f"limits.{name} ({where}): {too_large(KEY_VALUES[name])}")
-    quantity = KEY_VALUES[name]
-    kind = quantity.kind
+        return UsageError(f"limits.{name} ({where}): {too_large(quantity)}")
     lower, bars = name.endswith("_min"), "|" if name.endswith("_residual") else ""
     excess = bound - value if lower else (abs(value) if bars else value) - bound
     broken = excess > _ROUNDING * abs(bound)

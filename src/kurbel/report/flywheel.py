@@ -2,42 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any
-
-import numpy as np
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 from kurbel.declared.unit_systems import show
 from kurbel.machine import Machine
+from kurbel.numerics.extreme import Extreme
+from kurbel.report.frame import Frame, Subject, of_state
 from kurbel.report.left_out import flywheel_left_out
-from kurbel.report.motion import given, plain_values, refuse_absent
 from kurbel.report.notes import machine_notes, of_machine
-from kurbel.report.shown import shown_columns, shown_key_value
-from kurbel.report.tables import Column, Part, Report
+from kurbel.report.tables import Report
 from kurbel.solver.case import Case
+from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.turning.flywheel import MachineTurning
 
-FLYWHEEL_COLUMNS = ("phi", "T", "T_inertia", "M", "E", "omega", "M_coupling")
-"""Ids of the columns of `kurbel flywheel`, in the order in which they are printed."""
-
-_KEY_VALUES = (
-    *("W", "M_mean", "work_shaft", "power_shaft", "T_max", "T_min", "M_max", "M_min"),
-    *("phi_crossing", "lobes", "E_max", "E_min", "dE", "energy_fluctuation"),
-    *(
-        "J",
-        "GD2",
-        "J_needed",
-        "GD2_needed",
-        "J_exact",
-        "delta",
-        "delta_book",
-        "omega_max",
-        "omega_min",
-        "omega_mean",
-        "multiplier",
-    ),
-)
-_OF_COUPLING = ("M_coupling_max", "M_coupling_min", "amplification")
 _BEYOND = 1e308
 """Floquet multiplier that is as large as a float can be."""
 _LINEAR = 0.1
@@ -45,58 +23,43 @@ _LINEAR = 0.1
 
 
 def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] | None, system: str) -> Report:
-    """Return the turning effort of the machine at the crank angles (n,) of crank 1 in degrees, with its key values.
+    """Return the turning effort of the machine over the angle of crank 1; angles, columns, system: see `Frame`.
 
-    columns: ids to show besides φ, None for all that the machine has; system: `si` or `technical`.
     Raises UsageError where nothing turns the shaft, NoSolutionError where the machine stalls.
     """
-    machine = case.machine
-    with np.errstate(all="ignore"):  # what overflows is refused, by name
-        turning = case.flywheel
-        whole = Part(
-            "whole machine",
-            _columns(turning, angles, columns or FLYWHEEL_COLUMNS, system),
-            tuple(shown_key_value(name, value, system) for name, value in key_values(turning)),
-            flywheel_left_out(machine),
-            tuple(_warnings(case, turning)),
-        )
-        parts = tuple(_cylinder_parts(case, system))
-        there = [column.id for column in _columns(turning, (0.0,), FLYWHEEL_COLUMNS, system)] if columns else []
-    refuse_absent((whole,), columns or (), "flywheel", FLYWHEEL_COLUMNS, there)
-    title = f"{machine.name}. Drehkraftlinie und Schwungrad"
-    return Report(title, "flywheel", machine.name, "cylinders", parts, whole, notes=tuple(_notes(machine, turning)))
+    *cylinders, whole = subjects(case)
+    having = [one for one in cylinders if list(one.key_values("flywheel"))]
+    notes = _notes(case.machine, case.flywheel)
+    frame = Frame("flywheel", angles, columns, system)
+    return frame.report(case.machine, "Drehkraftlinie und Schwungrad", having, whole, notes)
 
 
-def _columns(
-    turning: MachineTurning, angles: Sequence[float], columns: Sequence[str], system: str
-) -> tuple[Column, ...]:
-    def values_at(degrees: Any) -> Callable[[str], Any]:
-        at = turning.at(degrees)
-        return lambda name: getattr(at, name) if name in FLYWHEEL_COLUMNS else None
+class _DeadCentre(NamedTuple):
+    """What is to be said of a cylinder alone: the force that its parts before a pump must stand."""
 
-    return shown_columns(columns, values_at, angles, system)
+    turning: MachineTurning
+    forces: CylinderForces
 
-
-def key_values(turning: MachineTurning, repeated: bool = False) -> Iterable[tuple[str, Any]]:
-    """Yield (id, value in SI) of every key value that the machine has; the value may be an Extreme or a tuple.
-
-    repeated: also the flywheel for the wanted δ where it is the flywheel.
-    """
-    for name in _KEY_VALUES:
-        if repeated or not (name.endswith("_needed") and turning.J_needed == turning.J):
-            yield from given(name, getattr(turning, name))
-    yield from given("natural_order", turning.natural_order)
-    if turning.elastic:
-        for name in _OF_COUPLING:
-            yield from given(name, getattr(turning.elastic, name))
+    @property
+    def P_dead_centre(self) -> Extreme | None:
+        """Largest force in N in a dead centre, without inertia."""
+        return self.turning.dead_centre_force(self.forces)
 
 
-def _cylinder_parts(case: Case, system: str) -> Iterable[Part]:
-    """Yield what is to be said of a cylinder alone: the force that its parts before a pump must stand."""
+def subjects(case: Case) -> Iterable[Subject]:
+    """Yield every cylinder, and the whole machine last."""
+    turning = case.flywheel
     for forces in case.cylinders:
-        found = case.flywheel.dead_centre_force(forces)
-        if found is not None:
-            yield Part(forces.drive.name, (), (shown_key_value("P_dead_centre", found, system),))
+        yield Subject(forces.drive.name, (_DeadCentre(turning, forces),))
+    results = (turning, *((turning.elastic,) if turning.elastic else ()))
+
+    yield Subject(
+        "whole machine",
+        results,
+        lambda degrees: of_state(turning.at(degrees)),
+        left_out=lambda: flywheel_left_out(case.machine),
+        warnings=lambda: _warnings(case, turning),
+    )
 
 
 def _notes(machine: Machine, turning: MachineTurning) -> Iterable[str]:
@@ -157,14 +120,3 @@ def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
         )
     if turning.elastic.delta > _LINEAR:
         yield "the speed varies so much that the harmonic balance of the coupling is only a rough guide"
-
-
-def limited_values(machine: Machine) -> list[tuple[str, str, float]]:
-    """Return (what it belongs to, id, value in SI) of all key values that a limit can be put on."""
-    with np.errstate(all="ignore"):
-        case = Case(machine)
-        found = [("whole machine", *one) for one in plain_values(key_values(case.flywheel, repeated=True))]
-        for forces in case.cylinders:
-            in_centre = given("P_dead_centre", case.flywheel.dead_centre_force(forces))
-            found += [(forces.drive.name, *one) for one in plain_values(in_centre)]
-    return found

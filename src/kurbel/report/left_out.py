@@ -54,8 +54,10 @@ def _moment(cylinder: Cylinder) -> dict[str, str]:
 def _of_mechanism(cylinder: Cylinder) -> dict[str, str]:
     """Return what a slider-crank has and this mechanism has not, and what the mechanism itself misses."""
     mechanism = cylinder.mechanism
-    rod = {"S, N": f"a {mechanism.name} has no connecting rod"} if mechanism.slides and not mechanism.has_rod else {}
-    return rod | dict(mechanism.lacks)
+    if not mechanism.slides or mechanism.has_rod:
+        return dict(mechanism.lacks)
+    of_rod = "S" if mechanism.known_across and cylinder.inclination is not None and cylinder.masses else "S, N"
+    return {of_rod: f"a {mechanism.name} has no connecting rod", **dict(mechanism.lacks)}
 
 
 def _works(machine: Machine, cylinder: Cylinder, acting: dict[str, str]) -> dict[str, str]:

@@ -1,46 +1,45 @@
-"""What limits are compared with: the key values of every command, computed by the commands that are asked for alone."""
+"""What limits are compared with: key values of every command, computed only as far as they are asked for."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from importlib import import_module
 
-from kurbel.declared.quantities import OF_COMMAND, OF_WHOLE_MACHINE
+import numpy as np
+
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
+from kurbel.mechanisms import every_quantity
+from kurbel.numerics.extreme import Extreme
+from kurbel.solver.case import Case
+
+Found = tuple[str, float]
+"""What a key value belongs to, and its value in SI."""
 
 
-def command_of(name: str) -> str:
-    """Return the command that answers the key value of this id.
-
-    >>> command_of("sigma_pin_max"), command_of("T_max"), command_of("c_max")
-    ('stress', 'forces', 'motion')
-    """
-    return next((command for command, names in OF_COMMAND.items() if name in names), "forces")
-
-
-def limited_values(
-    machine: Machine, names: Iterable[str]
-) -> tuple[list[tuple[str, str, float]], dict[str, KurbelError]]:
-    """Return (what it belongs to, id, value in SI) of the key values with these ids, and what kept others from it.
-
-    Every report of a command has a function `limited_values` of its own.
-    """
-    wanted = set(names)
-    found: list[tuple[str, str, float]] = []
-    errors: dict[str, KurbelError] = {}
-    for command in ("motion", "forces", "flywheel", "stress"):
-        asked = {name for name in wanted if command in _commands(machine, name)}
-        try:
-            values = import_module(f"kurbel.report.{command}").limited_values(machine) if asked else []
-        except KurbelError as error:
-            errors |= dict.fromkeys(asked, error)
-        else:
-            found += [value for value in values if value[1] in asked]
-    return found, errors
+def limited_values(machine: Machine, names: Iterable[str]) -> dict[str, list[Found] | KurbelError]:
+    """Return by id what the machine has of these key values, or what keeps them from being computed."""
+    case = Case(machine)
+    found: dict[str, list[Found] | KurbelError] = {}
+    with np.errstate(all="ignore"):
+        for name in names:
+            try:
+                found[name] = [one for command in _commands(machine, name) for one in _values(case, command, name)]
+            except KurbelError as error:
+                found[name] = error
+    return found
 
 
-def _commands(machine: Machine, name: str) -> set[str]:
-    """Return the commands whose value the limit is for; one cylinder has it alike, but for the efficiency."""
-    whole = len(machine.cylinders) != 1 or machine.efficiency != 1 or name.startswith("M_")
-    return {command_of(name), *(("flywheel",) if whole and name in OF_WHOLE_MACHINE else ())}
+def _commands(machine: Machine, name: str) -> tuple[str, ...]:
+    """Return the commands whose value the limit is for; one cylinder has it as the machine, but for the efficiency."""
+    first, *others = every_quantity().commands_of(name)
+    alike = len(machine.cylinders) == 1 and machine.efficiency == 1
+    return (first, *(command for command in others if command == "flywheel" and not alike))
+
+
+def _values(case: Case, command: str, name: str) -> Iterator[Found]:
+    for subject in import_module(f"kurbel.report.{command}").subjects(case):
+        quantity = subject.lists.key_values(command).get(name)
+        value = quantity and subject.answer(quantity)
+        if isinstance(value, (Extreme, float)):
+            yield subject.name, value.value if isinstance(value, Extreme) else value

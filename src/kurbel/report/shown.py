@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from kurbel.declared.quantities import COLUMNS, KEY_VALUES, Quantity
+from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.errors import UsageError
 from kurbel.numerics.extreme import Extreme
@@ -20,23 +20,27 @@ _AT_ONCE = 8192
 
 
 def shown_columns(
-    names: Iterable[str], values_at: Callable[[Any], Callable[[str], Any]], angles: Sequence[float], system: str
+    phi: Quantity,
+    columns: Sequence[Quantity],
+    at: Callable[[Any], Callable[[Quantity], Any]],
+    angles: Sequence[float],
+    system: str,
 ) -> tuple[Column, ...]:
-    """Return φ and the columns of these ids as far as the machine has them, at crank angles (n,) in degrees.
+    """Return φ and these columns as far as the machine has them, at crank angles (n,) in degrees.
 
-    values_at: takes angles (k,) and returns what answers an id with values (k,) in SI, or None where there are none.
+    at: takes angles (k,) and returns what answers a column with values (k,) in SI, or None where there are none.
     Raises UsageError where one is not finite.
     """
-    wanted = dict.fromkeys(("phi", *names))
-    found: dict[str, array[float]] = {}
+    wanted = dict.fromkeys((phi, *columns))
+    found: dict[Quantity, array[float]] = {}
     for start in range(0, len(angles), _AT_ONCE):
         degrees = np.asarray(angles[start : start + _AT_ONCE], dtype=float)
-        value_of = values_at(degrees)
-        for name in wanted:
-            values = degrees if name == "phi" else value_of(name)
+        value_of = at(degrees)
+        for column in wanted:
+            values = degrees if column is phi else value_of(column)
             if values is not None:
-                found.setdefault(name, array("d")).frombytes(np.asarray(values, dtype=float).tobytes())
-    return tuple(shown_column(COLUMNS[name], values, system) for name, values in found.items())
+                found.setdefault(column, array("d")).frombytes(np.asarray(values, dtype=float).tobytes())
+    return tuple(shown_column(column, values, system) for column, values in found.items())
 
 
 def shown_column(quantity: Quantity, values: Sequence[float | None], system: str) -> Column:
@@ -60,9 +64,8 @@ def _filled(values: Sequence[float | None], given: list[float]) -> tuple[float |
     return tuple(None if value is None else next(following) for value in values)
 
 
-def shown_key_value(name: str, value: Any, system: str) -> KeyValue:
-    """Return the key value of this id; value: a number in SI, an Extreme, or a tuple. Raises UsageError as above."""
-    quantity = KEY_VALUES[name]
+def shown_key_value(quantity: Quantity, value: Any, system: str) -> KeyValue:
+    """Return the key value; value: a number in SI, an Extreme, or a tuple. Raises UsageError as above."""
     at, raw = (value.degrees, value.value) if isinstance(value, Extreme) else (None, value)
     each: tuple[float, ...] = raw if isinstance(raw, tuple) else (raw,)
     if not all(math.isfinite(one) for one in each):
@@ -71,7 +74,7 @@ def shown_key_value(name: str, value: Any, system: str) -> KeyValue:
     shown = [float(convert(one, quantity.kind, unit)) + 0.0 for one in each]
     number = tuple(shown) if isinstance(raw, tuple) else shown[0]
     noise = any(map(quantity.is_noise, shown))
-    return KeyValue(name, quantity.symbol, quantity.ascii_symbol, unit, number, quantity.text, at, noise)
+    return KeyValue(quantity.id, quantity.symbol, quantity.ascii_symbol, unit, number, quantity.text, at, noise)
 
 
 def too_large(quantity: Quantity) -> UsageError:

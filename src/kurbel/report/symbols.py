@@ -7,8 +7,11 @@ from collections.abc import Iterable
 from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Keys, required
-from kurbel.declared.quantities import COLUMNS, FACTORS, KEY_VALUES, STRESSES, Quantity
+from kurbel.declared.quantities import FACTORS
+from kurbel.declared.quantity import Quantity, by_id
+from kurbel.declared.shaft import STRESSES
 from kurbel.declared.unit_systems import SI, TECHNICAL
+from kurbel.mechanisms import every_quantity
 
 _HEAD = """# Symbols, quantities and keys
 
@@ -18,10 +21,11 @@ Written from the declarations in the code by `pytest --rewrite`; do not edit by 
 
 def symbols_page() -> str:
     """Return the whole page as Markdown."""
+    every = every_quantity()
     parts = [
         _HEAD,
-        _quantities("Columns over the crank angle", COLUMNS),
-        _quantities("Key values", KEY_VALUES),
+        _quantities("Columns over the crank angle", by_id(one for one in every.all_columns if one.commands)),
+        _quantities("Key values", by_id(every.all_key_values)),
         _quantities("Stresses at one place of a crankshaft", STRESSES),
         _quantities("Rows of Zusammenstellung 112", FACTORS),
         _sizes(),

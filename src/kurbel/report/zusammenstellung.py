@@ -8,7 +8,8 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.quantities import COLUMNS, FACTORS, Quantity
+from kurbel.declared.quantities import COLUMNS, FACTORS
+from kurbel.declared.quantity import Quantity
 from kurbel.errors import UsageError
 from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.near_words import did_you_mean

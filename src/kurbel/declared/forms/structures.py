@@ -14,7 +14,7 @@ from kurbel.errors import Path
 from kurbel.near_words import did_you_mean, near
 
 if TYPE_CHECKING:
-    from kurbel.declared.quantities import Quantity
+    from kurbel.declared.quantity import Quantity
 
 
 class Listing(Form):

@@ -11,6 +11,7 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
+from kurbel.mechanisms import quantities_of
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid, Pieces, integral
 from kurbel.numerics.search import Curve, Evaluate, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
@@ -20,10 +21,6 @@ from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-
-
-_SEARCHED = ("P", "P_start", "S", "N", "T", "F_pin", "N_pair", "M_bend", "F_coupler")
-"""Quantities of the state whose extremes are searched together."""
 
 
 class CylinderForces:
@@ -63,26 +60,45 @@ class CylinderForces:
 
     @cached_property
     def _curves(self) -> dict[str, Curve]:
-        names = [name for name in _SEARCHED if getattr(self._samples, name) is not None]
+        declared = quantities_of(self.drive.mechanism).all_columns
+        searched = [one.id for one in declared if "forces" in one.extremes]
+        names = [name for name in searched if getattr(self._samples, name) is not None]
         return curves(self.grid, _sampled(self._samples, names), self._quantities(*names))
 
     def extremes_of(self, column: str) -> Extremes | None:
-        """Return the extremes of `P_inertia` or of one of the searched quantities in SI, None where it is left out."""
-        if column == "P_inertia":
-            return self._inertia_extremes
+        """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
         curve = self._curves.get(column) if self.drive.has_force else None
-        return curve and extremes_of(curve)
+        return extremes_of(curve) if curve else self.motion.extremes_of(column)
+
+    def offered(self, id: str) -> Any:
+        """Return a key value that the mechanism offers."""
+        return self.drive.mechanism.offered(id, self)
+
+    @property
+    def omega(self) -> float | None:
+        """Angular velocity in rad/s."""
+        return self.drive.omega
+
+    @property
+    def slides(self) -> bool:
+        """Whether the output slides, so that its place is told by x."""
+        return self.drive.mechanism.slides
 
     @cached_property
-    def _inertia_extremes(self) -> Extremes | None:
-        """Largest and smallest inertia force −m b in N, R 298."""
-        highest, lowest = self.motion.b_max, self.motion.b_min
-        if not self.drive.has_inertia or highest is None or lowest is None:
-            return None
-        mass = self.drive.mass
-        found = (Extreme(-mass * lowest.value, lowest.degrees), Extreme(-mass * highest.value, highest.degrees))
-        # the mass in Python may be what a rod beyond its crosshead pin leaves, and negative
-        return Extremes(max(found), min(found))
+    def P_inertia_max(self) -> Extreme | None:
+        """Largest inertia force −m b in N, R 298."""
+        return max(self._inertia, default=None)
+
+    @cached_property
+    def P_inertia_min(self) -> Extreme | None:
+        """Smallest inertia force in N."""
+        return min(self._inertia, default=None)
+
+    @property
+    def _inertia(self) -> list[Extreme]:
+        """The inertia forces where the acceleration is largest and smallest; none without masses or speed."""
+        turns = (self.motion.b_max, self.motion.b_min) if self.drive.has_inertia else ()
+        return [Extreme(-self.drive.mass * one.value, one.degrees) for one in turns if one]
 
     @cached_property
     def phi_reversal(self) -> tuple[float, ...] | None:
@@ -92,7 +108,29 @@ class CylinderForces:
             return None
         return tuple(sign_changes(self.grid, {"P": force}, self._quantities("P"))["P"].tolist())
 
+    @property
+    def A_head(self) -> float | None:
+        """Area in m² of the cylinder's own piston at the head end."""
+        pistons = self.drive.cylinder.pistons
+        return pistons[0].head_area if pistons else None
+
+    @property
+    def A_crank(self) -> float | None:
+        """Area in m² of the cylinder's own piston at the crank end."""
+        pistons = self.drive.cylinder.pistons
+        return pistons[0].crank_area if pistons else None
+
+    @property
+    def m(self) -> float | None:
+        """Reciprocating mass in kg; None where no masses are given."""
+        return self.drive.mass if self.drive.cylinder.masses else None
+
     # work
+
+    @property
+    def works_one_way(self) -> bool:
+        """Whether the works of driving and driven pistons do not differ from the whole: not both hang on the rod."""
+        return not (self.work_driving and self.work_driven)
 
     @cached_property
     def piston_works(self) -> tuple[float, ...] | None:
@@ -173,21 +211,6 @@ class CylinderForces:
         if not self.drive.has_force:
             return None
         return math.fsum((self.work or 0.0, -(self.friction_work or 0.0), self.resistance_work or 0.0))
-
-    @cached_property
-    def pin_pressure(self) -> Extreme | None:
-        """Largest pressure in Pa of the sliding block on the crank pin, over d_z l_z; None without a pin's size."""
-        found, area = self.extremes_of("F_pin"), self.drive.mechanism.pin_area
-        if found is None or area is None:
-            return None
-        largest = max(found, key=lambda extreme: abs(extreme.value))
-        return Extreme(abs(largest.value) / area, largest.degrees)
-
-    @cached_property
-    def coupler_inertia(self) -> float | None:
-        """Inertia force in N of the coupler, m v²/R, turning with the cranks; None without its mass or a speed."""
-        inertia, omega = self.drive.mechanism.coupler_inertia, self.drive.omega
-        return None if inertia is None or omega is None else inertia * omega**2
 
     @cached_property
     def W(self) -> float | None:

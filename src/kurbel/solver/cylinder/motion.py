@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ class Motion:
     """What the mechanism does at a speed of rotation. Attributes are named by the ids of the key values, in SI.
 
     speed: revolutions per second, or None: then velocities and accelerations are None. So is all that the mechanism
-    does not have: a stroke where nothing slides, a swing where nothing swings, a transmission angle without a coupler.
+    does not have, as a stroke where nothing slides. What it offers itself is `offered(id)`.
     """
 
     def __init__(self, mechanism: Mechanism, speed: float | None) -> None:
@@ -36,11 +36,6 @@ class Motion:
     def stroke(self) -> float | None:
         """s in m."""
         return self.mechanism.stroke if self.mechanism.slides else None
-
-    @cached_property
-    def swing(self) -> float | None:
-        """Angle in degrees through which the member swings."""
-        return self.mechanism.swing
 
     @cached_property
     def phi_idc(self) -> float:
@@ -68,16 +63,6 @@ class Motion:
         return self.mechanism.time_ratio
 
     @cached_property
-    def transmission_min(self) -> Extreme | None:
-        """Smallest transmission angle in degrees."""
-        return self.mechanism.transmission[0] if self.mechanism.transmission else None
-
-    @cached_property
-    def transmission_max(self) -> Extreme | None:
-        """Largest transmission angle in degrees."""
-        return self.mechanism.transmission[1] if self.mechanism.transmission else None
-
-    @cached_property
     def v(self) -> float | None:
         """Crank-pin speed Rω in m/s."""
         return None if self.omega is None else self.mechanism.crank * self.omega
@@ -93,54 +78,69 @@ class Motion:
         landmarks = (*self.mechanism.dead_centres(), *self.mechanism.landmarks(), *range(0, 361, 45))
         return Grid(ascending(np.array([angle if angle == 360 else angle % 360.0 for angle in landmarks])))
 
-    @cached_property
-    def _slope_extremes(self) -> Extremes:
-        return self._extremes(self.mechanism.velocity_extremes(), self.mechanism.slope)
+    @property
+    def _moves(self) -> bool:
+        """Whether there is a velocity: something slides, at a speed that is known."""
+        return self.mechanism.slides and self.omega is not None
 
     @cached_property
-    def _curvature_extremes(self) -> Extremes:
-        return self._extremes(self.mechanism.acceleration_extremes(), self.mechanism.curvature)
+    def _velocity(self) -> Extremes:
+        return self._extremes(self.mechanism.slope, 1, self.mechanism.velocity_extremes())
 
     @cached_property
-    def _swing_slope_extremes(self) -> Extremes:
-        return self._extremes(self.mechanism.swing_extremes(), self._swing("slope"))
+    def _acceleration(self) -> Extremes:
+        return self._extremes(self.mechanism.curvature, 2, self.mechanism.acceleration_extremes())
 
-    @cached_property
-    def _swing_curvature_extremes(self) -> Extremes:
-        return self._extremes((), self._swing("curvature"))
-
-    def _swing(self, quantity: str) -> Callable[[CrankAngle], Any]:
-        return lambda angle: getattr(self.mechanism.swing_at(angle), quantity)
-
-    def _extremes(self, closed: tuple[Extreme, ...], function: Callable[[CrankAngle], Any]) -> Extremes:
-        return _of_closed(closed) if closed else self._searched(function)
+    def _extremes(
+        self, function: Callable[[CrankAngle], Any], order: int, closed: tuple[Extreme, ...] = ()
+    ) -> Extremes:
+        """Return the extremes over a turn of a function of the crank angle times ω^order; closed: where it has them."""
+        # a power would raise where a product is inf, which is refused by name
+        scale = math.prod((self.omega or 0.0,) * order)
+        found = _of_closed(closed) if closed else self._searched(function)
+        return Extremes(*(Extreme(one.value * scale, one.degrees) for one in found))
 
     def _searched(self, function: Callable[[CrankAngle], Any]) -> Extremes:
         """Search the extremes of a kinematic quantity over one revolution by the roots of its slope."""
         evaluate = _evaluated(function)
         return extremes(self._turn, evaluate(self._turn.degrees, self._turn.within), evaluate)["it"]
 
-    def _sliding(self, order: int) -> Callable[[Extreme], Extreme] | None:
-        """What turns a derivative by crank angle of this order into one by time; None where nothing slides or turns."""
-        return _scaling(self.omega, order) if self.mechanism.slides else None
+    @cached_property
+    def _offered_extremes(self) -> dict[str, Extremes]:
+        return {
+            offer.quantity.id: self._extremes(partial(offer.factor, self.mechanism), len(offer.times))
+            for offer in self.mechanism.OFFERS
+            if "motion" in offer.quantity.extremes and self.omega is not None
+        }
 
-    def _swinging(self, order: int) -> Callable[[Extreme], Extreme] | None:
-        """The same for what swings; None also for what turns as evenly as the crank."""
-        if not self.mechanism.swings or _constant(self._swing_slope_extremes):
-            return None
-        return _scaling(self.omega, order)
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes over a turn of a column that the mechanism offers; None for what does not vary."""
+        found = self._offered_extremes.get(column)
+        return None if found is None or found.largest.value == found.smallest.value else found
+
+    def offered(self, id: str) -> Any:
+        """Return a key value that the mechanism offers."""
+        return self.mechanism.offered(id, self)
+
+    @property
+    def equal_strokes(self) -> bool:
+        """Whether the strokes take equal times, so that nothing need be said of each."""
+        return abs(self.time_ratio - 1) <= 1e-12
+
+    @property
+    def has_no_c_min(self) -> bool:
+        """Whether the return stroke is as fast as the outstroke, or its speed is told as `c_return_max`."""
+        return self.equal_strokes or self.mechanism.quick_return
 
     @cached_property
     def c_max(self) -> Extreme | None:
         """Largest velocity on the outstroke, of a piston toward the shaft, in m/s."""
-        scaled = self._sliding(1)
-        return scaled and scaled(self._slope_extremes.largest)
+        return self._velocity.largest if self._moves else None
 
     @cached_property
     def c_min(self) -> Extreme | None:
         """Largest velocity on the return stroke in m/s, negative."""
-        scaled = self._sliding(1)
-        return scaled and scaled(self._slope_extremes.smallest)
+        return self._velocity.smallest if self._moves else None
 
     @cached_property
     def c_work_max(self) -> Extreme | None:
@@ -157,66 +157,12 @@ class Motion:
     @cached_property
     def b_max(self) -> Extreme | None:
         """Largest acceleration in m/s²."""
-        scaled = self._sliding(2)
-        return scaled and scaled(self._curvature_extremes.largest)
+        return self._acceleration.largest if self._moves else None
 
     @cached_property
     def b_min(self) -> Extreme | None:
         """Smallest acceleration in m/s²."""
-        scaled = self._sliding(2)
-        return scaled and scaled(self._curvature_extremes.smallest)
-
-    @cached_property
-    def _swing_limits(self) -> tuple[Extreme, Extreme] | None:
-        if self.swing is None:
-            return None
-        ends = [Extreme(self._tilt(end), _within_turn(end)) for end in self.mechanism.dead_centres()]
-        return min(ends), max(ends)
-
-    def _tilt(self, degrees: float) -> float:
-        swing = self.mechanism.swing_at(CrankAngle.of(degrees))
-        assert swing is not None
-        return float(swing.degrees)
-
-    @cached_property
-    def theta_min(self) -> Extreme | None:
-        """Smallest angle of the swinging member in degrees."""
-        return self._swing_limits and self._swing_limits[0]
-
-    @cached_property
-    def theta_max(self) -> Extreme | None:
-        """Largest angle of the swinging member in degrees."""
-        return self._swing_limits and self._swing_limits[1]
-
-    @cached_property
-    def theta_dot_max(self) -> Extreme | None:
-        """Largest angular velocity of the swinging member in rad/s."""
-        scaled = self._swinging(1)
-        return scaled and scaled(self._swing_slope_extremes.largest)
-
-    @cached_property
-    def theta_dot_min(self) -> Extreme | None:
-        """Smallest angular velocity of the swinging member in rad/s."""
-        scaled = self._swinging(1)
-        return scaled and scaled(self._swing_slope_extremes.smallest)
-
-    @cached_property
-    def theta_ddot_max(self) -> Extreme | None:
-        """Largest angular acceleration of the swinging member in rad/s²."""
-        scaled = self._swinging(2)
-        return scaled and scaled(self._swing_curvature_extremes.largest)
-
-    @cached_property
-    def theta_ddot_min(self) -> Extreme | None:
-        """Smallest angular acceleration of the swinging member in rad/s²."""
-        scaled = self._swinging(2)
-        return scaled and scaled(self._swing_curvature_extremes.smallest)
-
-    @cached_property
-    def b_coupler(self) -> float | None:
-        """Acceleration v²/R in m/s² of a coupler all of whose points move alike, toward the centre of their circles."""
-        pair = self.mechanism.coupler_acceleration(CrankAngle.of(0.0))
-        return None if pair is None or self.omega is None else math.hypot(*pair) * self.omega**2
+        return self._acceleration.smallest if self._moves else None
 
     @cached_property
     def phi_b_zero(self) -> tuple[float, ...] | None:
@@ -237,17 +183,6 @@ def _evaluated(function: Callable[[CrankAngle], Any]) -> Evaluate:
 
 def _of_closed(found: tuple[Extreme, ...]) -> Extremes:
     return Extremes(max(found, key=lambda e: e.value), min(found, key=lambda e: e.value))
-
-
-def _constant(found: Extremes) -> bool:
-    return found.largest.value == found.smallest.value
-
-
-def _scaling(omega: float | None, order: int) -> Callable[[Extreme], Extreme] | None:
-    if omega is None:
-        return None
-    factor = math.prod((omega,) * order)  # a power would raise where a product is inf, which is refused by name
-    return lambda extreme: Extreme(extreme.value * factor, extreme.degrees)
 
 
 def _within_turn(degrees: float) -> float:

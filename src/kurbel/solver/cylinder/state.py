@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, reduce
+from operator import mul
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.quantity import by_id
 from kurbel.errors import NoSolutionError
+from kurbel.mechanisms import every_quantity
 from kurbel.numerics.jet import once_each
-from kurbel.solver.cylinder.members import Members
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.cylinder.drive import Drive
 
 
-class State(Members):
+class State:
     """A cylinder at crank angles (n,); its attributes are named by the ids of the columns, in SI, each of shape (n,).
 
     angle: the crank angles; with jets for sine and cosine every quantity becomes a jet with its slope by φ.
     within: angles in degrees (n,) that say on which side of a jump each one is meant; the angles themselves mean the
-    side just after it. A quantity that the machine does not have is None.
+    side just after it. A quantity that the machine does not have is None. What the mechanism offers is one of them.
     """
 
     def __init__(self, drive: Drive, angle: CrankAngle, within: Array | None = None) -> None:
@@ -30,6 +32,24 @@ class State(Members):
         self.angle = angle
         self.within = angle.degrees if within is None else within
         self._beside = None if within is None else State(drive, CrankAngle.of(once_each(within)))
+
+    def __getattr__(self, id: str) -> Any:
+        """Return a column that the mechanism offers; None for one that only others do."""
+        offer = next((one for one in self.drive.mechanism.OFFERS if one.quantity.id == id), None)
+        if offer is None:
+            if id.startswith("_") or id not in by_id(every_quantity().all_columns):
+                raise AttributeError(f"no column is called {id}")
+            return None
+        found = [getattr(self, name) for name in offer.times]
+        factor = offer.factor(self.drive.mechanism, self.angle)
+        if factor is None or any(one is None for one in found):
+            return None
+        return reduce(mul, found) * factor if found else factor
+
+    @property
+    def omega(self) -> float | None:
+        """Angular velocity in rad/s."""
+        return self.drive.omega
 
     @property
     def _inside(self) -> State:
@@ -64,15 +84,16 @@ class State(Members):
     @cached_property
     def c(self) -> Any:
         """Velocity in m/s."""
-        return self._at_speed(self.slope, 1) if self.drive.mechanism.slides else None
+        return self.slope * self.omega if self.drive.mechanism.slides and self.omega is not None else None
 
     @cached_property
     def b(self) -> Any:
         """Acceleration in m/s² at uniform rotation."""
-        return self._at_speed(self.curvature, 2) if self.drive.mechanism.slides else None
+        w = self.omega if self.drive.mechanism.slides else None
+        return None if w is None else self.curvature * (w * w)  # a power would raise where the product is inf
 
     @cached_property
-    def _rod(self) -> tuple[Any, Any] | None:
+    def _rod(self) -> Any:
         return self.drive.mechanism.rod_angle(self.angle)
 
     @cached_property
@@ -165,7 +186,6 @@ class State(Members):
     def _rod_side(self) -> Any:
         """Side force of the couple of an exact rod in N."""
         assert self.drive.rod is not None
-        assert self._rod is not None
         return self.drive.rod.side_force(self._rod, self.angle)
 
     @cached_property
@@ -174,8 +194,11 @@ class State(Members):
 
         With f = 0 and no weight this is R 301, N = P tan ψ. Raises NoSolutionError where the crosshead locks itself.
         """
-        if self.P is None or self._rod is None:
+        if self.P is None:
             return None
+        if self._rod is None:
+            alone = self.drive.weight if self.drive.mechanism.known_across else None
+            return alone and np.full_like(self.within, alone[1])
         if not self.drive.crosshead_friction:
             return self._after_rings * (self._rod[0] / self._rod[1]) + self._guide_load
         return self.guide_sense / self._below
@@ -187,7 +210,6 @@ class State(Members):
 
     @cached_property
     def _below(self) -> Any:
-        assert self._rod is not None
         sin_psi, cos_psi = self._rod
         below = cos_psi + sin_psi * (self._guide_side * self.direction * self.drive.crosshead_friction)
         locked = self.phi[getattr(below, "value", below) <= 0]
@@ -265,7 +287,6 @@ class State(Members):
     def _rod_tangential(self) -> Any:
         """What couple and weight of an exact rod give to T in N."""
         assert self.drive.rod is not None
-        assert self._rod is not None
         return self.drive.rod.tangential(self._rod, self.angle)
 
     @cached_property
@@ -275,6 +296,4 @@ class State(Members):
 
 
 def _sum(first: Any, second: Any) -> Any:
-    if first is None:
-        return second
-    return first if second is None else first + second
+    return second if first is None else first if second is None else first + second

@@ -84,6 +84,11 @@ class CrankshaftStrength:
         # a float squared by ** raises where the product is infinite
         return rod.mass * (1 - rod.share) * drive.mechanism.crank * omega * omega
 
+    @property
+    def C_rod(self) -> float | None:
+        """The same where there is any."""
+        return self.rod_pull or None
+
     def _running(self, state: State) -> FreeBody:
         return self._body(Vector(state.D - self.rod_pull, state.T), state.angle)
 
@@ -194,29 +199,26 @@ class CrankshaftStrength:
             worst.append(_strained(place, largest.degrees, body))
         return tuple(worst)
 
-    @property
-    def parts(self) -> tuple[str, ...]:
-        """The parts that are examined."""
-        return tuple(dict.fromkeys(place.part for place in self.places))
-
-    def sigma_dc(self, part: str) -> Extreme:
-        """Return the largest combined stress of a part in Pa in the dead centre under the full force."""
+    def sigma_dc(self, part: str) -> Extreme | None:
+        """Return the largest combined stress of a part in Pa in the dead centre; None for one that is not examined."""
         return _worst(part, self.at_dead_centre)
 
-    def sigma_max(self, part: str) -> Extreme:
+    def sigma_max(self, part: str) -> Extreme | None:
         """Return the largest combined stress of a part in Pa over the cycle, and its crank angle."""
         return _worst(part, self.at_worst)
 
-    def mises_max(self, part: str) -> Extreme:
+    def mises_max(self, part: str) -> Extreme | None:
         """Return the largest stress of a part after von Mises in Pa over the cycle, and its crank angle."""
         indices = [index for index, place in enumerate(self.places) if place.part == part]
-        return max((self._extremes[f"von Mises {index}"] for index in indices), key=lambda extreme: extreme.value)
+        found = (self._extremes[f"von Mises {index}"] for index in indices)
+        return max(found, key=lambda extreme: extreme.value, default=None)
 
     def safety(self, part: str) -> Extreme | None:
         """Return k_b over the largest combined stress of a part, dead centre and cycle; None without k_b or stress."""
         allowable = self.shaft.allowable_bending
-        worst = max(self.sigma_dc(part), self.sigma_max(part), key=lambda extreme: extreme.value)
-        return Extreme(allowable / worst.value, worst.degrees) if allowable and worst.value else None
+        found = (one for one in (self.sigma_dc(part), self.sigma_max(part)) if one)
+        worst = max(found, key=lambda extreme: extreme.value, default=None)
+        return Extreme(allowable / worst.value, worst.degrees) if allowable and worst and worst.value else None
 
     # bearings
 
@@ -299,6 +301,6 @@ def _number(value: Any) -> float:
     return float(np.asarray(value).ravel()[0])
 
 
-def _worst(part: str, strained: tuple[Strained, ...]) -> Extreme:
-    worst = max((one for one in strained if one.place.part == part), key=lambda one: one.combined)
-    return Extreme(worst.combined, worst.degrees)
+def _worst(part: str, strained: tuple[Strained, ...]) -> Extreme | None:
+    found = (Extreme(one.combined, one.degrees) for one in strained if one.place.part == part)
+    return max(found, key=lambda extreme: extreme.value, default=None)

@@ -159,6 +159,11 @@ class MachineTurning:
         return self.machine.flywheel.inertia if self.machine.flywheel else None
 
     @property
+    def is_the_needed(self) -> bool:
+        """Whether the flywheel is the one for the wanted δ."""
+        return self.J_needed == self.J
+
+    @property
     def J(self) -> float | None:
         """Flywheel in kg m²: the given one, or else the one for the wanted δ."""
         return self.J_needed if self._given is None else self._given

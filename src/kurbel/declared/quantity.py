@@ -1,0 +1,91 @@
+"""What is said of a printed quantity, and the order in which several of them stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+NOISE_POWER = -14
+"""A residual below this power of ten is rounding, another on every processor."""
+
+
+class Quantity(NamedTuple):
+    """One printed quantity; the order in which quantities are declared is that in which they are printed.
+
+    `id` stands in JSON and CSV, `symbol` over the printed table (`plain` where the output has no Greek letters),
+    `kind` decides the unit (see `units`), and `text` says in one sentence what it is. `commands` print it, as far as
+    the machine has it; the results of a command answer it by the attribute of its id, or where they have it, by what it
+    `asks`: the name of a method, its argument, and which part of its answer.
+    `extremes`: of a column, the commands that print its largest and smallest value as key values `<id>_max` and
+    `<id>_min`; `called` names it in their sentences.
+    `unless`: where the results say that this is so, it says nothing new and is printed only if it is asked for.
+    `after`: the id behind which it stands, if not where it is declared. A `residual` would be zero without rounding:
+    people are not shown what of it is only that. On what is `listed`, a list of values, no bound can be put.
+    """
+
+    id: str
+    symbol: str
+    kind: str
+    text: str
+    plain: str = ""
+    commands: tuple[str, ...] = ()
+    extremes: tuple[str, ...] = ()
+    called: str = ""
+    unless: str = ""
+    after: str = ""
+    asks: tuple[str, ...] = ()
+    residual: bool = False
+    listed: bool = False
+
+    @property
+    def ascii_symbol(self) -> str:
+        """The symbol for an output that cannot show Greek letters."""
+        return self.plain or self.symbol
+
+    def is_noise(self, value: float) -> bool:
+        """Whether this value is a residual of rounding alone."""
+        return self.residual and abs(value) < 10.0**NOISE_POWER
+
+    def extreme(self, word: str, end: str, commands: tuple[str, ...]) -> Quantity:
+        """Return the key value that is the largest (`max`) or smallest (`min`) of this column.
+
+        >>> force = Quantity("F_pin", "F_z", "force", "Force on the pin", called="force")
+        >>> force.extreme("largest", "max", ("forces",))[:4]
+        ('F_pin_max', 'F_z,max', 'force', 'Largest force')
+        """
+        comma = "," if "_" in self.symbol else "_"
+        return Quantity(
+            f"{self.id}_{end}",
+            f"{self.symbol}{comma}{end}",
+            self.kind,
+            f"{word.capitalize()} {self.called}",
+            self.plain and f"{self.plain}{comma}{end}",
+            commands,
+            asks=("extremes_of", self.id, word),
+        )
+
+
+def extremes(columns: Iterable[Quantity], command: str, *also: str) -> Iterator[Quantity]:
+    """Yield the key values that are extremes of columns, as a command searches them; `also` others print them."""
+    for column in columns:
+        if command in column.extremes:
+            yield column.extreme("largest", "max", (command, *also))
+            yield column.extreme("smallest", "min", (command, *also))
+
+
+def placed(declared: Iterable[Quantity]) -> tuple[Quantity, ...]:
+    """Return the quantities in order; several with one place to stand `after` keep theirs among them."""
+    given = tuple(declared)
+    ordered = [one for one in given if not one.after]
+    for one in given:
+        if one.after:
+            place = [other.id for other in ordered].index(one.after) + 1
+            while place < len(ordered) and ordered[place].after == one.after:
+                place += 1
+            ordered.insert(place, one)
+    return tuple(ordered)
+
+
+def by_id(quantities: Iterable[Quantity]) -> dict[str, Quantity]:
+    """Return the quantities by their ids."""
+    return {quantity.id: quantity for quantity in quantities}

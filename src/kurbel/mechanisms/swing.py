@@ -1,0 +1,71 @@
+"""The swinging member of a mechanism: what a lever, a rocker or a second crank, and its coupler, offer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from kurbel.declared.quantity import Quantity
+from kurbel.mechanisms import KeyOffer, Offer, own_force
+from kurbel.numerics.extreme import Extreme
+
+
+class Swing(NamedTuple):
+    """The swinging member at a crank angle: θ in degrees, dθ/dφ and d²θ/dφ² (radian per radian), each as the angle."""
+
+    degrees: Any
+    slope: Any
+    curvature: Any
+
+
+_BOTH = ("motion", "forces")
+_OF = "of the swinging member"
+
+
+def _column(id: str, symbol: str, kind: str, text: str, called: str = "") -> Quantity:
+    # in forces the place of what slides is told by x
+    searched = ("motion",) if called else ()
+    return Quantity(id, symbol, kind, text, id, _BOTH, searched, called, unless="slides", after="b")
+
+
+SWING_OFFERS = (
+    Offer(_column("theta", "θ", "angle", f"Angle {_OF}"), lambda one, angle: one.swing_at(angle).degrees),
+    Offer(
+        _column("theta_dot", "θ̇", "angular_velocity", f"Angular velocity {_OF}", "angular velocity of the swing"),
+        lambda one, angle: one.swing_at(angle).slope,
+        ("omega",),
+    ),
+    Offer(
+        _column("theta_ddot", "θ̈", "angular_acceleration", f"Angular acceleration {_OF}", "angular acceleration"),
+        lambda one, angle: one.swing_at(angle).curvature,
+        ("omega", "omega"),
+    ),
+)
+
+
+def _ends(mechanism: Any) -> list[Extreme]:
+    """θ in degrees at the dead centres; where the member turns fully, none."""
+    from kurbel.crank_angle import CrankAngle
+
+    centres = mechanism.dead_centres() if mechanism.swing is not None else ()
+    return [Extreme(float(mechanism.swing_at(CrankAngle.of(end)).degrees), end % 360.0) for end in centres]
+
+
+def _value(id: str, symbol: str, text: str, value: Callable[[Any], Any]) -> KeyOffer:
+    plain = symbol.replace("θ", "theta")
+    return KeyOffer(Quantity(id, symbol, "angle", text, plain, _BOTH, after="stroke"), lambda one, _: value(one))
+
+
+SWING_VALUES = (
+    _value("swing", "θ_s", "Angle through which the member swings", lambda one: one.swing),
+    _value("theta_min", "θ_min", f"Smallest angle {_OF}", lambda one: min(_ends(one), default=None)),
+    _value("theta_max", "θ_max", f"Largest angle {_OF}", lambda one: max(_ends(one), default=None)),
+)
+"""Of a mechanism with `swing_at`, and a `swing` in degrees, None where the member turns fully."""
+
+F_COUPLER = Offer(
+    own_force("F_coupler", "F_K", "force", "Force in the coupler, thrust positive", "force in the coupler", "M_out"),
+    lambda one, angle: one.coupler_force_factor(angle),
+    ("M_out",),
+)
+"""Of a mechanism with `coupler_force_factor`, the force in 1/m over the moment on the swinging member."""

@@ -1,0 +1,155 @@
+"""The frame of every report on a machine: from the results of a command and its declared quantities to tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from kurbel.declared.quantities import COMMON, Lists
+from kurbel.declared.quantity import Quantity
+from kurbel.errors import UsageError
+from kurbel.machine import Machine
+from kurbel.mechanisms import every_quantity, quantities_of
+from kurbel.report.shown import shown_columns, shown_key_value
+from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
+
+if TYPE_CHECKING:
+    from kurbel.mechanisms import Mechanism
+
+Answer = Callable[[Quantity], Any]
+"""What answers a column with its values (n,) in SI at certain crank angles, or None where it has none."""
+
+
+class Subject(NamedTuple):
+    """What a command speaks of: one cylinder, or the whole machine.
+
+    results: what answers its key values, the first that knows one; at: takes crank angles (n,) in degrees and returns
+    what answers its columns; mechanism: whose own quantities it has besides. left_out, warnings, place_tables: are made
+    when they are read.
+    """
+
+    name: str
+    results: tuple[Any, ...]
+    at: Callable[[Any], Answer] | None = None
+    mechanism: Mechanism | None = None
+    left_out: Callable[[], Iterable[LeftOut]] = tuple
+    warnings: Callable[[], Iterable[str]] = tuple
+    place_tables: tuple[PlaceTable, ...] = ()
+
+    @property
+    def lists(self) -> Lists:
+        """The quantities that it may have."""
+        return quantities_of(self.mechanism) if self.mechanism else COMMON
+
+    def says(self, quantity: Quantity) -> bool:
+        """Whether a quantity says something new here."""
+        return not (quantity.unless and any(getattr(one, quantity.unless, False) for one in self.results))
+
+    def key_values(self, command: str) -> Iterator[tuple[Quantity, Any]]:
+        """Yield the key values of a command that it has, with their values in SI: a number, an Extreme or a tuple."""
+        for quantity in self.lists.key_values(command).values():
+            value = self.answer(quantity) if self.says(quantity) else None
+            if value is not None:
+                yield quantity, value
+
+    def answer(self, quantity: Quantity) -> Any:
+        """Return what the results have for a key value, in SI; None where they have none."""
+        for one in self.results:
+            if quantity.asks and hasattr(type(one), quantity.asks[0]):
+                return _asked(one, *quantity.asks)
+            if hasattr(type(one), quantity.id):
+                return getattr(one, quantity.id)
+        return None
+
+    def has(self, command: str) -> list[str]:
+        """Return the ids of the columns of a command that it has."""
+        answer = self.at(np.zeros(1)) if self.at else None
+        columns = self.lists.columns(command).values() if answer else ()
+        return [one.id for one in columns if answer and (one.id == "phi" or answer(one) is not None)]
+
+
+def _asked(results: Any, name: str, argument: str = "", part: str = "") -> Any:
+    found = getattr(results, name)
+    found = found(argument) if argument else found
+    return getattr(found, part) if part and found is not None else found
+
+
+def of_state(state: Any) -> Answer:
+    """Return what answers columns by the attributes of a state."""
+    return lambda column: getattr(state, column.id, None)
+
+
+class Frame(NamedTuple):
+    """A report to be made: of which command, at which crank angles (n,) in degrees, with which columns, in which units.
+
+    columns: ids to show besides φ, None for all that the machine has; system: `si` or `technical`.
+    """
+
+    command: str
+    angles: Sequence[float]
+    columns: Sequence[str] | None
+    system: str
+
+    def report(
+        self,
+        machine: Machine,
+        title: str,
+        subjects: Iterable[Subject],
+        whole: Subject | None = None,
+        notes: Iterable[str] = (),
+    ) -> Report:
+        """Return the report on these subjects; what overflows is refused by name."""
+        with np.errstate(all="ignore"):
+            every = (*subjects, *((whole,) if whole else ()))
+            parts = [self._part(one) for one in every]
+            self._refuse_absent(every, parts)
+            last = parts.pop() if whole else None
+            name = machine.name
+            return Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=tuple(notes))
+
+    def _part(self, subject: Subject) -> Part:
+        return Part(
+            subject.name,
+            self._columns(subject),
+            self._later(lambda: self._key_values(subject)),
+            self._later(subject.left_out),
+            self._later(subject.warnings),
+            subject.place_tables,
+        )
+
+    def _later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:
+        def ignoring() -> tuple[Any, ...]:
+            with np.errstate(all="ignore"):
+                return tuple(make())
+
+        return Later(ignoring)
+
+    def _columns(self, subject: Subject) -> tuple[Column, ...]:
+        if subject.at is None:
+            return ()
+        known = subject.lists.columns(self.command)
+        if self.columns:
+            chosen = [known[name] for name in self.columns if name in known]
+        else:
+            chosen = [column for column in known.values() if subject.says(column)]
+        return shown_columns(known["phi"], chosen, subject.at, self.angles, self.system)
+
+    def _key_values(self, subject: Subject) -> Iterator[KeyValue]:
+        for quantity, value in subject.key_values(self.command):
+            yield shown_key_value(quantity, value, self.system)
+
+    def _refuse_absent(self, subjects: Sequence[Subject], parts: Sequence[Part]) -> None:
+        """Raise UsageError for a column that was asked for and that no part has."""
+        shown = {column.id for part in parts for column in part.columns}
+        for name in self.columns or ():
+            if name in shown or all(subject.at is None for subject in subjects):
+                continue
+            known = every_quantity().columns(self.command)
+            if name not in known:
+                raise UsageError(
+                    f"--columns: '{name}' is no column of kurbel {self.command} (it has {', '.join(known)})"
+                )
+            there = dict.fromkeys(id for subject in subjects for id in subject.has(self.command))
+            raise UsageError(f"--columns: '{name}' is left out for this machine, which has {', '.join(there)}")

@@ -1,0 +1,142 @@
+"""Declared quantities: each has one definition, and what mechanisms offer joins the lists of their commands."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kurbel.declared.quantities import COMMON
+from kurbel.declared.quantity import Quantity, by_id, placed
+from kurbel.errors import UsageError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.masses import Masses
+from kurbel.mechanisms import MECHANISMS, Mechanism, every_quantity
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.report.forces import forces_report
+from kurbel.solver.case import Case
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.state import State
+from kurbel.solver.strength.columns import StrengthColumns
+from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from kurbel.solver.turning.columns import TurningColumns
+from kurbel.solver.turning.coupling import ElasticCoupling
+from kurbel.solver.turning.flywheel import MachineTurning
+from toy_mechanism import HarmonicCam
+
+CONFIGS = Path(__file__).parent.parent / "configs"
+RESULTS = {
+    "motion": (Motion,),
+    "forces": (CylinderForces, Motion),
+    "flywheel": (MachineTurning, ElasticCoupling),
+    "stress": (CrankshaftStrength,),
+}
+
+
+@pytest.mark.parametrize("command", RESULTS)
+def test_every_key_value_has_a_definition(command: str) -> None:
+    elsewhere = {"P_dead_centre"}  # of one cylinder, in the report on the whole machine
+    for id, quantity in every_quantity().key_values(command).items():
+        names = {id, *quantity.asks[:1]}
+        assert id in elsewhere or any(hasattr(one, name) for one in RESULTS[command] for name in names), id
+
+
+@pytest.mark.parametrize(
+    ("command", "results"),
+    [("motion", State), ("forces", State), ("flywheel", TurningColumns), ("stress", StrengthColumns)],
+)
+def test_every_common_column_has_a_definition(command: str, results: type) -> None:
+    for id, column in COMMON.columns(command).items():
+        assert id == "phi" or hasattr(results, column.asks[0] if column.asks else id), id
+
+
+def test_every_quantity_stands_in_the_list_of_a_command() -> None:
+    every = every_quantity()
+    assert [one.id for one in every.all_key_values if not one.commands] == []
+    assert [one.id for one in every.all_columns if not one.commands and not one.extremes] == []
+
+
+def test_extremes_derive_from_the_column() -> None:
+    found = by_id(COMMON.all_key_values)
+    assert found["S_max"][:4] == ("S_max", "S_max", "force", "Largest rod force")
+    assert found["P_start_min"].symbol == "P_0,min"
+    assert found["M_max"].commands == ("flywheel",)
+
+
+def test_what_stands_after_another_keeps_its_order() -> None:
+    one, two, three = (Quantity(id, id, "force", "", after="a" if id in "bc" else "") for id in "cba")
+    assert [quantity.id for quantity in placed((one, two, three))] == ["a", "c", "b"]
+
+
+class TestACamFromOutside:
+    machine = Machine((Cylinder(HarmonicCam(0.02, 0.002), masses=Masses(2.0)),), speed=10.0)
+
+    def test_its_own_column_and_its_extremes(self) -> None:
+        (part,) = forces_report(Case(self.machine), np.arange(0.0, 361.0, 1.0).tolist(), None, "si").parts
+        columns = {column.id: column.values for column in part.columns}
+        values = {value.id: value.value for value in part.key_values}
+        ids = [column.id for column in part.columns]
+        assert ids.index("M_tilt") == ids.index("P") + 1
+        omega = 20 * np.pi
+        for degrees in (30, 200):  # −m x″ω² x′
+            phi = np.radians(degrees)
+            slope = 0.02 * np.sin(phi) + 0.002 * np.sin(2 * phi)
+            bend = 0.02 * np.cos(phi) + 0.004 * np.cos(2 * phi)
+            assert columns["M_tilt"][degrees] == pytest.approx(-2.0 * bend * slope * omega**2, rel=1e-12)
+        assert values["M_tilt_max"] == pytest.approx(max(columns["M_tilt"]), rel=1e-3)
+        assert values["M_tilt_max"] >= max(columns["M_tilt"])
+
+    @pytest.mark.parametrize("outstroke", [True, False])
+    def test_the_inverse_that_it_did_not_supply(self, outstroke: bool) -> None:
+        """x = a (1 − u) + k (1 − u²) with u = cos φ is a quadratic in u."""
+        way = np.array([0.0, 1e-9, 0.003, 0.02, 0.0399, 0.04])
+        u = (-0.02 + np.sqrt(0.02**2 + 4 * 0.002 * (0.022 - way))) / 0.004
+        exact = np.degrees(np.arccos(np.clip(u, -1, 1)))
+        found = HarmonicCam(0.02, 0.002).crank_angles_at(way, outstroke)
+        assert found == pytest.approx(exact if outstroke else 360 - exact, abs=1e-6)
+
+
+@pytest.mark.parametrize("missing", ["name", "KEYS", "crank", "stroke", "dead_centres", "coordinate", "curvature"])
+def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> None:
+    members = {"name": "x", "KEYS": {}, "crank": 1.0, "stroke": 2.0, "dead_centres": None}
+    members |= {"coordinate": None, "slope": None, "curvature": None}
+    with pytest.raises(UsageError, match=rf"mechanism Half does not define {missing}$"):
+        type("Half", (Mechanism,), {name: value for name, value in members.items() if name != missing})
+
+
+def test_a_mechanism_may_build_on_another() -> None:
+    @dataclass(frozen=True, eq=False)
+    class Wide(ScotchYoke):
+        extra: float = 0.0
+
+    assert Wide(0.1).stroke == 0.2
+
+
+def test_weight_on_the_guide_of_an_inclined_yoke() -> None:
+    """There is no connecting rod, but the yoke lies on its guide: m g cos 30°."""
+    for inclination, weight in ((30.0, 100 * 9.80665 * np.sqrt(3) / 2), (None, None)):
+        cylinder = Cylinder(ScotchYoke(0.2), masses=Masses(100.0), inclination=inclination)
+        forces = Case(Machine((cylinder,), speed=1.0)).cylinders[0]
+        found = forces.at([0.0, 77.0]).N
+        assert found is None if weight is None else found == pytest.approx([weight] * 2, rel=1e-14)
+        assert forces.at([0.0]).S is None
+
+
+def test_no_other_mechanism_is_imported() -> None:
+    code = (
+        "import sys, io, contextlib\nfrom kurbel.cli import kurbel\n"
+        "with contextlib.redirect_stdout(io.StringIO()):\n"
+        "    try: kurbel.main(sys.argv[1:])\n    except SystemExit as e: assert not e.code\n"
+        "print('\\n'.join(sys.modules))"
+    )
+    machine = str(CONFIGS / "waterworks.yaml")
+    done = subprocess.run([sys.executable, "-c", code, "forces", machine, "-f", "csv"], capture_output=True, text=True)
+    imported = {name for name in done.stdout.split() if name.startswith("kurbel.mechanisms.")}
+    others = {record.target.partition(":")[0] for word, record in MECHANISMS.items() if word != "slider-crank"}
+    assert "kurbel.mechanisms.slider_crank" in imported
+    assert not imported & others
