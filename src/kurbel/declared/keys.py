@@ -74,9 +74,14 @@ class Form(ABC):
         """Return a fault of the record as one of its mapping, whatever list the record has made of it."""
         return fault
 
+    def parts(self) -> Iterable[tuple[str, Form]]:
+        """Return the forms that this one is made of, each after the key that it stands under, '' for none."""
+        return ()
+
     def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
         """Yield every key that may stand in a mapping of this form, each after the words for that mapping."""
-        return iter(())
+        for name, form in self.parts():
+            yield from form.places_of(name, path, words) if name else form.places(path, words)
 
     def places_of(self, name: str, path: str, words: str) -> Iterator[tuple[str, str]]:
         """Yield a key of this form after the words for its mapping, then what may stand below it."""
@@ -86,7 +91,8 @@ class Form(ABC):
 
     def records(self, word: str) -> Iterator[tuple[str, Any]]:
         """Yield the records that a key leads to, each after the word that names it."""
-        return iter(())
+        for name, form in self.parts():
+            yield from form.records(name or word)
 
     def describe(self, name: str, key: Key, properties: Schema, rules: list[Schema], definitions: Schema) -> None:
         """Add a key of this form to the schema of its mapping."""

@@ -40,8 +40,8 @@ def run(text: str, builder: Builder) -> bool:
     loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     handlers = {
         yaml.ScalarEvent: builder.scalar,
-        yaml.MappingStartEvent: builder.mapping,
-        yaml.SequenceStartEvent: builder.sequence,
+        yaml.MappingStartEvent: lambda event: builder.begin({}, event),
+        yaml.SequenceStartEvent: lambda event: builder.begin([], event),
         yaml.MappingEndEvent: builder.end,
         yaml.SequenceEndEvent: builder.end,
         yaml.AliasEvent: builder.alias,
@@ -57,7 +57,7 @@ def run(text: str, builder: Builder) -> bool:
     except yaml.MarkedYAMLError as error:
         from kurbel.machine_file.syntax import explain
 
-        builder.broken(explain(error, text))
+        builder.reading.faults.append(explain(error, text))
         return False
     return True
 
@@ -92,16 +92,12 @@ class Builder:
 
     def __init__(self, reading: Reading) -> None:
         self.root: Any = Plain("")
-        self._reading = reading
+        self.reading = reading
         self._open: list[dict[str, Any] | list[Any]] = []
         self._steps: list[Step] = []  # under which each of them stands; that of the root counts for nothing
         self._key: str | None = None  # of the innermost mapping, while its value is due
         self._documents = 0
         self._scalars = 0
-
-    def broken(self, fault: Fault) -> None:
-        """Note why the text cannot be read to its end."""
-        self._reading.faults.append(fault)
 
     def scalar(self, event: Any) -> None:
         """Take a scalar: a key or a value."""
@@ -122,14 +118,6 @@ class Builder:
         else:
             self._place(REFUSED, event)
 
-    def mapping(self, event: Any) -> None:
-        """Begin a mapping."""
-        self._begin({}, event)
-
-    def sequence(self, event: Any) -> None:
-        """Begin a list."""
-        self._begin([], event)
-
     def end(self, event: Any) -> None:
         """End the innermost mapping or list."""
         self._open.pop()
@@ -143,7 +131,8 @@ class Builder:
             self._report(event, (), "a second document begins here; a file describes one machine, leave out '---'")
             raise StopReading
 
-    def _begin(self, container: dict[str, Any] | list[Any], event: Any) -> None:
+    def begin(self, container: dict[str, Any] | list[Any], event: Any) -> None:
+        """Begin a mapping or list."""
         if event.tag is not None or event.anchor is not None:
             self._guard(event)
         if len(self._open) >= DEPTH_LIMIT:
@@ -204,4 +193,4 @@ class Builder:
 
     def _report(self, event: Any, path: Path, message: str) -> None:
         mark = event.start_mark
-        self._reading.note(Fault(path, message).at(mark.line, mark.column))
+        self.reading.note(Fault(path, message).at(mark.line, mark.column))

@@ -42,9 +42,8 @@ class Record(Form):
     def records(self, word: str) -> Iterator[tuple[str, Record]]:
         yield word, self
 
-    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
-        for name, key in self.keys.items():
-            yield from key.form.places_of(name, path, words)
+    def parts(self) -> Iterable[tuple[str, Form]]:
+        return [(name, key.form) for name, key in self.keys.items()]
 
     def own_names(self) -> list[str]:
         """Return the names of the keys that stand in the mapping itself."""

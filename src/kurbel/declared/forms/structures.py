@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.bounds import MOST_ITEMS
@@ -50,11 +50,11 @@ class Listing(Form):
         items = tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(value))
         return REFUSED if any(item is REFUSED for item in items) else items
 
-    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
-        return iter(()) if self.inline_too else self.item.places(path, words)
+    def parts(self) -> Iterable[tuple[str, Form]]:
+        return (("", self.item),)
 
-    def records(self, word: str) -> Iterator[tuple[str, Record]]:
-        return self.item.records(word)
+    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
+        return iter(()) if self.inline_too else super().places(path, words)
 
 
 class OneOf(Form):
@@ -83,13 +83,8 @@ class OneOf(Form):
                 return form.read(reading, value, path)
         return refused(f"expected {self.expected()}, got {kind_of(value)}")
 
-    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
-        for form in self.forms:
-            yield from form.places(path, words)
-
-    def records(self, word: str) -> Iterator[tuple[str, Record]]:
-        for form in self.forms:
-            yield from form.records(word)
+    def parts(self) -> Iterable[tuple[str, Form]]:
+        return [("", form) for form in self.forms]
 
 
 class Keyed(Form):
@@ -134,22 +129,17 @@ class Keyed(Form):
     def _misspelt(self, reading: Reading, mapping: Tree, path: Path) -> bool:
         """Note a fault where an unknown key is nearly a telling one, and return whether there was any."""
         known = tuple(self.otherwise.keys)
-        found = False
-        for name in mapping:
-            meant = "" if name in known or near(name, known) else near(name, tuple(self.cases))
+        found = {name: near(name, tuple(self.cases)) for name in mapping if name not in known and not near(name, known)}
+        for name, meant in found.items():
             if meant:
                 reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)
-                found = True
-        return found
+        return any(found.values())
 
-    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
-        for name, form in self.cases.items():
-            yield from form.places_of(name, path, words)
-        yield from self.otherwise.places(path, words)
+    def parts(self) -> Iterable[tuple[str, Form]]:
+        return (*self.cases.items(), ("", self.otherwise))
 
     def records(self, word: str) -> Iterator[tuple[str, Record]]:
-        for name, form in (*self.cases.items(), ("card", self.otherwise)):
-            yield from form.records(name)
+        return super().records("card")
 
 
 class Limits(Form):
