@@ -43,7 +43,7 @@ SLIPS = [
         "angle.sin, self.crank * angle.versine",
     ),
     ("parallel_crank", "coupler_acceleration", "-self.crank * angle.cos", "self.crank * angle.cos"),
-    ("parallel_crank", "_squared", "math.prod(known) *", "math.prod(known[-1:]) *"),
+    ("parallel_crank", "_squared", "math.prod(known) *", "math.prod(known) * known[-1] *"),
     ("parallel_crank", "coupler_force_factor", "angle.sin", "angle.cos"),
 ]
 """File, function, its text and the wrong one: signs, sine for cosine, factors."""
