@@ -95,12 +95,11 @@ def test_no_angle_is_missing_in_random_cylinders() -> None:
 
 
 @pytest.mark.slow
-def test_no_angle_is_missing_in_two_thousand_cylinders() -> None:
-    seed = int(np.random.SeedSequence().entropy % 2**32)
-    print("seed", seed)
+def test_no_angle_is_missing_in_many_cylinders() -> None:
+    """benchmarks/random_cylinders.py does the same with thousands, and another seed every day."""
     lost = [
         (number, missing)
-        for number, forces in enumerate(cylinders(seed, 2000))
+        for number, forces in enumerate(cylinders(77, 200))
         if (missing := missing_reversals(forces) + missing_crossings(forces))
     ]
     assert not lost
