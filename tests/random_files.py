@@ -53,7 +53,7 @@ def mechanism(random: Random) -> tuple[str, Keys]:
 
 def pressure(random: Random, four: bool) -> Any:
     """Return what stands for one end of an indicator."""
-    high, low = number(random, 1, 60), number(random, 0.2, 2)
+    high, low = number(random, 1, 60), number(random, 0.2, 0.9)
     kind = random.choice(["card", "constant", "trace", "ideal"])
     if kind == "constant" and not four:
         return {"constant": {"expansion": f"{high} bar", "compression": f"{low} bar"}}

@@ -126,14 +126,14 @@ def test_a_width_is_filled_where_it_is_asked_for() -> None:
     """COLUMNS in a pipe, --width everywhere; no line is longer, and no word is broken."""
     machine = str(Path(__file__).parent.parent / "configs" / "waterworks.yaml")
     for arguments in (["table"], ["forces", machine], ["forces", machine, "--layout", "rows"], ["check", machine]):
-        plain = process(*arguments).stdout.decode()
+        plain = CliRunner().invoke(kurbel, arguments).stdout
         for columns in (80, 40):
-            narrow = process(*arguments, COLUMNS=str(columns)).stdout.decode()
+            narrow = CliRunner(env={"COLUMNS": str(columns)}).invoke(kurbel, arguments).stdout
             assert max(map(len, narrow.splitlines())) <= max(columns, 44), arguments
             words = {word for word in narrow.split() if word.strip("─")}
             assert words <= set(plain.split()), arguments
             if arguments[0] != "check":
-                assert process(*arguments, "--width", str(columns)).stdout.decode() == narrow
+                assert CliRunner().invoke(kurbel, [*arguments, "--width", str(columns)]).stdout == narrow
 
 
 def test_a_pipe_gets_plain_text_whatever_the_environment_says() -> None:

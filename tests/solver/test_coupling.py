@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.turning import Coupling, Effort, Load
+from kurbel.numerics.linear_collocation import around
 from kurbel.solver.turning.coupling import natural_frequency
 from kurbel.solver.turning.flywheel import MachineTurning
 from turning_machines import of_points
@@ -226,3 +227,13 @@ def test_figures_beyond_floats_are_refused_by_name() -> None:
     too_far = pytest.raises(NoSolutionError, match="stiffness, damping and inertia of the coupling are too far apart")
     with np.errstate(all="ignore"), too_far:
         _ = of_points(POINTS, RPM, inertia=1e-9, coupling=Coupling(1e-9, 1.0, 1e305)).delta
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_what_floats_do_not_hold_is_no_solution(count: int, capfd: pytest.CaptureFixture[str]) -> None:
+    """LAPACK would print a line of its own for it and answer with anything."""
+    before, sides = np.ones((count, 1, 1)), np.ones((count, 1))
+    before[-1] = np.inf
+    with np.errstate(all="ignore"), pytest.raises(np.linalg.LinAlgError):
+        around(before, np.ones((count, 1, 1)), sides)
+    assert capfd.readouterr() == ("", "")

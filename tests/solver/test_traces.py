@@ -176,8 +176,11 @@ def test_integrals_follow_the_straight_lines() -> None:
     assert straight != forces.work
 
 
-@pytest.mark.parametrize(("cycle", "count"), [("two-stroke", 100_000), ("four-stroke", 20_000)])
-def test_a_hundred_thousand_samples(tmp_path: Path, cycle: str, count: int) -> None:
+@pytest.mark.parametrize(
+    ("cycle", "count"),
+    [pytest.param("two-stroke", 100_000, marks=pytest.mark.slow), ("two-stroke", 10_000), ("four-stroke", 20_000)],
+)
+def test_very_many_samples(tmp_path: Path, cycle: str, count: int) -> None:
     """What reading and computing them takes is in benchmarks/reading.py."""
     period = 360.0 if cycle == "two-stroke" else 720.0
     angles = np.arange(count) * period / count

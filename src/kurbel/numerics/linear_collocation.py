@@ -74,10 +74,13 @@ def around(before: Array, after: Array, sides: Array) -> Array:
     """Return x (k, m) with before_i x_i + after_i x_{i+1} = sides_i, x_k being x_0; matrices (k, m, m), sides (k, m).
 
     Every second x is eliminated by rotations, which do not mind whether a solution grows or dies on its way, until one
-    is left. What the equations leave open there is taken as small as can be.
+    is left. What the equations leave open there is taken as small as can be. Raises LinAlgError where floats do not
+    reach.
     """
     count, size = sides.shape
     if count == 1:
+        if not (np.isfinite(before).all() and np.isfinite(after).all() and np.isfinite(sides).all()):
+            raise np.linalg.LinAlgError("beyond the range of floats")  # LAPACK itself would only print it
         return np.asarray(np.linalg.lstsq(before[0] + after[0], sides[0], rcond=1e-13)[0][None])
     even, odd = slice(0, count - 1, 2), slice(1, count, 2)
     turn, upper = np.linalg.qr(np.concatenate((after[even], before[odd]), axis=1), mode="complete")
