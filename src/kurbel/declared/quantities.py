@@ -47,6 +47,7 @@ _COLUMNS = (
         "Force along the stroke line: gas, inertia, weight, and what a ram works against",
         extremes=_FORCES,
         called="piston force",
+        peak=True,
     ),
     Quantity(
         "P_start",
@@ -57,7 +58,13 @@ _COLUMNS = (
         called="piston force without inertia: starting and slow running",
     ),
     _forces(
-        "S", "S", "force", "Force in the connecting rod, compression positive", extremes=_FORCES, called="rod force"
+        "S",
+        "S",
+        "force",
+        "Force in the connecting rod, compression positive; of an exact rod, between the masses at its ends",
+        extremes=_FORCES,
+        called="rod force",
+        peak=True,
     ),
     _forces(
         "N",
@@ -66,6 +73,7 @@ _COLUMNS = (
         "Force on the guide (yoke frame: on the piston rod), positive on the side where it lies while an engine drives",
         extremes=_FORCES,
         called="guide force",
+        peak=True,
     ),
     Quantity(
         "D", "D", "force", "Radial force at the crank pin, positive toward the shaft", commands=(*_FORCES, *_STRESS)
@@ -78,6 +86,7 @@ _COLUMNS = (
         "Tangential force at the crank pin, positive when it drives",
         extremes=(*_FORCES, *_FLYWHEEL),
         called="tangential force",
+        peak=True,
         commands=(*_FORCES, *_FLYWHEEL, *_STRESS),
     ),
     _forces("F_friction", "F_f", "force", "Friction of crosshead and rings along the stroke line, opposing the motion"),
@@ -120,6 +129,7 @@ _MOTION_VALUES = (
 _CYLINDER_VALUES = (
     _forces("A_head", "A_H", "area", "Piston area at the head end"),
     _forces("A_crank", "A_C", "area", "Piston area at the crank end"),
+    _forces("p_max", "p_max", "pressure", "Largest gauge pressure in the cylinder's own piston"),
     _forces("m", "m", "mass", "Reciprocating mass with its share of the connecting rod"),
     _forces("P_inertia_max", "P_b,max", "force", "Largest inertia force toward the shaft", after="P_start_min"),
     _forces(
