@@ -34,6 +34,15 @@ _COLUMNS = (
     ),
     _motion("c", "c", "velocity", "Velocity, positive toward the shaft; of a quick-return ram, on the working stroke"),
     _motion("b", "b", "acceleration", "Acceleration, positive as the velocity"),
+    *(
+        Quantity(id, symbol, kind, text, commands=("motion", "forces"), on_request=_FORCES)
+        for id, symbol, kind, text in (
+            ("x_point", "x_Q", "length", "Place of the point of the rod from the shaft axis, along φ = 0"),
+            ("y_point", "y_Q", "length", "Place of the point of the rod from the shaft axis, along φ = 90°"),
+            ("v_point", "v_Q", "velocity", "Speed of the point of the rod"),
+            ("b_point", "b_Q", "acceleration", "Magnitude of the acceleration of the point of the rod"),
+        )
+    ),
     _forces("p_head", "p_H", "pressure", "Gauge pressure in the head-end chamber, just after a jump"),
     _forces("p_crank", "p_C", "pressure", "Gauge pressure in the crank-end chamber, just after a jump"),
     _forces("P_gas", "P_gas", "force", "Force of gas, steam or water on all pistons of the rod"),
@@ -116,6 +125,14 @@ _MOTION_VALUES = (
     ),
     _motion("v", "v", "velocity", "Crank-pin speed"),
     _motion("c_m", "c_m", "velocity", "Mean piston speed 2 s n (R 290)"),
+    _motion(
+        "c_work_m",
+        "c_a,m",
+        "velocity",
+        "Mean speed of the outstroke (of work, R p. 617)",
+        unless="equal_strokes",
+    ),
+    _motion("c_return_m", "c_r,m", "velocity", "Mean speed of the return stroke (R p. 617)", unless="equal_strokes"),
     _motion("c_max", "c_max", "velocity", "Largest velocity on the outstroke"),
     _motion("c_min", "c_min", "velocity", "Largest velocity on the return stroke, negative", unless="has_no_c_min"),
     _motion("c_work_max", "c_a,max", "velocity", "Largest speed of the working stroke (R 304)"),

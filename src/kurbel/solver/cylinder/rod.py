@@ -14,6 +14,7 @@ from typing import Any
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine.masses import ConnectingRod
+from kurbel.mechanisms import crank_formulas as formulas
 
 RodAngle = tuple[Any, Any]
 
@@ -44,13 +45,13 @@ class ExactRod:
 
     def swing_slope(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
         """Return dψ/dφ = λ cos φ/cos ψ."""
-        return self.crank / self.length * angle.cos / rod_angle[1]
+        return formulas.rod_slope(angle.cos, rod_angle[1], self.crank / self.length)
 
     def couple(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
-        """Return (I_r − m_r a (L − a)) ψ̈ in N m, d²ψ/dφ² = (dψ/dφ)² tan ψ − λ sin φ/cos ψ, at uniform rotation."""
+        """Return (I_r − m_r a (L − a)) ψ̈ in N m, at uniform rotation."""
         sin_psi, cos_psi = rod_angle
         slope = self.swing_slope(rod_angle, angle)
-        curvature = slope * slope * (sin_psi / cos_psi) - self.crank / self.length * angle.sin / cos_psi
+        curvature = formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.crank / self.length)
         return curvature * (self.excess_inertia * self.omega * self.omega)
 
     def side_force(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
