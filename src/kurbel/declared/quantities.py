@@ -76,6 +76,22 @@ _COLUMNS = (
         peak=True,
     ),
     _forces(
+        "S_crosshead",
+        "S_H",
+        "force",
+        "Force along an exact rod at the crosshead pin, compression positive",
+        extremes=_FORCES,
+        called="force along the rod at the crosshead pin",
+    ),
+    _forces(
+        "S_crank",
+        "S_Z",
+        "force",
+        "Force along an exact rod at the crank pin, compression positive",
+        extremes=_FORCES,
+        called="force along the rod at the crank pin",
+    ),
+    _forces(
         "N",
         "N",
         "force",

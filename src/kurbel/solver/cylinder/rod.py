@@ -22,8 +22,8 @@ RodAngle = tuple[Any, Any]
 class ExactRod:
     """A rod of length L in m on a crank of radius R in m, turning at ω (rad/s, None where no speed is given).
 
-    weight: of the mass at the pin in N, toward the shaft along the stroke line, and square to it onto the guide; None
-    where weights are left out.
+    weight, crosshead_weight: of the masses at crank and crosshead pin in N, toward the shaft along the stroke line, and
+    square to it onto the guide; None where weights are left out.
     """
 
     def __init__(
@@ -34,8 +34,12 @@ class ExactRod:
         self.omega = omega or 0.0
         self.pin_mass = rod.at_pin(length)
         self.excess_inertia = rod.excess_inertia(length)
+        self.crosshead_mass = rod.at_crosshead(length)
         weight = self.pin_mass * GRAVITY
         self.weight = None if incline is None else (weight * incline.sin, weight * incline.cos)
+
+        weight = self.crosshead_mass * GRAVITY
+        self.crosshead_weight = None if incline is None else (weight * incline.sin, weight * incline.cos)
 
     @cached_property
     def pull(self) -> float:
@@ -71,6 +75,24 @@ class ExactRod:
         if self.weight is None:
             return share
         return share + (angle.cos * self.weight[0] + angle.sin * self.weight[1])
+
+    def at_crosshead(self, rod_angle: RodAngle, push: Any, lift: Any, b: Any) -> Any:
+        """Return the force in N along the rod at the crosshead pin, compression positive.
+
+        push: what is left of P for the rod; lift: N less the weight on the guide; b: acceleration in m/s², None without
+        inertia. In both stands the rod's own mass at this pin, which the pin does not act on.
+        """
+        if b is not None:
+            push = push + b * self.crosshead_mass
+        if self.crosshead_weight is not None:
+            push, lift = push - self.crosshead_weight[0], lift + self.crosshead_weight[1]
+        return push * rod_angle[1] + lift * rod_angle[0]
+
+    def at_crank(self, rod_angle: RodAngle, angle: CrankAngle, tangential: Any, radial: Any) -> Any:
+        """Return the force in N along the rod at the crank pin, T sin(φ+ψ) + D cos(φ+ψ), compression positive."""
+        sin_psi, cos_psi = rod_angle
+        sin, cos = angle.sin * cos_psi + angle.cos * sin_psi, angle.cos * cos_psi - angle.sin * sin_psi
+        return tangential * sin + radial * cos
 
     def reduced_inertia(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
         """Return what the rod, but for the masses at its ends, adds to the shaft's inertia, in kg m²."""

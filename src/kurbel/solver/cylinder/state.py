@@ -281,6 +281,21 @@ class State:
         return push - self._rod_side * self._rod[0] if self.drive.rod else push
 
     @cached_property
+    def S_crosshead(self) -> Any:
+        """Force along an exact rod at the crosshead pin in N."""
+        if self.P is None or not self.drive.rod:
+            return None
+        b = self.b if self.drive.has_inertia else None
+        return self.drive.rod.at_crosshead(self._rod, self.along_rod, self.N - self.drive.guide_weight, b)
+
+    @cached_property
+    def S_crank(self) -> Any:
+        """Force along an exact rod at the crank pin in N."""
+        if self.P is None or not self.drive.rod:
+            return None
+        return self.drive.rod.at_crank(self._rod, self.angle, self.T, self.D)
+
+    @cached_property
     def D(self) -> Any:
         """Radial force at the crank pin in N, positive toward the shaft, R 302."""
         radial = None if self.P is None else self.drive.mechanism.radial(self.angle)
