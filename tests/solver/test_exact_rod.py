@@ -115,6 +115,8 @@ def test_free_body_of_the_rod(friction: Friction | None, offset: float) -> None:
     weight_along, weight_across = mass * GRAVITY * np.sin(incline), -mass * GRAVITY * np.cos(incline)
     assert push - pin_along + weight_along == pytest.approx(mass * along, abs=1e-7)
     assert lift - pin_across + weight_across == pytest.approx(mass * across, abs=1e-7)
+    assert push * np.cos(psi) + lift * np.sin(psi) == pytest.approx(s.S_crosshead, abs=1e-7)
+    assert pin_along * np.cos(psi) + pin_across * np.sin(psi) == pytest.approx(s.S_crank, abs=1e-7)
     ahead = LENGTH - at
     moment = at * (push * np.sin(psi) - lift * np.cos(psi)) + ahead * (
         pin_along * np.sin(psi) - pin_across * np.cos(psi)
@@ -144,7 +146,7 @@ def test_point_masses_at_the_pins_need_no_couple() -> None:
 def test_key_values_do_not_depend_on_a_step() -> None:
     forces = rod_alone(inclination=90.0)
     fine = forces.at(np.linspace(0, 360, 72001))
-    for name in ("N", "T", "S"):
+    for name in ("N", "T", "S_crosshead", "S_crank"):
         found = forces.extremes_of(name)
         assert found is not None
         column = getattr(fine, name)
@@ -197,3 +199,25 @@ def test_largest_and_smallest_inertia_force_by_value() -> None:
     assert forces.P_inertia_max is not None
     assert forces.P_inertia_min is not None
     assert forces.P_inertia_max.value > 0 > forces.P_inertia_min.value
+
+
+def test_the_largest_rod_force_is_that_at_the_pins() -> None:
+    """S of the columns is less at both dead centres; S_max, S_min and S_peak hold what the rod must bear."""
+    forces = rod_alone(inclination=30.0)
+    degrees = np.arange(0.0, 360.0, 0.5)
+    state = forces.at(degrees)
+    ends = np.stack((state.S_crosshead, state.S_crank))
+    found = forces.extremes_of("S")
+    assert found is not None
+    assert found.largest.value >= ends.max() >= np.max(state.S)
+    assert found.smallest.value <= ends.min() <= np.min(state.S)
+    assert (found.largest.value, found.smallest.value) == pytest.approx((ends.max(), ends.min()), rel=1e-4)
+    assert found.peak.value == max(found.largest.value, -found.smallest.value)
+
+
+def test_a_rod_alone_and_at_rest_hangs_on_its_pins() -> None:
+    """Upright at the dead centre its weight rests on the crank pin, none of it on the crosshead pin."""
+    masses = Masses(0.0, ConnectingRod(250.0, center_of_gravity=0.9, inertia=70.0))
+    state = one_cylinder(SliderCrank(CRANK, LENGTH), None, masses=masses, inclination=90.0).at([0.0, 180.0])
+    assert state.S_crosshead == pytest.approx(0.0, abs=1e-9)
+    assert pytest.approx(250 * GRAVITY) == state.S_crank

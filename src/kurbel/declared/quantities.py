@@ -34,6 +34,15 @@ _COLUMNS = (
     ),
     _motion("c", "c", "velocity", "Velocity, positive toward the shaft; of a quick-return ram, on the working stroke"),
     _motion("b", "b", "acceleration", "Acceleration, positive as the velocity"),
+    *(
+        Quantity(id, symbol, kind, text, commands=("motion", "forces"), on_request=_FORCES)
+        for id, symbol, kind, text in (
+            ("x_point", "x_Q", "length", "Place of the point of the rod from the shaft axis, along φ = 0"),
+            ("y_point", "y_Q", "length", "Place of the point of the rod from the shaft axis, along φ = 90°"),
+            ("v_point", "v_Q", "velocity", "Speed of the point of the rod"),
+            ("b_point", "b_Q", "acceleration", "Magnitude of the acceleration of the point of the rod"),
+        )
+    ),
     _forces("p_head", "p_H", "pressure", "Gauge pressure in the head-end chamber, just after a jump"),
     _forces("p_crank", "p_C", "pressure", "Gauge pressure in the crank-end chamber, just after a jump"),
     _forces("P_gas", "P_gas", "force", "Force of gas, steam or water on all pistons of the rod"),
@@ -47,6 +56,7 @@ _COLUMNS = (
         "Force along the stroke line: gas, inertia, weight, and what a ram works against",
         extremes=_FORCES,
         called="piston force",
+        peak=True,
     ),
     Quantity(
         "P_start",
@@ -57,7 +67,29 @@ _COLUMNS = (
         called="piston force without inertia: starting and slow running",
     ),
     _forces(
-        "S", "S", "force", "Force in the connecting rod, compression positive", extremes=_FORCES, called="rod force"
+        "S",
+        "S",
+        "force",
+        "Force in the connecting rod, compression positive; of an exact rod, between the masses at its ends",
+        extremes=_FORCES,
+        called="rod force",
+        peak=True,
+    ),
+    _forces(
+        "S_crosshead",
+        "S_H",
+        "force",
+        "Force along an exact rod at the crosshead pin, compression positive",
+        extremes=_FORCES,
+        called="force along the rod at the crosshead pin",
+    ),
+    _forces(
+        "S_crank",
+        "S_Z",
+        "force",
+        "Force along an exact rod at the crank pin, compression positive",
+        extremes=_FORCES,
+        called="force along the rod at the crank pin",
     ),
     _forces(
         "N",
@@ -66,6 +98,7 @@ _COLUMNS = (
         "Force on the guide (yoke frame: on the piston rod), positive on the side where it lies while an engine drives",
         extremes=_FORCES,
         called="guide force",
+        peak=True,
     ),
     Quantity(
         "D", "D", "force", "Radial force at the crank pin, positive toward the shaft", commands=(*_FORCES, *_STRESS)
@@ -78,6 +111,7 @@ _COLUMNS = (
         "Tangential force at the crank pin, positive when it drives",
         extremes=(*_FORCES, *_FLYWHEEL),
         called="tangential force",
+        peak=True,
         commands=(*_FORCES, *_FLYWHEEL, *_STRESS),
     ),
     _forces("F_friction", "F_f", "force", "Friction of crosshead and rings along the stroke line, opposing the motion"),
@@ -107,6 +141,14 @@ _MOTION_VALUES = (
     ),
     _motion("v", "v", "velocity", "Crank-pin speed"),
     _motion("c_m", "c_m", "velocity", "Mean piston speed 2 s n (R 290)"),
+    _motion(
+        "c_work_m",
+        "c_a,m",
+        "velocity",
+        "Mean speed of the outstroke (of work, R p. 617)",
+        unless="equal_strokes",
+    ),
+    _motion("c_return_m", "c_r,m", "velocity", "Mean speed of the return stroke (R p. 617)", unless="equal_strokes"),
     _motion("c_max", "c_max", "velocity", "Largest velocity on the outstroke"),
     _motion("c_min", "c_min", "velocity", "Largest velocity on the return stroke, negative", unless="has_no_c_min"),
     _motion("c_work_max", "c_a,max", "velocity", "Largest speed of the working stroke (R 304)"),
@@ -120,6 +162,7 @@ _MOTION_VALUES = (
 _CYLINDER_VALUES = (
     _forces("A_head", "A_H", "area", "Piston area at the head end"),
     _forces("A_crank", "A_C", "area", "Piston area at the crank end"),
+    _forces("p_max", "p_max", "pressure", "Largest gauge pressure in the cylinder's own piston"),
     _forces("m", "m", "mass", "Reciprocating mass with its share of the connecting rod"),
     _forces("P_inertia_max", "P_b,max", "force", "Largest inertia force toward the shaft", after="P_start_min"),
     _forces(

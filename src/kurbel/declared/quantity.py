@@ -9,6 +9,10 @@ NOISE_POWER = -14
 """A residual below this power of ten is rounding, another on every processor."""
 
 
+_EXTREME_TEXTS = {"largest": "Largest", "smallest": "Smallest", "peak": "Largest magnitude of"}
+"""Part of the extremes of a column -> the first words of its sentence."""
+
+
 class Quantity(NamedTuple):
     """One printed quantity; the order in which quantities are declared is that in which they are printed.
 
@@ -21,6 +25,8 @@ class Quantity(NamedTuple):
     `unless`: where the results say that this is so, it says nothing new and is printed only if it is asked for.
     `after`: the id behind which it stands, if not where it is declared. A `residual` would be zero without rounding:
     people are not shown what of it is only that. On what is `listed`, a list of values, no bound can be put.
+    `peak`: a column with extremes that has, besides, its largest magnitude as key value `<id>_peak`.
+    `on_request`: the commands that print it only where it is asked for by name.
     """
 
     id: str
@@ -36,6 +42,8 @@ class Quantity(NamedTuple):
     asks: tuple[str, ...] = ()
     residual: bool = False
     listed: bool = False
+    peak: bool = False
+    on_request: tuple[str, ...] = ()
 
     @property
     def ascii_symbol(self) -> str:
@@ -47,7 +55,7 @@ class Quantity(NamedTuple):
         return self.residual and abs(value) < 10.0**NOISE_POWER
 
     def extreme(self, word: str, end: str, commands: tuple[str, ...]) -> Quantity:
-        """Return the key value that is the largest (`max`) or smallest (`min`) of this column.
+        """Return the key value that is the largest (`max`), smallest (`min`), or largest magnitude of this column.
 
         >>> force = Quantity("F_pin", "F_z", "force", "Force on the pin", called="force")
         >>> force.extreme("largest", "max", ("forces",))[:4]
@@ -58,7 +66,7 @@ class Quantity(NamedTuple):
             f"{self.id}_{end}",
             f"{self.symbol}{comma}{end}",
             self.kind,
-            f"{word.capitalize()} {self.called}",
+            f"{_EXTREME_TEXTS[word]} {self.called}",
             self.plain and f"{self.plain}{comma}{end}",
             commands,
             asks=("extremes_of", self.id, word),
@@ -71,6 +79,8 @@ def extremes(columns: Iterable[Quantity], command: str, *also: str) -> Iterator[
         if command in column.extremes:
             yield column.extreme("largest", "max", (command, *also))
             yield column.extreme("smallest", "min", (command, *also))
+            if column.peak:
+                yield column.extreme("peak", "peak", (command, *also))
 
 
 def placed(declared: Iterable[Quantity]) -> tuple[Quantity, ...]:

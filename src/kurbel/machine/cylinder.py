@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from kurbel.machine.masses import ConnectingRod, Masses
     from kurbel.machine.piston import Piston
     from kurbel.machine.resistance import Moment, RamForce
+    from kurbel.machine.rod_point import RodPoint
 
 _SLIDING = ("inclination", "masses", "friction", "ram_force")
 """Keys of a cylinder that only something that slides can have, besides those of its pistons."""
@@ -44,6 +45,7 @@ class Cylinder(Described):
     ram_force: RamForce | None = None
     moment: Moment | None = None
     cycle: str | None = None
+    point: RodPoint | None = None
 
     KEYS: ClassVar[Keys] = {
         "name": Key(Text(), "Name of the cylinder", absent="cylinder 1, cylinder 2, …"),
@@ -78,6 +80,11 @@ class Cylinder(Described):
             "Moment against the motion of a mechanism whose output only swings or turns",
             absent="none",
         ),
+        "point": Key(
+            Record("kurbel.machine.rod_point:RodPoint"),
+            "A point of the connecting rod or coupler, of which place, velocity and acceleration are told",
+            absent="none",
+        ),
         "cycle": Key(
             Choice(tuple(CYCLES)), "Working cycle of this cylinder, among others", absent="that of the machine"
         ),
@@ -91,6 +98,8 @@ class Cylinder(Described):
         return cls(pistons=() if piston is None else (piston, *tandem), **{"name": "", **keys})
 
     def __post_init__(self) -> None:
+        at_point = self.point.faults_on(self.mechanism) if self.point else ()
+        refuse(*(fault.below(("point",)) for fault in at_point))
         refuse(*_of_output(self), *(_of_rod(self) if self.mechanism.slides else ()))
 
 

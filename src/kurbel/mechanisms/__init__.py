@@ -19,6 +19,7 @@ from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle
+    from kurbel.mechanisms.coupler import Coupler
 
 MECHANISMS = {
     "slider-crank": Record("kurbel.mechanisms.slider_crank:SliderCrank"),
@@ -93,6 +94,8 @@ class Mechanism(Described):
     """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
     guided: ClassVar[bool] = True
     """Whether the side force N rests on a guide; otherwise it bends the piston rod."""
+    far_pin: ClassVar[str] = "crosshead_pin"
+    """What the pin of the connecting rod or coupler that is not on the crank is called."""
     known_across: ClassVar[bool] = False
     """Whether, without a connecting rod, nothing but its weight pushes the output across the stroke line onto N."""
     crank: float
@@ -181,6 +184,10 @@ class Mechanism(Described):
         """Return (sin ψ, cos ψ) of the connecting rod, or None where there is none."""
         return None
 
+    def coupler_at(self, angle: CrankAngle) -> Coupler | None:
+        """Return how the connecting rod or coupler on the crank pin lies and turns, or None where there is none."""
+        return None
+
     @property
     def has_rod(self) -> bool:
         """Whether there is a connecting rod on the crank, with rod force S and side force N."""
@@ -192,6 +199,11 @@ class Mechanism(Described):
     def rod_length(self) -> float:
         """Length L in m of the connecting rod on the crank; infinite where there is none."""
         return float("inf")
+
+    @property
+    def coupler_length(self) -> float:
+        """Length in m of the connecting rod or coupler on the crank pin; infinite where there is none."""
+        return self.rod_length
 
     @property
     def lam(self) -> float:

@@ -21,6 +21,16 @@ def cos_rod_angle(sin: Any, cos: Any, rho: Any) -> Any:
     return sqrt(cos * cos + rho * (sin * sin))
 
 
+def rod_slope(cos: Any, cos_psi: Any, lam: Any) -> Any:
+    """Return dψ/dφ = λ cos φ/cos ψ, of a straight or an offset slider-crank."""
+    return lam * cos / cos_psi
+
+
+def rod_curvature(sin: Any, sin_psi: Any, cos_psi: Any, slope: Any, lam: Any) -> Any:
+    """Return d²ψ/dφ² = (dψ/dφ)² tan ψ − λ sin φ/cos ψ."""
+    return slope * slope * (sin_psi / cos_psi) - lam * sin / cos_psi
+
+
 def displacement_factor(sin: Any, cos: Any, lam: Any, rho: Any) -> Any:
     """Return x/R = (1 − cos φ) + (1 − cos ψ)/λ, R 285, as a sum of positive terms.
 

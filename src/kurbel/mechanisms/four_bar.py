@@ -13,6 +13,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
+from kurbel.mechanisms.coupler import Coupler, turning_column
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
@@ -105,6 +106,21 @@ class Closure(NamedTuple):
         return rise / 2 * loop.span * (1 + loop.crank) / (w * w) + triangle / (4 * H * w)
 
     @property
+    def coupler(self) -> Coupler:
+        """The coupler at τ, by the velocities and accelerations of its ends along the rocker at θ.
+
+        b τ′ sin(θ−τ) = −a sin(θ−φ), b τ″ sin(θ−τ) = a cos(θ−φ) + b τ′² cos(θ−τ) − c θ′².
+        """
+        loop, (sin, cos), angle = self.loop, self.direction, self.angle
+        a, b, c = loop.crank, loop.coupler, loop.rocker
+        along, across = (1 + c * cos - a * angle.cos) / b, (c * sin - a * angle.sin) / b
+        lever = self.area / c
+        slope = -a * (sin * angle.cos - cos * angle.sin) / lever
+        square = self.slope * self.slope
+        bend = a * (cos * angle.cos + sin * angle.sin) + b * slope * slope * (cos * along + sin * across) - c * square
+        return Coupler(across, along, slope, bend / lever)
+
+    @property
     def sin_transmission(self) -> Any:
         """sin μ = H/(b c), μ between coupler and rocker."""
         return self.area / (self.loop.coupler * self.loop.rocker)
@@ -115,6 +131,29 @@ def _transmission(id: str, end: str, text: str) -> KeyOffer:
         Quantity(id, f"μ_{end}", "angle", text, f"mu_{end}", ("motion", "forces"), after="theta_ddot_min"),
         lambda four_bar, _: four_bar.transmission[0 if end == "min" else 1],
     )
+
+
+def _coupler_column(end: str, symbol: str, kind: str, text: str) -> Quantity:
+    plain = f"theta_K{end}"
+    return turning_column(f"theta_coupler{end}", symbol, plain, kind, f"{text} of the coupler", "theta_ddot")
+
+
+COUPLER_OFFERS = (
+    Offer(
+        _coupler_column("", "θ_K", "angle", "Angle, from the line crank pivot → rocker pivot,"),
+        lambda one, angle: one.coupler_at(angle).degrees,
+    ),
+    Offer(
+        _coupler_column("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
+        lambda one, angle: one.coupler_at(angle).slope,
+        ("omega",),
+    ),
+    Offer(
+        _coupler_column("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
+        lambda one, angle: one.coupler_at(angle).curvature,
+        ("omega", "omega"),
+    ),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,13 +172,14 @@ class FourBar(Mechanism):
 
     name: ClassVar[str] = "four-bar"
     slides: ClassVar[bool] = False
-    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, F_COUPLER)
+    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *COUPLER_OFFERS, F_COUPLER)
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (
         *SWING_VALUES,
         _transmission("transmission_min", "min", "Smallest transmission angle"),
         _transmission("transmission_max", "max", "Largest transmission angle"),
     )
     quick_return: ClassVar[bool] = True
+    far_pin: ClassVar[str] = "rocker_pin"
     KEYS: ClassVar[Keys] = {
         "crank": Key(Physical("length", above=0), "Crank radius", "a", required=True),
         "coupler": Key(Physical("length", above=0), "Length of the coupler", "b", required=True),
@@ -200,6 +240,15 @@ class FourBar(Mechanism):
         """Return the rocker at the crank angle."""
         closure = self.loop.at(angle)
         return Swing(bearing(*closure.direction), closure.slope, closure.curvature)
+
+    @property
+    def coupler_length(self) -> float:
+        """b in m."""
+        return self.coupler
+
+    def coupler_at(self, angle: CrankAngle) -> Coupler:
+        """Return the coupler at the crank angle."""
+        return self.loop.at(angle).coupler
 
     def coupler_force_factor(self, angle: CrankAngle) -> Any:
         """Return the coupler's force over the moment on the rocker, 1/(c sin μ) in 1/m."""

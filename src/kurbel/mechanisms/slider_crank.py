@@ -11,8 +11,9 @@ from kurbel.declared.forms import Number, Physical
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
-from kurbel.mechanisms import Mechanism, fan
+from kurbel.mechanisms import Mechanism, Offer, fan
 from kurbel.mechanisms import crank_formulas as formulas
+from kurbel.mechanisms.coupler import Coupler, turning_column
 from kurbel.numerics.arithmetic import sqrt, where
 from kurbel.numerics.extreme import Extreme
 
@@ -22,6 +23,20 @@ CRANK_KEYS: Keys = {
     "stroke": Key(Physical("length", above=0), "Stroke; or give `crank`", "s", instead="crank"),
 }
 """The size of the crank, shared by the mechanisms that can be given by their stroke."""
+
+
+ROD_OFFERS = (
+    Offer(
+        turning_column("psi_dot", "ψ̇", "psi_dot", "angular_velocity", "Angular velocity of the rod, dψ/dt", "b"),
+        lambda one, angle: -one.coupler_at(angle).slope,
+        ("omega",),
+    ),
+    Offer(
+        turning_column("psi_ddot", "ψ̈", "psi_ddot", "angular_acceleration", "Angular acceleration of the rod", "b"),
+        lambda one, angle: -one.coupler_at(angle).curvature,
+        ("omega", "omega"),
+    ),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +53,7 @@ class SliderCrank(Mechanism):
     offset: float = 0.0
 
     name: ClassVar[str] = "slider-crank"
+    OFFERS: ClassVar[tuple[Offer, ...]] = ROD_OFFERS
     KEYS: ClassVar[Keys] = {
         **CRANK_KEYS,
         "rod": Key(
@@ -149,6 +165,12 @@ class SliderCrank(Mechanism):
         below_one = beyond + lam * where(up, far, near)
         above_minus_one = within + lam * where(up, near, far)
         return lam * angle.sin - self.offset / self.rod, sqrt(below_one) * sqrt(above_minus_one)
+
+    def coupler_at(self, angle: CrankAngle) -> Coupler:
+        """Return the rod, which leads from the crank pin to the crosshead in the direction −ψ."""
+        sin_psi, cos_psi = self.rod_angle(angle)
+        slope = formulas.rod_slope(angle.cos, cos_psi, self.lam)
+        return Coupler(-sin_psi, cos_psi, -slope, -formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.lam))
 
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0."""

@@ -32,6 +32,7 @@ class YokeFrame(SliderCrank):
     name: ClassVar[str] = "yoke-frame"
     guided: ClassVar[bool] = False
     OFFERS: ClassVar[tuple[Offer, ...]] = (
+        *SliderCrank.OFFERS,
         Offer(
             own_force(
                 "M_bend",

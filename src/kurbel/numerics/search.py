@@ -52,6 +52,11 @@ class Extremes(NamedTuple):
     largest: Extreme
     smallest: Extreme
 
+    @property
+    def peak(self) -> Extreme:
+        """The largest magnitude, whichever sign the quantity has there."""
+        return max(self.largest, Extreme(-self.smallest.value, self.smallest.degrees), key=lambda one: one.value)
+
 
 class _Brackets(NamedTuple):
     """Intervals that hold one root each: number of the quantity, ends in degrees, piece, values at the ends; (n,)."""

@@ -24,7 +24,16 @@ def forces_report(case: Case, angles: Sequence[float], columns: Sequence[str] | 
     if not machine.cylinders:
         raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
     frame = Frame("forces", angles, columns, system)
-    return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=mechanism_notes(machine))
+    notes = (*mechanism_notes(machine), *_rod_notes(case))
+    return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=notes)
+
+
+def _rod_notes(case: Case) -> Iterable[str]:
+    if any(forces.drive.rod and forces.drive.has_force for forces in case.cylinders):
+        yield (
+            "S of an exact rod stands between the masses at its ends and is the force along it at neither pin: "
+            "S_H is that at the crosshead pin, S_Z that at the crank pin; S_max, S_min and S_peak are of both pins."
+        )
 
 
 def subjects(case: Case) -> Iterable[Subject]:

@@ -133,7 +133,7 @@ class Frame(NamedTuple):
         if self.columns:
             chosen = [known[name] for name in self.columns if name in known]
         else:
-            chosen = [column for column in known.values() if subject.says(column)]
+            chosen = [one for one in known.values() if subject.says(one) and self.command not in one.on_request]
         return shown_columns(known["phi"], chosen, subject.at, self.angles, self.system)
 
     def _key_values(self, subject: Subject) -> Iterator[KeyValue]:

@@ -61,14 +61,36 @@ class CylinderForces:
     @cached_property
     def _curves(self) -> dict[str, Curve]:
         declared = quantities_of(self.drive.mechanism).all_columns
-        searched = [one.id for one in declared if "forces" in one.extremes]
-        names = [name for name in searched if getattr(self._samples, name) is not None]
-        return curves(self.grid, _sampled(self._samples, names), self._quantities(*names))
+        return self._searched(one.id for one in declared if "forces" in one.extremes)
+
+    def _searched(self, columns: Iterable[str]) -> dict[str, Curve]:
+        names = [name for name in columns if getattr(self._samples, name) is not None]
+        return curves(self.grid, _sampled(self._samples, names), self._quantities(*names)) if names else {}
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
+        if column == "S" and self.drive.rod:
+            # S of an exact rod stands between the masses at its ends: what it must bear is the force at its pins
+            return self._at_pins
         curve = self._curves.get(column) if self.drive.has_force else None
         return extremes_of(curve) if curve else self.motion.extremes_of(column)
+
+    @property
+    def _at_pins(self) -> Extremes | None:
+        """Largest and smallest force in N along an exact rod, of both pins."""
+        found = [one for end in ("S_crosshead", "S_crank") if (one := self.extremes_of(end))]
+        if not found:
+            return None
+        largest, smallest = zip(*found, strict=True)
+        return Extremes(max(largest, key=lambda one: one.value), min(smallest, key=lambda one: one.value))
+
+    @cached_property
+    def p_max(self) -> Extreme | None:
+        """Largest gauge pressure in Pa at either end of the cylinder's own piston."""
+        if not self.drive.own_gas:
+            return None
+        found = [extremes_of(curve).largest for curve in self._searched(("p_head", "p_crank")).values()]
+        return max(found, key=lambda one: one.value)
 
     def offered(self, id: str) -> Any:
         """Return a key value that the mechanism offers."""

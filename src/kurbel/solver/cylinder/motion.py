@@ -72,6 +72,16 @@ class Motion:
         """Mean piston speed 2 s n in m/s, R 290."""
         return None if self.speed is None or self.stroke is None else 2 * self.stroke * self.speed
 
+    @property
+    def c_work_m(self) -> float | None:
+        """Mean speed in m/s of the outstroke, or of the working stroke: s n · 360°/φ_w (R p. 617)."""
+        return None if self.c_m is None else self.c_m * (180.0 / self.phi_work)
+
+    @property
+    def c_return_m(self) -> float | None:
+        """Mean speed in m/s of the return stroke, positive."""
+        return None if self.c_m is None else self.c_m * (180.0 / self.phi_return)
+
     @cached_property
     def _turn(self) -> Grid:
         """One revolution, cut at the landmarks of the mechanism only."""

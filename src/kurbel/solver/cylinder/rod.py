@@ -14,6 +14,7 @@ from typing import Any
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine.masses import ConnectingRod
+from kurbel.mechanisms import crank_formulas as formulas
 
 RodAngle = tuple[Any, Any]
 
@@ -21,8 +22,8 @@ RodAngle = tuple[Any, Any]
 class ExactRod:
     """A rod of length L in m on a crank of radius R in m, turning at ω (rad/s, None where no speed is given).
 
-    weight: of the mass at the pin in N, toward the shaft along the stroke line, and square to it onto the guide; None
-    where weights are left out.
+    weight, crosshead_weight: of the masses at crank and crosshead pin in N, toward the shaft along the stroke line, and
+    square to it onto the guide; None where weights are left out.
     """
 
     def __init__(
@@ -33,8 +34,12 @@ class ExactRod:
         self.omega = omega or 0.0
         self.pin_mass = rod.at_pin(length)
         self.excess_inertia = rod.excess_inertia(length)
+        self.crosshead_mass = rod.at_crosshead(length)
         weight = self.pin_mass * GRAVITY
         self.weight = None if incline is None else (weight * incline.sin, weight * incline.cos)
+
+        weight = self.crosshead_mass * GRAVITY
+        self.crosshead_weight = None if incline is None else (weight * incline.sin, weight * incline.cos)
 
     @cached_property
     def pull(self) -> float:
@@ -44,13 +49,13 @@ class ExactRod:
 
     def swing_slope(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
         """Return dψ/dφ = λ cos φ/cos ψ."""
-        return self.crank / self.length * angle.cos / rod_angle[1]
+        return formulas.rod_slope(angle.cos, rod_angle[1], self.crank / self.length)
 
     def couple(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
-        """Return (I_r − m_r a (L − a)) ψ̈ in N m, d²ψ/dφ² = (dψ/dφ)² tan ψ − λ sin φ/cos ψ, at uniform rotation."""
+        """Return (I_r − m_r a (L − a)) ψ̈ in N m, at uniform rotation."""
         sin_psi, cos_psi = rod_angle
         slope = self.swing_slope(rod_angle, angle)
-        curvature = slope * slope * (sin_psi / cos_psi) - self.crank / self.length * angle.sin / cos_psi
+        curvature = formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.crank / self.length)
         return curvature * (self.excess_inertia * self.omega * self.omega)
 
     def side_force(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
@@ -70,6 +75,24 @@ class ExactRod:
         if self.weight is None:
             return share
         return share + (angle.cos * self.weight[0] + angle.sin * self.weight[1])
+
+    def at_crosshead(self, rod_angle: RodAngle, push: Any, lift: Any, b: Any) -> Any:
+        """Return the force in N along the rod at the crosshead pin, compression positive.
+
+        push: what is left of P for the rod; lift: N less the weight on the guide; b: acceleration in m/s², None without
+        inertia. In both stands the rod's own mass at this pin, which the pin does not act on.
+        """
+        if b is not None:
+            push = push + b * self.crosshead_mass
+        if self.crosshead_weight is not None:
+            push, lift = push - self.crosshead_weight[0], lift + self.crosshead_weight[1]
+        return push * rod_angle[1] + lift * rod_angle[0]
+
+    def at_crank(self, rod_angle: RodAngle, angle: CrankAngle, tangential: Any, radial: Any) -> Any:
+        """Return the force in N along the rod at the crank pin, T sin(φ+ψ) + D cos(φ+ψ), compression positive."""
+        sin_psi, cos_psi = rod_angle
+        sin, cos = angle.sin * cos_psi + angle.cos * sin_psi, angle.cos * cos_psi - angle.sin * sin_psi
+        return tangential * sin + radial * cos
 
     def reduced_inertia(self, rod_angle: RodAngle, angle: CrankAngle) -> Any:
         """Return what the rod, but for the masses at its ends, adds to the shaft's inertia, in kg m²."""

@@ -12,6 +12,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
 from kurbel.errors import NoSolutionError
 from kurbel.mechanisms import every_quantity
+from kurbel.mechanisms.coupler import PointMotion, point_motion
 from kurbel.numerics.jet import once_each
 
 if TYPE_CHECKING:
@@ -100,6 +101,34 @@ class State:
     def psi(self) -> Any:
         """Rod angle in degrees; not for jets."""
         return None if self._rod is None else np.degrees(np.arctan2(*self._rod))
+
+    @cached_property
+    def _point(self) -> PointMotion | None:
+        point, mechanism = self.drive.cylinder.point, self.drive.mechanism
+        coupler = mechanism.coupler_at(self.angle) if point else None
+        if point is None or coupler is None:
+            return None
+        return point_motion(mechanism, coupler, self.angle, point.from_crank_pin(mechanism), point.across)
+
+    @property
+    def x_point(self) -> Any:
+        """Place of the point of the rod in m from the shaft axis, along φ = 0."""
+        return self._point and self._point.x
+
+    @property
+    def y_point(self) -> Any:
+        """Its place in m along φ = 90°."""
+        return self._point and self._point.y
+
+    @property
+    def v_point(self) -> Any:
+        """Its speed in m/s."""
+        return self._point and self.omega and self._point.speed * self.omega
+
+    @property
+    def b_point(self) -> Any:
+        """The magnitude of its acceleration in m/s², at uniform rotation."""
+        return self._point and self.omega and self._point.acceleration * (self.omega * self.omega)
 
     @cached_property
     def direction(self) -> Array:
@@ -250,6 +279,21 @@ class State:
             return None
         push = self.along_rod / self._rod[1]
         return push - self._rod_side * self._rod[0] if self.drive.rod else push
+
+    @cached_property
+    def S_crosshead(self) -> Any:
+        """Force along an exact rod at the crosshead pin in N."""
+        if self.P is None or not self.drive.rod:
+            return None
+        b = self.b if self.drive.has_inertia else None
+        return self.drive.rod.at_crosshead(self._rod, self.along_rod, self.N - self.drive.guide_weight, b)
+
+    @cached_property
+    def S_crank(self) -> Any:
+        """Force along an exact rod at the crank pin in N."""
+        if self.P is None or not self.drive.rod:
+            return None
+        return self.drive.rod.at_crank(self._rod, self.angle, self.T, self.D)
 
     @cached_property
     def D(self) -> Any:

@@ -94,6 +94,11 @@ class MachineTurning:
         """Smallest tangential force in N at the radius of crank 1."""
         return self._at_crank(self.M_min)
 
+    @property
+    def T_peak(self) -> Extreme | None:
+        """Largest magnitude of the tangential force in N at the radius of crank 1."""
+        return self._at_crank(self.excess.effort_extremes.peak)
+
     def _at_crank(self, torque: Extreme) -> Extreme | None:
         return None if self.crank is None else Extreme(torque.value / self.crank, torque.degrees)
 
