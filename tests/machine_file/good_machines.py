@@ -113,6 +113,21 @@ indicator:
     compressor: {suction: 0 bar, delivery: 4 bar, clearance: 0.05}
 """
 EFFORT = "effort: {unit: kgf m, points: [[0, 0], [90, 300], [360, 0]]}\nload: constant\nspeed: 100 1/min\n"
+EQUAL = """\
+cycle: four-stroke
+cylinders:
+  count: 4
+  firing_order: 1-3-4-2
+  spacing: 96 mm
+  bank_angles: [0 deg, 180 deg]
+  each: {crank: 100 mm, rod_ratio: 4, bore: 150 mm}
+"""
+LIKE_ONE = """\
+firing_order: 1-2
+cylinders:
+  - {name: A, crank: 100 mm, rod_ratio: 4, axial_position: 0 mm}
+  - {like: A, axial_position: 90 mm, bank_angle: 90 deg}
+"""
 ALL = {
     "demo": DEMO,
     "full": FULL,
@@ -120,4 +135,6 @@ ALL = {
     "diesel": DIESEL,
     "compressor": COMPRESSOR,
     "effort": EFFORT,
+    "equal cylinders": EQUAL,
+    "like one": LIKE_ONE,
 }

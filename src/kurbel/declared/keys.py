@@ -66,8 +66,8 @@ class Form(ABC):
         """Return the names of all keys of a mapping that a key of this form stands for."""
         return (name,)
 
-    def moved(self, mapping: Tree) -> dict[str, str]:
-        """Return the names that do not stand in this mapping because a list has them, each with that list."""
+    def moved(self, name: str, mapping: Tree) -> dict[str, str]:
+        """Return the names that do not stand in this mapping but below this key or in a list, each with that place."""
         return {}
 
     def flat(self, fault: Fault, mapping: Tree) -> Fault:
@@ -88,6 +88,10 @@ class Form(ABC):
         yield words, name
         inner = f"{path}.{name}" if path else name
         yield from self.places(inner, f"under '{inner}'")
+
+    def inline(self) -> Iterable[Any]:
+        """Return the records whose keys stand beside a key of this form, in the same mapping."""
+        return ()
 
     def records(self, word: str) -> Iterator[tuple[str, Any]]:
         """Yield the records that a key leads to, each after the word that names it."""

@@ -49,6 +49,8 @@ class Reading:
         self.folder = folder
         self._places = places
         self.faults: list[Fault] = []
+        self.alike: dict[Path, Path] = {}
+        """Of what takes over the values of another mapping: its path and that of the other."""
 
     def where_it_belongs(self, key: str) -> str:
         """Return where in a machine file a key may stand, such as "it belongs under 'friction.rings'", or ''."""
@@ -56,7 +58,12 @@ class Reading:
         return "it belongs " + " or ".join(list(found)[:3]) if found else ""
 
     def note(self, fault: Fault) -> Any:
-        """Keep a fault and return REFUSED, which stands for the value that could not be read."""
+        """Keep a fault and return REFUSED, which stands for the value that could not be read.
+
+        A fault that was taken over is told once, where it stands.
+        """
+        if self.alike and self._told(fault):
+            return REFUSED
         full = len(self.faults) + 1 >= FAULT_LIMIT
         if full:
             fault = fault._replace(message=f"{fault.message} (reading stopped after {FAULT_LIMIT} faults)")
@@ -64,6 +71,14 @@ class Reading:
         if full:
             raise StopReading
         return REFUSED
+
+    def _told(self, fault: Fault) -> bool:
+        others = (
+            fault._replace(path=other + fault.path[len(path) :])
+            for path, other in self.alike.items()
+            if fault.path[: len(path)] == path
+        )
+        return any(other in self.faults or self._told(other) for other in others)
 
     def fault(self, path: Path, message: str, at_key: bool = False) -> Any:
         """Keep a fault at a path of the tree and return REFUSED."""

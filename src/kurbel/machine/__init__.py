@@ -10,7 +10,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Choice, Count, Inline, Limits, Listing, Number, OneOf, Physical, Record, Text
+from kurbel.declared.forms import (
+    Alike,
+    Choice,
+    Count,
+    FiringOrder,
+    Inline,
+    Limits,
+    Number,
+    OneOf,
+    Physical,
+    Record,
+    Text,
+)
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, refuse
 from kurbel.machine.angle_points import CYCLES
@@ -19,6 +31,7 @@ from kurbel.machine.cylinder import Cylinder
 if TYPE_CHECKING:
     from kurbel.declared.quantity import Quantity
     from kurbel.machine.crankshaft import Crankshaft
+    from kurbel.machine.equal import EqualCylinders
     from kurbel.machine.turning import Coupling, Effort, Flywheel, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
@@ -34,6 +47,19 @@ def _key_values() -> tuple[dict[str, Quantity], tuple[str, ...]]:
 
     known = by_id(every_quantity().all_key_values)
     return known, tuple(id for id, quantity in known.items() if quantity.listed)
+
+
+def _standing(
+    cylinders: tuple[Cylinder, ...] | EqualCylinders, order: tuple[int, ...] | None, cycle: str
+) -> tuple[Cylinder, ...]:
+    """Return the cylinders with the crank positions of their firing order; cycle: that of the machine."""
+    from kurbel.machine.equal import fired
+
+    each = cylinders if isinstance(cylinders, tuple) else cylinders.cylinders
+    degrees = 360.0 * max(CYCLES[one.cycle or cycle] for one in each)
+    if isinstance(cylinders, tuple):
+        return fired(cylinders, order or (), degrees, ("firing_order",))
+    return cylinders.standing(order, degrees)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +111,17 @@ class Machine(Described):
         ),
         "cylinder": Key(Inline(Record("kurbel.machine:Cylinder"), unless="cylinders"), "The keys of the only cylinder"),
         "cylinders": Key(
-            Listing(Record("kurbel.machine:Cylinder"), inline_too=True),
-            "Several cylinders; their keys then do not stand at the top",
+            OneOf(
+                Alike(Record("kurbel.machine:Cylinder", inline_too=True), "cylinder"),
+                Record("kurbel.machine.equal:EqualCylinders"),
+            ),
+            "Several cylinders, listed, or equal ones at once; their keys then do not stand at the top",
             absent="one cylinder, flat",
+        ),
+        "firing_order": Key(
+            FiringOrder(),
+            "Order in which the cylinders fire, at equal intervals over the cycle; sets `crank_position`",
+            absent="positions as given",
         ),
         "flywheel": Key(Record("kurbel.machine.turning:Flywheel"), "Flywheel", absent="no speed line"),
         "load": Key(
@@ -117,7 +151,8 @@ class Machine(Described):
     def of_keys(
         cls,
         cylinder: Cylinder | None = None,
-        cylinders: tuple[Cylinder, ...] = (),
+        cylinders: tuple[Cylinder, ...] | EqualCylinders = (),
+        firing_order: tuple[int, ...] | None = None,
         load: Load | str | None = None,
         kurbel: int = FORMAT,
         **keys: Any,
@@ -125,7 +160,9 @@ class Machine(Described):
         """Return the machine that these keys of a machine file describe; raises RuleError."""
         from dataclasses import replace
 
-        given = cylinders if cylinder is None else (cylinder,)
+        given = (cylinder,) if cylinder else cylinders
+        if firing_order or not isinstance(given, tuple):
+            given = _standing(given, firing_order, keys.get("cycle", "two-stroke"))
         named = tuple(c if c.name else replace(c, name=f"cylinder {i}") for i, c in enumerate(given, 1))
         return cls(named, load=None if isinstance(load, str) else load, **keys)
 

@@ -31,8 +31,10 @@ class Cylinder(Described):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
-    is left out; crank_position: degrees by which this crank follows crank 1; ram_force, moment: what the output works
-    against, where it slides or only swings. Raises RuleError for parts that the mechanism cannot have.
+    is left out; crank_position: degrees by which this crank follows crank 1; bank_angle: degrees from the stroke line
+    of cylinder 1 to its own, in the sense of rotation; axial_position: place along the shaft in m, None where it is not
+    known; ram_force, moment: what the output works against, where it slides or only swings. Raises
+    RuleError for parts that the mechanism cannot have.
     """
 
     mechanism: Mechanism
@@ -42,6 +44,8 @@ class Cylinder(Described):
     friction: Friction | None = None
     inclination: float | None = None
     crank_position: float = 0.0
+    bank_angle: float = 0.0
+    axial_position: float | None = None
     ram_force: RamForce | None = None
     moment: Moment | None = None
     cycle: str | None = None
@@ -49,6 +53,7 @@ class Cylinder(Described):
 
     KEYS: ClassVar[Keys] = {
         "name": Key(Text(), "Name of the cylinder", absent="cylinder 1, cylinder 2, …"),
+        "like": Key(Text(), "Name of a cylinder above, which this one equals but for what stands here", absent="none"),
         "mechanism": Key(
             Variant("slider-crank", MECHANISMS),
             "Kind of crank mechanism",
@@ -61,7 +66,7 @@ class Cylinder(Described):
         ),
         "piston": Key(Inline(Record("kurbel.machine.piston:Piston")), "The cylinder's own piston"),
         "tandem": Key(
-            Listing(Record("kurbel.machine.piston:Piston"), inline_too=True),
+            Listing(Record("kurbel.machine.piston:Piston", inline_too=True)),
             "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
             absent="none",
         ),
@@ -70,6 +75,13 @@ class Cylinder(Described):
             Record("kurbel.machine.friction:Friction"), "Friction of crosshead and piston rings", absent="no friction"
         ),
         "crank_position": Key(Physical("angle"), "Angle by which this crank follows crank 1", absent="0 deg"),
+        "bank_angle": Key(
+            Physical("angle", least=-360, most=360),
+            "Angle from the stroke line of cylinder 1 to this one, in the sense of rotation",
+            "γ",
+            absent="0 deg",
+        ),
+        "axial_position": Key(Physical("length"), "Place along the shaft", "z", absent="moments left out"),
         "ram_force": Key(
             Record("kurbel.machine.resistance:RamForce"),
             "Force on a ram against its motion, constant on each stroke",
@@ -91,8 +103,12 @@ class Cylinder(Described):
     }
 
     @classmethod
-    def of_keys(cls, piston: Piston | None = None, tandem: tuple[Piston, ...] = (), **keys: Any) -> Cylinder:
+    def of_keys(
+        cls, piston: Piston | None = None, tandem: tuple[Piston, ...] = (), like: str = "", **keys: Any
+    ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
+        if like:
+            refuse(Fault(("like",), "'like' stands in a list of 'cylinders', which has another one above"))
         if tandem and piston is None:
             refuse(Fault(("tandem",), "a tandem piston stands beside the cylinder's own one; give its 'bore'"))
         return cls(pistons=() if piston is None else (piston, *tandem), **{"name": "", **keys})

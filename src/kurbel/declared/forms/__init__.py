@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from kurbel.declared.forms.alike import Alike
+from kurbel.declared.forms.firing_order import FiringOrder
 from kurbel.declared.forms.points import Points
 from kurbel.declared.forms.records import Inline, Record, Variant
 from kurbel.declared.forms.scalars import Choice, Count, FilePath, Number, Physical, Text, UnitName
 from kurbel.declared.forms.structures import Keyed, Limits, Listing, OneOf
 
 __all__ = [
+    "Alike",
     "Choice",
     "Count",
     "FilePath",
+    "FiringOrder",
     "Inline",
     "Keyed",
     "Limits",

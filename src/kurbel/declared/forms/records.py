@@ -16,12 +16,15 @@ _TOO_EXTREME = "these numbers are too large or too small to compute with"
 
 
 class Record(Form):
-    """A mapping that becomes a record; `target` names it as `module:Class`, so that it is imported only when needed."""
+    """A mapping that becomes a record; `target` names it as `module:Class`, so that it is imported only when needed.
+
+    inline_too: its keys also stand inline elsewhere, and are looked for there.
+    """
 
     shape = dict
 
-    def __init__(self, target: str) -> None:
-        self.target = target
+    def __init__(self, target: str, inline_too: bool = False) -> None:
+        self.target, self.inline_too = target, inline_too
 
     def load(self) -> type[Described]:
         """Import and return the class."""
@@ -44,6 +47,20 @@ class Record(Form):
 
     def parts(self) -> Iterable[tuple[str, Form]]:
         return [(name, key.form) for name, key in self.keys.items()]
+
+    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
+        return iter(()) if self.inline_too else super().places(path, words)
+
+    def moved(self, name: str, mapping: Tree) -> dict[str, str]:
+        return dict.fromkeys(self.all_names({}), f"move it below '{name}'") if self.inline_too else {}
+
+    def alternatives(self) -> Iterator[tuple[str, str]]:
+        """Yield the pairs of keys of its mapping that say the same thing."""
+        for name, key in self.keys.items():
+            if key.instead:
+                yield name, key.instead
+            for record in key.form.inline():
+                yield from record.alternatives()
 
     def own_names(self) -> list[str]:
         """Return the names of the keys that stand in the mapping itself."""
@@ -108,8 +125,8 @@ class Record(Form):
     ) -> Iterator[str]:
         """Note a fault for each unknown key and yield the known ones that were probably meant."""
         elsewhere: dict[str, str] = {}
-        for key in self.keys.values() if unknown else ():
-            elsewhere |= key.form.moved(mapping)
+        for name, key in self.keys.items() if unknown else ():
+            elsewhere |= key.form.moved(name, mapping)
         listed = False
         for name in unknown:
             meant = "" if name in elsewhere else near(name, known)
@@ -211,6 +228,9 @@ class Variant(Form):
         chosen = self.cases.get(word) if isinstance(word, str) else None
         return [inner for case in ([chosen] if chosen else self.cases.values()) for inner in case.all_names(mapping)]
 
+    def inline(self) -> Iterable[Record]:
+        return self.cases.values()
+
     def places_of(self, name: str, path: str, words: str) -> Iterator[tuple[str, str]]:
         yield words, name
         for word, case in self.cases.items():
@@ -239,8 +259,8 @@ class Variant(Form):
 class Inline(Form):
     """Keys of another record that stand in the same mapping: those of the piston in its cylinder.
 
-    With the key `unless`, a list of such records, they stand in its items instead; rules of the outer record speak of
-    the one inline record as the first of that list.
+    With the key `unless`, a list of such records, they stand in its items instead, or of equal ones below its `each`;
+    rules of the outer record speak of an inline record as an item of that list.
     """
 
     shared = True
@@ -266,15 +286,22 @@ class Inline(Form):
     def names(self, name: str, mapping: Tree) -> Iterable[str]:
         return () if self.unless in mapping else self.record.all_names(mapping)
 
-    def moved(self, mapping: Tree) -> dict[str, str]:
+    def moved(self, name: str, mapping: Tree) -> dict[str, str]:
         if self.unless not in mapping:
             return {}
-        message = f"belongs {self._item}; move it into the items of '{self.unless}'"
+        there = f"'{self.unless}.each'" if isinstance(mapping[self.unless], dict) else f"the items of '{self.unless}'"
+        message = f"belongs {self._item}; move it into {there}"
         return dict.fromkeys(self.record.all_names(mapping), message)
 
     def flat(self, fault: Fault, mapping: Tree) -> Fault:
-        inside = self.unless and self.unless not in mapping and fault.path[:2] == (self.unless, 0)
-        return fault._replace(path=fault.path[2:]) if inside else fault
+        if len(fault.path) < 2 or fault.path[0] != self.unless or not isinstance(fault.path[1], int):
+            return fault
+        listed = mapping.get(self.unless)
+        head = () if listed is None else (self.unless, "each") if isinstance(listed, dict) else fault.path[:2]
+        return fault._replace(path=(*head, *fault.path[2:]))
+
+    def inline(self) -> Iterable[Record]:
+        return (self.record,)
 
     def places_of(self, name: str, path: str, words: str) -> Iterator[tuple[str, str]]:
         return self.record.places(path, self._item if self.unless else words)

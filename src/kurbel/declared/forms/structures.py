@@ -18,18 +18,15 @@ if TYPE_CHECKING:
 
 
 class Listing(Form):
-    """A list of items of one form, at least one; becomes a tuple.
-
-    inline_too: the keys of its items also stand inline, and are looked for there.
-    """
+    """A list of items of one form, at least one; becomes a tuple."""
 
     shape = list
 
-    def __init__(self, item: Form, inline_too: bool = False) -> None:
-        self.item, self.inline_too = item, inline_too
+    def __init__(self, item: Form) -> None:
+        self.item = item
 
     def expected(self) -> str:
-        return "a list"
+        return "a list, each item after '- '"
 
     def written(self) -> str:
         return f"a list; each {self.item.written()}"
@@ -52,9 +49,6 @@ class Listing(Form):
 
     def parts(self) -> Iterable[tuple[str, Form]]:
         return (("", self.item),)
-
-    def places(self, path: str, words: str) -> Iterator[tuple[str, str]]:
-        return iter(()) if self.inline_too else super().places(path, words)
 
 
 class OneOf(Form):
@@ -81,7 +75,7 @@ class OneOf(Form):
         for form in self.forms:
             if form.shape is shape:
                 return form.read(reading, value, path)
-        return refused(f"expected {self.expected()}, got {kind_of(value)}")
+        return refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
 
     def parts(self) -> Iterable[tuple[str, Form]]:
         return [("", form) for form in self.forms]

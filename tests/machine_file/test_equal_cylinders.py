@@ -1,0 +1,179 @@
+"""Equal cylinders: one `like` another, or several at once, and what a firing order makes of their cranks."""
+
+from __future__ import annotations
+
+import re
+
+import jsonschema
+import pytest
+import yaml
+
+from kurbel.errors import MachineFileError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine_file import loads
+from kurbel.machine_file.schema import json_schema
+
+EACH = "each: {stroke: 80 mm, rod_ratio: 4}"
+FOUR = """\
+name: Four in line
+speed: 300 rpm
+cycle: four-stroke
+cylinders:
+  count: 4
+  firing_order: 1-3-4-2
+  spacing: 96 mm
+  each:
+    stroke: 380 mm
+    rod_ratio: 4.6
+    bore: 280 mm
+    indicator: {head_end: {otto: {intake: -0.05 bar, exhaust: 0.1 bar, peak: 25 at, compression_ratio: 6}}}
+"""
+
+
+def equal(keys: str, cycle: str = "four-stroke") -> tuple[Cylinder, ...]:
+    return loads(f"cycle: {cycle}\ncylinders: {{{keys}, {EACH}}}").cylinders
+
+
+def throws(cylinders: tuple[Cylinder, ...]) -> list[float]:
+    """Where the throws stand in space when crank 1 is at its inner dead centre: γ − β (formulas of the free forces)."""
+    return [(one.bank_angle - one.crank_position) % 360 for one in cylinders]
+
+
+def refused(text: str) -> str:
+    with pytest.raises(MachineFileError) as caught:
+        loads(text)
+    assert len(caught.value.faults) == 1, caught.value
+    return str(caught.value)
+
+
+def test_a_four_cylinder_engine_takes_twelve_lines() -> None:
+    machine = loads(FOUR)
+    assert len(FOUR.splitlines()) == 12
+    assert [one.name for one in machine.cylinders] == [f"cylinder {i}" for i in (1, 2, 3, 4)]
+    # as configs/four-cylinder-generator.yaml has them one by one
+    assert [one.crank_position for one in machine.cylinders] == [0, 540, 180, 360]
+    assert [one.axial_position for one in machine.cylinders] == pytest.approx([0, 0.096, 0.192, 0.288])
+    assert len({id(one.pistons[0]) for one in machine.cylinders}) == 1
+
+
+def test_the_cross_plane_v8_has_two_rods_on_each_pin() -> None:
+    """Chevrolet small block, firing order 1-8-4-3-6-5-7-2, odd numbers on one bank: throws at 0, 90, 270, 180."""
+    cylinders = equal("count: 8, firing_order: 1-8-4-3-6-5-7-2, spacing: 112 mm, bank_angles: [0 deg, -90 deg]")
+    assert throws(cylinders) == [0, 0, 90, 90, 270, 270, 180, 180]
+    assert [one.axial_position for one in cylinders][::2] == pytest.approx([0, 0.112, 0.224, 0.336])
+
+
+def test_the_boxer_has_opposite_throws_for_opposite_cylinders() -> None:
+    """Volkswagen, 1-4-3-2, cylinders 1 and 2 on the right, 3 and 4 on the left."""
+    banks = "bank_angles: [0 deg, 0 deg, 180 deg, 180 deg]"
+    assert throws(equal(f"count: 4, firing_order: 1-4-3-2, {banks}")) == [0, 180, 180, 0]
+
+
+@pytest.mark.parametrize("order", ["firing_order: 1-3-5-2-4, ", ""])
+def test_the_radial_engine_has_one_pin(order: str) -> None:
+    banks = "[0 deg, 72 deg, 144 deg, 216 deg, 288 deg]"
+    cylinders = equal(f"count: 5, {order}spacing: 1 m, bank_angles: {banks}")
+    assert throws(cylinders) == [0] * 5
+    assert {one.axial_position for one in cylinders} == {0}
+
+
+def test_banks_lean_in_the_sense_of_rotation() -> None:
+    """N and its weight point down where the cylinder lies to the left of a shaft that turns over: angles add."""
+    text = "cylinders: {count: 2, bank_angles: [0 deg, 90 deg], each: {inclination: 135 deg, crank: 1 m, rod: 4 m}}"
+    assert [one.inclination for one in loads(text).cylinders] == [135, -135]
+
+
+def test_a_firing_order_beside_a_list_needs_not_begin_with_1() -> None:
+    rows = "\n".join("  - {stroke: 80 mm, rod_ratio: 4}" for _ in range(3))
+    machine = loads(f"firing_order: 2-3-1\ncylinders:\n{rows}\n")
+    assert [one.crank_position for one in machine.cylinders] == [0, 120, 240]
+
+
+def test_a_cylinder_is_like_another_but_for_what_stands_there() -> None:
+    machine = loads(
+        "cylinders:\n"
+        "  - {name: HP, crank: 400 mm, rod: 2 m, bore: 450 mm, masses: {piston: 100 kg}}\n"
+        "  - {like: HP, stroke: 600 mm, crank_position: 90 deg}\n"
+        "  - {name: LP, like: cylinder 2, rod_ratio: 5, bore: 700 mm}\n"
+    )
+    _, second, low = machine.cylinders
+    assert [one.name for one in machine.cylinders] == ["HP", "cylinder 2", "LP"]
+    assert (second.mechanism.crank, second.mechanism.rod, second.pistons[0].bore) == (0.3, 2, 0.45)  # type: ignore[attr-defined]
+    assert (low.mechanism.rod, low.pistons[0].bore, low.crank_position) == (1.5, 0.7, 90)  # type: ignore[attr-defined]
+    assert low.masses is not None
+    assert low.masses.parts == 100
+
+
+def test_equal_cylinders_are_those_written_out() -> None:
+    keys = "stroke: 80 mm, rod_ratio: 4, bore: 70 mm, masses: {piston: 2 kg}"
+    out = "\n".join(f"  - {{{keys}, crank_position: {120 * i} deg, axial_position: {i} m}}" for i in range(3))
+    at_once = loads(f"name: a\ncylinders: {{count: 3, firing_order: 1-2-3, spacing: 1 m, each: {{{keys}}}}}")
+    assert _numbers(at_once) == _numbers(loads(f"name: a\ncylinders:\n{out}"))
+
+
+def _numbers(machine: Machine) -> list[tuple[object, ...]]:
+    return [
+        (one.name, one.crank_position, one.axial_position, one.mechanism.crank, one.pistons[0].bore, one.masses.parts)  # type: ignore[union-attr]
+        for one in machine.cylinders
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (f"cylinders: {{count: 4, {EACH}}}", "cylinders: 'firing_order' is missing: where the cranks stand"),
+        (
+            f"cylinders: {{count: 4, firing_order: 1-3-2, {EACH}}}",
+            "cylinders.firing_order: it names 3 cylinders, the machine has 4",
+        ),
+        (f"cylinders: {{count: 4, firing_order: 1-3-3-2, {EACH}}}", "cylinder 3 stands twice in 1-3-3-2"),
+        (f"cylinders: {{count: 4, firing_order: 1-3-5-2, {EACH}}}", "cylinder 4 is missing in 1-3-5-2"),
+        (f"cylinders: {{count: 4, firing_order: 1:3:4:2, {EACH}}}", "such as '1-3-4-2', got '1:3:4:2'"),
+        (
+            f"firing_order: 1-2\ncylinders: {{count: 2, firing_order: 1-2, {EACH}}}",
+            "1:15: firing_order: a firing order also stands in 'cylinders'",
+        ),
+        (
+            f"cylinders: {{count: 3, bank_angles: [0 deg, 90 deg], {EACH}}}",
+            "cylinders.bank_angles: 2 angles for 3 cylinders",
+        ),
+        (
+            "firing_order: 1-2\ncylinders:\n- {stroke: 8 m, rod_ratio: 4}\n- {like: cylinder 1, crank_position: 9 deg}",
+            "4:38: cylinders[1].crank_position: 'firing_order' sets the crank positions",
+        ),
+        (
+            "cylinders:\n- {name: HP, stroke: 8 mm, rod_ratio: 4}\n- {like: PH}",
+            "3:10: cylinders[1].like: no cylinder above this one is called 'PH'; above are HP",
+        ),
+        ("cylinders:\n- {like: cylinder 1}", "cylinders[0].like: no cylinder above this one is called 'cylinder 1'"),
+        # told once, where it stands, not in every cylinder that is like it
+        (
+            "cylinders:\n- {stroke: 8, rod_ratio: 4}\n- {like: cylinder 1}\n- {like: cylinder 2}",
+            "2:12: cylinders[0].stroke: 8 has no unit",
+        ),
+        (
+            "cycle: four-stroke\ncylinders: {count: 2, firing_order: 1-2, each: {stroke: 8 mm, rod_ratio: 4, bore: 1 m,"
+            " indicator: {head_end: {unit: bar, expansion: [[0, 1], [1, 1]], compression: [[1, 1], [0, 1]]}}}}",
+            "cylinders.each.indicator.head_end: a four-stroke cycle needs",
+        ),
+        (
+            "cylinders:\n- {crank: 1 m, rod: 4 m}\n- {like: cylinder 1, crank: 5 m}",
+            "3:3: cylinders[1].rod: 4000 mm is shorter than the crank (5000 mm)",
+        ),
+        (f"bore: 1 m\ncylinders: {{count: 1, {EACH}}}", "belongs to a cylinder; move it into 'cylinders.each'"),
+    ],
+)
+def test_what_is_wrong_is_told_once(text: str, message: str) -> None:
+    assert re.search(re.escape(message), refused(text))
+
+
+def test_the_schema_takes_them() -> None:
+    validator = jsonschema.Draft7Validator(json_schema())
+    for text in (
+        FOUR,
+        "cylinders:\n- {mechanism: four-bar, crank: 1 m, coupler: 4 m, rocker: 4 m, frame: 4 m}\n- {like: cylinder 1}",
+        "cylinders:\n- {crank: 1 m, rod: 4 m}\n- {like: cylinder 1, bore: 5 m}\nfiring_order: 1-2",
+    ):
+        assert [error.message for error in validator.iter_errors(yaml.safe_load(text))] == []
+    assert not validator.is_valid({"cylinders": {"count": 4}})
+    assert not validator.is_valid({"cylinders": [{"like": "A", "boore": "5 m"}]})
