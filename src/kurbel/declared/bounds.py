@@ -41,6 +41,7 @@ SIZES: dict[str, tuple[float, float]] = {
     "stiffness": (1e-12, 1e18),
     "damping": (1e-15, 1e18),
     "pressure_velocity": (0, 1e18),
+    "spring": (1e-15, 1e3),
     "ratio": (1e-15, 1e15),
 }
 """Kind -> the smallest size above 0, and the largest, in the base of the kind; a value may be 0, and of either sign.

@@ -45,6 +45,10 @@ class Form(ABC):
         """Return in a few words what is written for a key, for the page of symbols."""
         return self.expected() if self.shape is str else "a mapping"
 
+    def suits(self, value: Any) -> bool:
+        """Return whether a value of the right shape looks like one of this form."""
+        return True
+
     def out_of_bounds(self, value: Any) -> str:
         """Return in what way a value is too small or too large, with the bound; '' when it is not."""
         return ""
@@ -195,6 +199,6 @@ class Described:
         return cls(*args, **values)
 
     @staticmethod
-    def faults_of_key(name: str, value: Any) -> Iterable[Fault]:
-        """Return what is wrong with the value of one key, whatever the others say."""
+    def faults_of_keys(values: Mapping[str, Any]) -> Iterable[Fault]:
+        """Return what is wrong with the values that could be read, where others could not be."""
         return ()

@@ -28,6 +28,7 @@ SI = {
     "stiffness": "N m/rad",
     "damping": "N m s/rad",
     "pressure_velocity": "W/m^2",
+    "spring": "m/Pa",
     "ratio": "",
 }
 TECHNICAL = SI | {
@@ -83,6 +84,7 @@ _TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3}
 """Base value from which a larger unit is taken, where that is not one of the unit itself."""
 
 _IN_MESSAGES = TECHNICAL | {
+    "spring": "mm/at",
     "force": "N",
     "pressure": "bar",
     "stress": "N/mm2",

@@ -137,6 +137,12 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         | {"N m s/rad": (1, 1), "Nm s/rad": (1, 1), "kN m s/rad": (1e3, 1)}
         | {"N m s": (1, 1), "Nm s": (1, 1), "kN m s": (1e3, 1), "lbf ft s/rad": (_LBF * 3048, 1e4)}
     ),
+    "spring": lambda: (
+        _product(
+            {"mm": (1, 1e3), "cm": (1, 1e2), "m": (1, 1), "in": (254, 1e4)}, {**_PRESSURE, **_POUNDS_OF_FORCE}, "/"
+        )
+        | {f"{name}/kgf/cm2": (1, down * 98066.5) for name, down in (("mm", 1e3), ("cm", 1e2))}
+    ),
     "pressure_velocity": lambda: {
         "W/m2": (1, 1),
         "N/mm2 m/s": (1e6, 1),
@@ -273,6 +279,7 @@ def _unit_example(kind: str) -> str:
         "speed": "rpm",
         "torque": "N m",
         "gd2": "kgf m2",
+        "spring": "mm/at",
         "inertia": "kg m2",
     }.get(kind, next(iter(_units_of(kind))))
 

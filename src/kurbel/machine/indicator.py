@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName
@@ -11,6 +12,11 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, Path, refuse
+from kurbel.machine.rectangle import Rectangular
+
+if TYPE_CHECKING:
+    from kurbel.machine.drawn import Drawn
+    from kurbel.machine.rectangle import Rectangle
 
 CLEARANCE = Number(least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
@@ -50,16 +56,32 @@ class Card(Described):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
     interpolate: `linear`, or `polytropic`: straight in log p over log V, which needs the clearance volume over
-    the stroke volume. `notes` tells what was tidied up.
+    the stroke volume. `notes` tells what was tidied up; drawn: whether its points count from an atmospheric line.
     """
 
     lines: tuple[Line, ...]
     interpolate: str = "linear"
     clearance: float | None = None
     notes: tuple[str, ...] = ()
+    drawn: bool = False
 
     KEYS: ClassVar[Keys] = {
-        "unit": Key(UnitName("pressure"), "Unit of the pressures", required=True),
+        "unit": Key(UnitName("pressure"), "Unit of the pressures; or give `drawn`", required=True, example="bar"),
+        "drawn": Key(
+            Record("kurbel.machine.drawn:Drawn"),
+            "The paper of the card: all points are then millimetres, from the card's own dead centre and from the "
+            "atmospheric line",
+            instead="unit",
+        ),
+        "area": Key(
+            Physical("area", least=0), "Area by planimeter, instead of the lines of a drawn card", needs="drawn"
+        ),
+        "mean_height": Key(
+            Physical("length", least=0),
+            "Mean height by planimeter, instead of the lines of a drawn card",
+            instead="area",
+            needs="drawn",
+        ),
         "expansion": Key(Points("stroke fraction", "pressure"), "Line while the burnt or admitted gas expands"),
         "compression": Key(Points("stroke fraction", "pressure"), "Line while the chamber is compressed or empties"),
         "intake": Key(Points("stroke fraction", "pressure"), "Suction line of a four-stroke cycle"),
@@ -70,34 +92,38 @@ class Card(Described):
 
     @classmethod
     def of_keys(
-        cls, unit: Factor, interpolate: str = "linear", clearance: float | None = None, **given: list[Point]
-    ) -> Card:
+        cls,
+        unit: Factor | None = None,
+        drawn: Drawn | None = None,
+        interpolate: str = "linear",
+        clearance: float | None = None,
+        **given: Any,
+    ) -> Card | Rectangle:
         """Return the card that these keys of a machine file describe; raises RuleError with every fault."""
-        cycle = "four-stroke" if given.keys() & {"intake", "exhaust"} else "two-stroke"
-        faults = [
-            Fault((), f"the '{name}' line of the {cycle} card is missing")
-            for name in STROKES[cycle]
-            if name not in given
-        ]
-        drawn = [(name, given[name], index % 2) for index, name in enumerate(STROKES[cycle]) if name in given]
-        faults += [fault for name, points, _ in drawn for fault in cls.faults_of_key(name, points)]
+        if drawn and given.keys() & {"area", "mean_height"}:
+            return _by_planimeter(drawn, **given)
+        factor = drawn.unit if drawn else unit or (1, 1)
+        whole = drawn.whole if drawn else 1.0
+        faults = [*_missing_lines(given), *_all_line_faults(given, whole)]
         if interpolate == "polytropic" and clearance is None:
             faults.append(Fault(("interpolate",), "'polytropic' needs the 'clearance' volume over the stroke volume"))
-        for name, points, _ in drawn:
-            faults += size_faults(points, unit, "pressure", (name,))
+        for name, points in given.items():
+            faults += size_faults(points, factor, "pressure", (name,))
         refuse(*faults)
-        lines = tuple(_line(name, points, unit, start) for name, points, start in drawn)
+        names = STROKES[_cycle_of(given)]
+        lines = tuple(_line(name, given[name], factor, whole, index % 2) for index, name in enumerate(names))
         notes = tuple(
-            f"{name}: a point given twice counts once"
-            for (name, points, _), line in zip(drawn, lines)
-            if len(line.fractions) < len(points)
+            f"{line.name}: a point given twice counts once"
+            for line in lines
+            if len(line.fractions) < len(given[line.name])
         )
-        return cls(lines, interpolate, clearance, notes)
+        return cls(lines, interpolate, clearance, notes, drawn is not None)
 
     @staticmethod
-    def faults_of_key(name: str, value: Any) -> list[Fault]:
-        """Return what is wrong with the line under one key, whatever the others say."""
-        return _line_faults(name, value) if isinstance(value, list) else []
+    def faults_of_keys(values: Mapping[str, Any]) -> list[Fault]:
+        """Return what is wrong with the lines that could be read, where others could not be."""
+        lines = {name: value for name, value in values.items() if isinstance(value, list)}
+        return [] if "drawn" in values else _all_line_faults(lines, 1.0)
 
     @property
     def cycles(self) -> tuple[str, ...]:
@@ -117,40 +143,66 @@ class Card(Described):
         return ""
 
 
+def _cycle_of(given: Iterable[str]) -> str:
+    return "four-stroke" if {"intake", "exhaust"} & set(given) else "two-stroke"
+
+
+def _missing_lines(given: Mapping[str, Any]) -> list[Fault]:
+    cycle = _cycle_of(given)
+    missing = [name for name in STROKES[cycle] if name not in given]
+    return [Fault((), f"the '{name}' line of the {cycle} card is missing") for name in missing]
+
+
+def _by_planimeter(drawn: Drawn, **given: Any) -> Rectangle:
+    lines = [name for name in given if name not in ("area", "mean_height")]
+    refuse(*(Fault((name,), "the lines have an area of their own; leave out the one by planimeter") for name in lines))
+    return drawn.rectangle(**given)
+
+
 def _runs_forward(points: list[Point]) -> bool:
     return points[0][0] <= points[-1][0]
 
 
-def _line(name: str, points: list[Point], unit: Factor, start: int) -> Line:
+def _line(name: str, points: list[Point], unit: Factor, whole: float, start: int) -> Line:
     """Return one line in process order, its pressures in Pa."""
     up, down = unit
     ordered = points if _runs_forward(points) == (start == 0) else points[::-1]
     kept = [point for i, point in enumerate(ordered) if i == 0 or point != ordered[i - 1]]
-    return Line(name, tuple(x for x, _ in kept), tuple(p * up / down for _, p in kept), start)
+    return Line(name, tuple(x / whole for x, _ in kept), tuple(p * up / down for _, p in kept), start)
 
 
-def _line_faults(name: str, points: list[Point]) -> list[Fault]:
-    """Return what keeps a line from running once through the whole stroke."""
-    beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= 1]
-    if not beyond:
-        return _order_faults(name, points)
-    # told once: where there are more, they are of the same sort
-    first = points[beyond[0]][0]
-    hint = f"; write {first / 100:g} here if the line is in percent" if 1 < first <= 100 and len(beyond) > 1 else ""
-    return [Fault((name, beyond[0]), f"{first:g} is no fraction of the stroke; fractions run from 0 to 1{hint}")]
+def _all_line_faults(lines: Mapping[str, list[Point]], whole: float) -> list[Fault]:
+    """Return what keeps lines from running once through the whole stroke; points that are not on it are told once."""
+    faults = []
+    for name, points in lines.items():
+        beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= whole]
+        if beyond:
+            return [Fault((name, beyond[0]), _beyond(points[beyond[0]][0], whole, len(beyond) > 1))]
+        faults += _order_faults(name, points, whole)
+    return faults
 
 
-def _order_faults(name: str, points: list[Point]) -> list[Fault]:
+def _beyond(x: float, whole: float, several: bool) -> str:
+    if whole != 1:
+        return f"{x:g} mm is not on the card, which is {whole:g} mm long; its own dead centre is at 0"
+    hint = f"; write {x / 100:g} here if the line is in percent" if 1 < x <= 100 and several else ""
+    return f"{x:g} is no fraction of the stroke; fractions run from 0 to 1{hint}"
+
+
+def _order_faults(name: str, points: list[Point], whole: float) -> list[Fault]:
     forward = _runs_forward(points)
-    fractions = [x for x, _ in points]
-    low, high = (fractions[0], fractions[-1]) if forward else (fractions[-1], fractions[0])
-    if (low, high) != (0.0, 1.0):
-        return [Fault((name,), f"the line must reach from fraction 0 to 1; it runs from {low:g} to {high:g}")]
+    word, unit = ("", " mm") if whole != 1 else ("fraction ", "")
+    along = [x for x, _ in points]
+    low, high = (along[0], along[-1]) if forward else (along[-1], along[0])
+    if (low, high) != (0.0, whole):
+        own = "0 is this chamber's own dead centre, where it is smallest"
+        reach = f"the line must reach from {word}0 to {whole:g}{unit}; it runs from {low:g} to {high:g}; {own}"
+        return [Fault((name,), reach)]
     for i in range(1, len(points)):
-        if (fractions[i] < fractions[i - 1]) if forward else (fractions[i] > fractions[i - 1]):
-            return [Fault((name, i), f"fraction {fractions[i]:g} after {fractions[i - 1]:g}: the line turns back")]
-        if i >= 2 and fractions[i] == fractions[i - 2] and points[i - 2] != points[i - 1] != points[i]:
-            return [Fault((name, i), f"three points at fraction {fractions[i]:g}; a jump has two")]
+        if (along[i] < along[i - 1]) if forward else (along[i] > along[i - 1]):
+            return [Fault((name, i), f"{word}{along[i]:g}{unit} after {along[i - 1]:g}{unit}: the line turns back")]
+        if i >= 2 and along[i] == along[i - 2] and points[i - 2] != points[i - 1] != points[i]:
+            return [Fault((name, i), f"three points at {word}{along[i]:g}{unit}; a jump has two")]
     return []
 
 
@@ -175,6 +227,7 @@ class Constant(Described):
 
 _CHAMBER = Keyed(
     cases={
+        "mean_pressure": Rectangular("mean"),
         "constant": Record("kurbel.machine.indicator:Constant"),
         "trace": Record("kurbel.machine_file.trace:Measured"),
         "steam": Record("kurbel.machine.ideal_cards:Steam"),
@@ -184,6 +237,7 @@ _CHAMBER = Keyed(
     },
     otherwise=Record("kurbel.machine.indicator:Card"),
 )
+_ONE_PRESSURE = Rectangular("level")
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,10 +253,15 @@ class Indicator(Described):
 
     KEYS: ClassVar[Keys] = {
         "pressures": Key(Choice(("gauge", "absolute")), "What the pressures count from", absent="gauge"),
-        "head_end": Key(_CHAMBER, "Pressure at the head end", absent="open to the ambient"),
+        "head_end": Key(
+            OneOf(_ONE_PRESSURE, _CHAMBER),
+            "Pressure at the head end: one for all strokes, or a card",
+            absent="open to the ambient",
+        ),
         "crank_end": Key(
-            OneOf(Choice(("mirrored",)), _CHAMBER),
-            "Pressure at the crank end, or `mirrored`: the head end's card from the crank end's dead centre",
+            OneOf(Choice(("mirrored",)), _ONE_PRESSURE, _CHAMBER),
+            "Pressure at the crank end, a card counted from its own dead centre, the outer one; or `mirrored`: the "
+            "head end's card, so counted",
             absent="open to the ambient",
         ),
     }
@@ -215,6 +274,9 @@ class Indicator(Described):
         if head_end is None and crank_end in (None, "mirrored"):
             path: Path = () if crank_end is None else ("crank_end",)
             refuse(Fault(path, "the indicator shows no pressure; give 'head_end'"))
+        for end, chamber in (("head_end", head_end), ("crank_end", crank_end)):
+            if pressures == "absolute" and getattr(chamber, "drawn", False):
+                refuse(Fault((end, "drawn"), "a drawn card counts from the atmospheric line; write 'pressures: gauge'"))
         # a mirrored card is the same card: each chamber's fractions count from its own dead centre
         other = head_end if isinstance(crank_end, str) else crank_end
         return cls(head_end, other, pressures == "absolute")

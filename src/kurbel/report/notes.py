@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.machine import Cylinder, Machine
+from kurbel.report.card_ends import card_end_notes
 from kurbel.report.sizes import size_notes, speed_notes
 
 if TYPE_CHECKING:
@@ -29,6 +30,12 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
         Note(cylinder.name, f"{where}: {text}")
         for cylinder, where, chamber in chambers
         for text in getattr(chamber, "notes", ())
+    ]
+    found += [
+        Note(cylinder.name, text)
+        for cylinder in machine.cylinders
+        for piston in cylinder.pistons
+        for text in card_end_notes(piston)
     ]
     found += [Note(None, text) for text in speed_notes(machine)]
     found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in size_notes(cylinder)]

@@ -107,8 +107,7 @@ class Record(Form):
         """Make the record, or note what it has to say of single keys where others could not be read."""
         cls = self.load()
         if REFUSED in values.values():
-            faults = [fault for name, value in values.items() for fault in cls.faults_of_key(name, value)]
-            return reading.refuse(path, RuleError(*faults))
+            return reading.refuse(path, RuleError(*cls.faults_of_keys(values)))
         try:
             born = cls.from_keys(**values)
         except ArithmeticError:

@@ -208,6 +208,9 @@ class Choice(Scalar):
     def __init__(self, words: tuple[str, ...]) -> None:
         self.words = words
 
+    def suits(self, value: Any) -> bool:
+        return not NUMBER.match(str(value))
+
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Take one of the words, of which one may be a blank or a tab."""
         return str(value) if isinstance(value, str) and value in self.words else super().take(reading, value, path)

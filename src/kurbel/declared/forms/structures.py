@@ -52,7 +52,7 @@ class Listing(Form):
 
 
 class OneOf(Form):
-    """Several forms that differ in shape (text or number, list, mapping); the first of the right shape reads it."""
+    """Several forms that differ in shape (text, list, mapping), or word and number; the first that suits reads it."""
 
     def __init__(self, *forms: Form) -> None:
         self.forms = forms
@@ -72,9 +72,9 @@ class OneOf(Form):
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read a value by the first form that has its shape."""
         shape = type(value) if isinstance(value, (dict, list)) else str
-        for form in self.forms:
-            if form.shape is shape:
-                return form.read(reading, value, path)
+        alike = [form for form in self.forms if form.shape is shape]
+        if alike:  # of a word and a number, the one that it looks like
+            return next((form for form in alike if form.suits(value)), alike[0]).read(reading, value, path)
         return refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
 
     def parts(self) -> Iterable[tuple[str, Form]]:
@@ -123,7 +123,8 @@ class Keyed(Form):
     def _misspelt(self, reading: Reading, mapping: Tree, path: Path) -> bool:
         """Note a fault where an unknown key is nearly a telling one, and return whether there was any."""
         known = tuple(self.otherwise.keys)
-        found = {name: near(name, tuple(self.cases)) for name in mapping if name not in known and not near(name, known)}
+        strange = [name for name in mapping if name not in known and not reading.where_it_belongs(name)]
+        found = {name: near(name, tuple(self.cases)) for name in strange if not near(name, known)}
         for name, meant in found.items():
             if meant:
                 reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)

@@ -73,6 +73,7 @@ _CARDS = "kurbel.solver.pressure.card:CardPressure"
 _IDEAL = "kurbel.solver.pressure.ideal:ideal_pressure"
 _KINDS = {
     "kurbel.machine.indicator:Card": _CARDS,
+    "kurbel.machine.rectangle:Rectangle": "kurbel.solver.pressure.card:rectangle_pressure",
     "kurbel.machine.trace:Trace": "kurbel.solver.pressure.trace:TracePressure",
     "kurbel.machine.ideal_cards:Steam": _IDEAL,
     "kurbel.machine.ideal_cards:Compressor": _IDEAL,

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.machine.indicator import Card, Line
+from kurbel.machine.angle_points import CYCLES
+from kurbel.machine.indicator import STROKES, Card, Line
 from kurbel.mechanisms import fan
 from kurbel.numerics.jet import once_each
 from kurbel.solver.pressure import Setting
@@ -19,6 +20,7 @@ from kurbel.solver.pressure.segments import Process, Segment, Stroke, polytropic
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
+    from kurbel.machine.rectangle import Rectangle
 
 
 class ProcessPressure:
@@ -126,6 +128,16 @@ class CardPressure(ProcessPressure):
 
     def __init__(self, card: Card, setting: Setting) -> None:
         super().__init__(card_process(card, setting.lift), setting)
+
+
+def rectangle_pressure(card: Rectangle, setting: Setting) -> ProcessPressure:
+    """Return the pressure of a rectangular card: the mean pressure stands on the stroke that drives, or is driven."""
+    level = setting.base if card.level is None else card.level
+    above = {"expansion": max(card.mean, 0.0), "compression": max(-card.mean, 0.0)}
+    names = next(names for cycle, names in STROKES.items() if 360.0 * CYCLES[cycle] == setting.cycle)
+    pressures = [level + above.get(name, 0.0) for name in names]
+    strokes = tuple((Segment(float(i % 2), p, float(1 - i % 2), p),) for i, p in enumerate(pressures))
+    return ProcessPressure(Process(strokes), setting)
 
 
 def card_process(card: Card, lift: float) -> Process:

@@ -1,0 +1,41 @@
+"""Cards as the indicator drew them: millimetres on the paper, by the length of the card and the scale of its spring."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.units import Factor
+from kurbel.machine.rectangle import Rectangle
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn(Described):
+    """The paper of a card: its length in m, and the scale of the spring in m/Pa."""
+
+    length: float
+    spring: float
+
+    KEYS: ClassVar[Keys] = {
+        "length": Key(Physical("length", above=0), "Length of the card on the paper", "l", required=True),
+        "spring": Key(
+            Physical("spring", above=0), "Scale of the spring: height on the paper over pressure", required=True
+        ),
+    }
+
+    @property
+    def unit(self) -> Factor:
+        """What turns millimetres above the atmospheric line into Pa."""
+        return 1.0, 1e3 * self.spring
+
+    @property
+    def whole(self) -> float:
+        """The length of the card in mm."""
+        return round(1e3 * self.length, 9)
+
+    def rectangle(self, mean_height: float | None = None, area: float | None = None) -> Rectangle:
+        """Return the card of the mean height in m, or of the area in m² by planimeter: p_i = a/(l · spring)."""
+        height = (area or 0.0) / self.length if mean_height is None else mean_height
+        return Rectangle(mean=height / self.spring)

@@ -1,0 +1,140 @@
+"""Cards as people have them: one pressure, millimetres on paper, a planimeter, a mean pressure."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from click.testing import CliRunner
+
+from kurbel import loads, solve
+from kurbel.cli import kurbel
+from kurbel.errors import MachineFileError
+from kurbel.solver.cylinder.forces import CylinderForces
+
+ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
+AREA, STROKE, AT = math.pi / 4 * 0.45**2, 0.8, 98066.5
+LINES = "expansion: [[0, 57], [32.2, 57], [92, 13.2]], compression: [[92, 7.2], [0, 57]]"
+PAPER = "drawn: {length: 92 mm, spring: 6 mm/at}"
+
+
+def forces_of(text: str) -> CylinderForces:
+    (forces,) = solve(loads(ENGINE + text)).cylinders
+    return forces
+
+
+def check(text: str) -> str:
+    return CliRunner().invoke(kurbel, ["check", "-"], input=ENGINE + text).stdout
+
+
+def refused(text: str) -> str:
+    with pytest.raises(MachineFileError) as caught:
+        loads(ENGINE + text)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("cycle", ["two-stroke", "four-stroke"])
+@pytest.mark.parametrize("end", ["head_end", "crank_end"])
+def test_one_pressure_stands_on_every_stroke(end: str, cycle: str) -> None:
+    forces = forces_of(f"cycle: {cycle}\nindicator: {{{end}: 10 bar}}\n")
+    state = forces.at([0, 10, 170, 190, 350])
+    gauge = getattr(state, end.replace("head_end", "p_head").replace("crank_end", "p_crank"))
+    assert gauge.tolist() == [1e6] * 5
+    assert forces.work == 0
+
+
+def test_one_absolute_pressure() -> None:
+    forces = forces_of("ambient: 1 bar\nindicator: {pressures: absolute, head_end: 10 bar}\n")
+    assert forces.at([90]).P[0] == pytest.approx(AREA * 9e5, rel=1e-14)
+    assert "below the vacuum" in refused("indicator: {head_end: -2 bar}\n")
+
+
+@pytest.mark.parametrize(("cycle", "turns"), [("two-stroke", 1), ("four-stroke", 2)])
+@pytest.mark.parametrize("kind", ["gauge", "absolute"])
+@pytest.mark.parametrize("mean", [2.4, -2.4])
+def test_a_mean_pressure_keeps_the_work(cycle: str, turns: int, kind: str, mean: float) -> None:
+    """Its work is p_i A s in every cycle, by the definition of p_i."""
+    indicator = f"indicator: {{pressures: {kind}, head_end: {{mean_pressure: {mean} bar}}}}\n"
+    forces = forces_of(f"cycle: {cycle}\n{indicator}")
+    assert forces.work == pytest.approx(mean * 1e5 * AREA * STROKE, rel=1e-13)
+    assert forces.power == pytest.approx(forces.work / turns, rel=1e-15)
+    loaded = 90 if mean > 0 else 360 * turns - 90
+    assert forces.at([loaded]).P[0] == pytest.approx(AREA * abs(mean) * 1e5, rel=1e-13)
+    assert abs(forces.energy_residual or 0) < 1e-13
+    assert "rectangular card of the mean pressure" in check(f"cycle: {cycle}\n{indicator}")
+
+
+def test_points_on_paper() -> None:
+    """57 mm by a spring of 6 mm/at are 9.5 at; 32.2 mm of 92 mm are 0.35 of the stroke."""
+    drawn = forces_of(f"indicator: {{head_end: {{{PAPER}, {LINES}}}}}\n")
+    written = forces_of(
+        "indicator: {head_end: {unit: at, expansion: [[0, 9.5], [0.35, 9.5], [1, 2.2]],"
+        " compression: [[1, 1.2], [0, 9.5]]}}\n"
+    )
+    assert drawn.work == pytest.approx(written.work, rel=1e-14)
+    assert drawn.work == pytest.approx((9.5 * 0.35 + 11.7 / 2 * 0.65 - 10.7 / 2) * AT * AREA * STROKE, rel=1e-13)
+    assert drawn.at([60]).p_head == pytest.approx(written.at([60]).p_head, rel=1e-14)
+
+
+@pytest.mark.parametrize("planimeter", ["area: 1104 mm2", "mean_height: 12 mm", "area: 11.04 cm2"])
+def test_a_planimeter_gives_the_mean_pressure(planimeter: str) -> None:
+    """1104 mm² over 92 mm are 12 mm, by a spring of 6 mm/at 2 at."""
+    text = f"indicator: {{head_end: {{{PAPER}, {planimeter}}}}}\n"
+    assert forces_of(text).mean_pressure == pytest.approx(2 * AT, rel=1e-13)
+    assert "rectangular card" in check(text)
+
+
+@pytest.mark.parametrize("spring", ["1/40 in/psi", "0.025 in/lb/in2"])
+def test_a_spring_in_inches(spring: str) -> None:
+    """A spring of 40 psi to the inch: 25.4 mm are 40 psi."""
+    text = f"indicator: {{head_end: {{drawn: {{length: 4 in, spring: {spring}}}, mean_height: 25.4 mm}}}}\n"
+    assert forces_of(text).mean_pressure == pytest.approx(40 * 6894.757293168361, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("card", "says"),
+    [
+        (f"{PAPER}, {LINES.replace('32.2', '132.2')}", "132.2 mm is not on the card, which is 92 mm long"),
+        (f"{PAPER}, {LINES.replace('[0, 57], [32.2', '[2, 57], [32.2')}", "must reach from 0 to 92 mm"),
+        (f"{PAPER}, {LINES}, area: 900 mm2", "leave out the one by planimeter"),
+        (f"{PAPER}, unit: bar, {LINES}", "'unit' and 'drawn' say the same thing"),
+        (f"{PAPER}", "the 'expansion' line of the two-stroke card is missing"),
+        ("area: 900 mm2", "'area' needs 'drawn' beside it"),
+        (f"{PAPER}, area: 9 cm2, mean_height: 9 mm", "'area' and 'mean_height' say the same thing"),
+        (PAPER.replace("6 mm/at", "6 mm") + f", {LINES}", "unknown spring unit 'mm'"),
+    ],
+)
+def test_what_cannot_be_drawn(card: str, says: str) -> None:
+    assert says in refused(f"indicator: {{head_end: {{{card}}}}}\n")
+
+
+def test_a_drawn_card_counts_from_the_atmospheric_line() -> None:
+    said = refused(f"indicator: {{pressures: absolute, head_end: {{{PAPER}, {LINES}}}}}\n")
+    assert "indicator.head_end.drawn: a drawn card counts from the atmospheric line" in said
+
+
+def test_a_line_that_misses_its_end_says_whose_dead_centre_is_meant() -> None:
+    said = refused("indicator: {crank_end: {unit: at, expansion: [[0, 5], [0.9, 1]], compression: [[1, 1], [0, 5]]}}\n")
+    assert "0 is this chamber's own dead centre" in said
+
+
+HEAD = "{unit: at, expansion: [[0, 5], [0.3, 5], [1, 1]], compression: [[1, 0.2], [0.2, 0.2], [0, 5]]}"
+TURNED = "{unit: at, expansion: [[1, 5], [0.7, 5], [0, 1]], compression: [[0, 0.2], [0.8, 0.2], [1, 5]]}"
+
+
+@pytest.mark.parametrize(
+    ("head", "crank", "told"),
+    [
+        (HEAD, TURNED, "crank end"),
+        (TURNED, HEAD, "head end"),
+        (HEAD, HEAD, ""),
+        (HEAD, "mirrored", ""),
+        (HEAD, "2 at", ""),
+        ("{constant: {expansion: -0.4 at, compression: 5 at}}", HEAD, ""),
+    ],
+)
+def test_a_card_drawn_from_the_other_dead_centre_is_told(head: str, crank: str, told: str) -> None:
+    stdout = " ".join(check(f"indicator: {{head_end: {head}, crank_end: {crank}}}\n").split())
+    found = "both ends have their high pressure at the same crank angle" in stdout
+    assert found == bool(told)
+    assert not told or f"piston, {told}: both ends" in stdout
