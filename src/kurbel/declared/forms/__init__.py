@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from kurbel.declared.forms.points import Points
 from kurbel.declared.forms.records import Inline, Record, Variant
-from kurbel.declared.forms.scalars import Choice, Count, FilePath, Number, Physical, Text, UnitName
+from kurbel.declared.forms.scalars import Choice, Count, FilePath, Number, Physical, Text, Truth, UnitName
 from kurbel.declared.forms.structures import Keyed, Limits, Listing, OneOf
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "Points",
     "Record",
     "Text",
+    "Truth",
     "UnitName",
     "Variant",
 ]
