@@ -47,9 +47,7 @@ def test_no_section_of_the_pin_is_strained_more_than_its_places(
 ) -> None:
     found = body(D, T, (G_D, G_T), flywheel_position=f)
     u = 0.11 * along
-    before, beyond = (
-        float(np.hypot(*moments)[0]) for moments in (found.moments_before_pin(0.4 - u), found.moments_beyond_pin(u))
-    )
+    before, beyond = (float(np.hypot(*moments)[0]) for moments in (found.moments_at(-u), found.moments_at(u)))
     worst = max(place.stresses(found).normal[0] for place in places(found.shaft) if place.part == "pin")
     assert max(before, beyond) <= worst * math.pi * 0.18**3 / 32 * (1 + 1e-12) + 1e-9
 

@@ -1,4 +1,4 @@
-"""One crank throw between two bearings, with a flywheel (Öl- und Gasmaschinen)."""
+"""One crank throw between two bearings or overhung beyond one, with a flywheel (Öl- und Gasmaschinen)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from kurbel.declared.forms import Physical
+from kurbel.declared.forms import Physical, Truth
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
@@ -25,7 +25,7 @@ class Crankshaft(Described):
 
     a, b: from the middle of the pin to A and B; web_distance: from there to the middle of each web; flywheel_position:
     from B, positive outward, negative between the bearings; flywheel_mass in kg; allowable stresses in Pa or None.
-    Without the journals' diameter they are not examined.
+    Without the journals' diameter they are not examined. overhung: the pin stands outside of A, on one web beside it.
     """
 
     a: float
@@ -41,6 +41,7 @@ class Crankshaft(Described):
     flywheel_position: float = 0.0
     allowable_bending: float | None = None
     allowable_torsion: float | None = None
+    overhung: bool = False
 
     KEYS: ClassVar[Keys] = {
         "a": _length("From the middle of the crank pin to bearing A, away from the flywheel", "a"),
@@ -67,6 +68,9 @@ class Crankshaft(Described):
         "allowable_torsion": Key(
             Physical("stress", above=0), "Allowable stress in torsion", "k_d", absent="no safety figures"
         ),
+        "overhung": Key(
+            Truth(), "Whether the pin stands outside of bearing A, at the end of the shaft", absent="false"
+        ),
     }
 
     def __post_init__(self) -> None:
@@ -83,18 +87,20 @@ class Crankshaft(Described):
             )
         if self.web_distance <= self.web_thickness / 2:
             more = f"it must be more than half the thickness ({thickness})"
-            yield self._wrong("web_distance", f"leaves no pin between the webs; {more}")
+            yield self._wrong("web_distance", f"leaves no pin {self._beside_pin}; {more}")
 
     def _place_faults(self) -> Iterator[Fault]:
-        end, span = show(self._web_end, "length"), show(self.a + self.b, "length")
+        end = show(self._web_end, "length")
         for name in ("a", "b"):
             if getattr(self, name) <= self._web_end:
                 inside = f"puts the bearing inside the web ({end} from the pin)"
                 yield self._wrong(name, f"{inside}; measure to the middle of the bearing")
-        if self.flywheel_position <= -(self.a + self.b):
+        if self.overhung and self.b <= self.a:
+            yield self._wrong("b", f"puts B before bearing A ({show(self.a, 'length')}); an overhung pin lies beyond A")
+        elif self.flywheel_position <= -self.span:
             beyond = "lies beyond bearing A; A is the bearing away from the flywheel"
-            yield self._wrong("flywheel_position", f"{beyond}, {span} from B")
-        elif self.flywheel_position <= self._web_end - self.b < 0:
+            yield self._wrong("flywheel_position", f"{beyond}, {show(self.span, 'length')} from B")
+        elif not self.overhung and self.flywheel_position <= self._web_end - self.b < 0:
             room = f"is not between web and bearing B, which leave {show(self.b - self._web_end, 'length')}"
             yield self._wrong("flywheel_position", f"{room}; B is the bearing beside the flywheel")
 
@@ -102,7 +108,7 @@ class Crankshaft(Described):
         """Yield what is wrong with the lengths of pin and journals, beside faults of the places themselves."""
         gap = 2 * self.web_distance - self.web_thickness
         if self.pin_length > _ROUNDED * gap > 0:
-            leave = f"does not fit between the webs, which leave {show(gap, 'length')}"
+            leave = f"does not fit {self._beside_pin}, which leave{'s' * self.overhung} {show(gap, 'length')}"
             yield self._wrong("pin_length", f"{leave}: twice web_distance less web_thickness")
         room, what = min(self._rooms)
         if self.journal_length and self.journal_length / 2 > _ROUNDED * room > 0:
@@ -115,9 +121,26 @@ class Crankshaft(Described):
     def _rooms(self) -> Iterator[tuple[float, str]]:
         """Lengths in m beside the middles of the bearings, with what stands at both ends."""
         yield self.a - self._web_end, "the middle of bearing A and web A"
-        yield self.b - self._web_end, "the middle of bearing B and web B"
+        if self.overhung:
+            yield self.span / 2, "the middle of bearing A and half the way to B"
+        else:
+            yield self.b - self._web_end, "the middle of bearing B and web B"
         if self.flywheel_mass and self.flywheel_position:
             yield abs(self.flywheel_position), "the middles of bearing B and flywheel"
+
+    @property
+    def place_A(self) -> float:
+        """Place of bearing A in m from the middle of the pin, positive toward B: −a, and a for an overhung crank."""
+        return self.a if self.overhung else -self.a
+
+    @property
+    def span(self) -> float:
+        """Distance in m from bearing A to bearing B."""
+        return self.b - self.place_A
+
+    @property
+    def _beside_pin(self) -> str:
+        return "beside the web" if self.overhung else "between the webs"
 
     @property
     def _web_end(self) -> float:

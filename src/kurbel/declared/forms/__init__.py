@@ -6,7 +6,7 @@ from kurbel.declared.forms.alike import Alike
 from kurbel.declared.forms.firing_order import FiringOrder
 from kurbel.declared.forms.points import Points
 from kurbel.declared.forms.records import Inline, Record, Variant
-from kurbel.declared.forms.scalars import Choice, Count, FilePath, Number, Physical, Text, UnitName
+from kurbel.declared.forms.scalars import Choice, Count, FilePath, Number, Physical, Text, Truth, UnitName
 from kurbel.declared.forms.structures import Keyed, Limits, Listing, OneOf
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "Points",
     "Record",
     "Text",
+    "Truth",
     "UnitName",
     "Variant",
 ]

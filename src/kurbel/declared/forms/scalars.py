@@ -231,6 +231,20 @@ class Choice(Scalar):
         return {"enum": list(self.words)}
 
 
+class Truth(Choice):
+    """`true` or `false`; becomes a bool."""
+
+    def __init__(self) -> None:
+        super().__init__(("true", "false"))
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Take one of the two words."""
+        return super().take(reading, value, path) == "true"
+
+    def schema(self, definitions: Schema) -> Schema:
+        return {"type": "boolean"}
+
+
 class FilePath(Scalar):
     """The path of a file, relative to the machine file; becomes a path that can be opened."""
 

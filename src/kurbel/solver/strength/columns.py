@@ -30,12 +30,12 @@ class StrengthColumns(NamedTuple):
     B_T: Array
     sigma_pin: Array
     sigma_web_A: Array
-    sigma_web_B: Array
+    sigma_web_B: Array | None
     sigma_journal_A: Array | None
     sigma_journal_B: Array | None
     mises_pin: Array
     mises_web_A: Array
-    mises_web_B: Array
+    mises_web_B: Array | None
     mises_journal_A: Array | None
     mises_journal_B: Array | None
 

@@ -281,10 +281,10 @@ class CrankshaftStrength:
 
 def _with_kinks(body: FreeBody) -> dict[str, Any]:
     """Return the forces and moments whose magnitudes make stresses: where one passes zero, its magnitude has a kink."""
-    in_plane, twist = body.moments_beyond_pin(body.shaft.web_distance)
-    # web B is bent out of plane as much at the pin as at the shaft
-    ends = (body.A.T - body.pin.T, body.A.T + body.pin.T)
-    found = (*body.pin, *body.A, body.force_in_web_B, in_plane, twist, *ends)
+    in_plane, twist = body.moments_at(body.shaft.web_distance)
+    # the web beyond the pin is bent out of plane as much at the pin as at the shaft
+    ends = (body.before_pin.T - body.pin.T, body.before_pin.T + body.pin.T)
+    found = (*body.pin, *body.A, body.force_beyond_pin, in_plane, twist, *ends)
     return {str(number): force for number, force in enumerate(found)}
 
 

@@ -14,6 +14,9 @@ Along the pin and along each journal the moments run straight from load to load,
 sum is largest at a load or at an end, so that no section between these places is strained more. The force on the pin
 stands in its middle, the forces of the bearings in theirs.
 
+An overhung crank has a pin clamped at its only end, in web A, which is loaded as a web B with nothing before the pin;
+journal A is bent by F and twisted by T r, at the web and in its bearing, and the shaft beyond counts as journal B.
+
 A web is bent out of the plane of the throw most at one end of its arm, at the axis of the pin or at that of the shaft.
 """
 
@@ -82,24 +85,23 @@ def places(shaft: Crankshaft) -> tuple[Place, ...]:
     alpha = bach_factor(shaft.allowable_bending, shaft.allowable_torsion)
     return (
         *(Place("pin", name, 1.0, stresses) for name, stresses in _pin_places(shaft).items()),
-        *_web_places("web_A", alpha, _loads_of_web_A),
-        *_web_places("web_B", alpha, _loads_of_web_B),
+        *(place for part, loads_of in _webs(shaft).items() for place in _web_places(part, alpha, loads_of)),
         *(_journal_places(shaft) if shaft.journal_diameter else ()),
     )
 
 
 def _pin_places(shaft: Crankshaft) -> dict[str, Callable[[FreeBody], Stresses]]:
-    """Return the places of the pin; in its middle M_b = a √(A_T² + A_D²) and M_d = A_T r (G)."""
+    """Return the places of the pin; in its middle M_b = a √(A_T² + A_D²) and M_d = A_T r (G), overhung none."""
     end = shaft.web_distance - shaft.web_thickness / 2  # inner face of a web, from the middle of the pin
 
-    def bent(moments: Vector, body: FreeBody) -> Stresses:
-        return _round(moments, body.A.T * body.crank, shaft.pin_diameter)
+    def bent(u: float) -> Callable[[FreeBody], Stresses]:
+        return lambda body: _round(body.moments_at(u), body.before_pin.T * body.crank, shaft.pin_diameter)
 
-    return {
-        "middle": lambda body: bent(body.moments_before_pin(shaft.a), body),
-        "at web A": lambda body: bent(body.moments_before_pin(shaft.a - end), body),
-        "at web B": lambda body: bent(body.moments_beyond_pin(end), body),
-    }
+    return (
+        {"at web A": bent(end)}
+        if shaft.overhung
+        else {"middle": bent(0), "at web A": bent(-end), "at web B": bent(end)}
+    )
 
 
 def _round(moments: Vector, torque: Any, diameter: float) -> Stresses:
@@ -118,15 +120,22 @@ class _WebLoads(NamedTuple):
     twist: Any
 
 
-def _loads_of_web_A(body: FreeBody) -> _WebLoads:
-    moments = body.moments_before_pin(body.shaft.a - body.shaft.web_distance)
-    return _WebLoads(body.force_in_web_A, moments.D, abs(body.A.T) * body.crank, moments.T)
+def _webs(shaft: Crankshaft) -> dict[str, Callable[[FreeBody], _WebLoads]]:
+    """Return the webs with what loads them; that of an overhung crank lies beyond the pin, toward both bearings."""
+    if shaft.overhung:
+        return {"web_A": _loads_beyond_pin}
+    return {"web_A": _loads_before_pin, "web_B": _loads_beyond_pin}
 
 
-def _loads_of_web_B(body: FreeBody) -> _WebLoads:
-    moments = body.moments_beyond_pin(body.shaft.web_distance)
-    at_pin, at_shaft = abs(body.A.T) * body.crank, abs(body.torque)
-    return _WebLoads(body.force_in_web_B, moments.D, _larger(at_pin, at_shaft), moments.T)
+def _loads_before_pin(body: FreeBody) -> _WebLoads:
+    moments, carried = body.moments_at(-body.shaft.web_distance), body.before_pin
+    return _WebLoads(carried.D, moments.D, abs(carried.T) * body.crank, moments.T)
+
+
+def _loads_beyond_pin(body: FreeBody) -> _WebLoads:
+    moments = body.moments_at(body.shaft.web_distance)
+    at_pin, at_shaft = abs(body.before_pin.T) * body.crank, abs(body.torque)
+    return _WebLoads(body.force_beyond_pin, moments.D, _larger(at_pin, at_shaft), moments.T)
 
 
 def _web_places(part: str, alpha: float, loads_of: Callable[[FreeBody], _WebLoads]) -> tuple[Place, ...]:
@@ -157,20 +166,21 @@ def _journal_places(shaft: Crankshaft) -> tuple[Place, ...]:
     face = shaft.web_distance + shaft.web_thickness / 2  # outer face of a web, from the middle of the pin
 
     def before(body: FreeBody) -> Stresses:
-        return _round(body.moments_before_pin(shaft.a - face), None, diameter)
+        return _round(body.moments_at(-face), None, diameter)
 
     def beyond(place: float) -> Callable[[FreeBody], Stresses]:
-        return lambda body: _round(body.moments_beyond_pin(place), body.torque, diameter)
+        return lambda body: _round(body.moments_at(place), body.torque, diameter)
 
     def in_bearing(body: FreeBody) -> Stresses:
         return _round(body.overhung_moments, body.torque, diameter)
 
     flywheel = shaft.b + shaft.flywheel_position
     outer = {"in bearing": in_bearing} if flywheel >= shaft.b else {"at flywheel": beyond(flywheel)}
-    return (
-        Place("journal_A", "at web", 1.0, before),
-        *(Place("journal_B", name, 1.0, stresses) for name, stresses in ({"at web": beyond(face)} | outer).items()),
-    )
+    if shaft.overhung:
+        journals = {"journal_A": {"at web": beyond(face), "in bearing": beyond(shaft.a)}, "journal_B": outer}
+    else:
+        journals = {"journal_A": {"at web": before}, "journal_B": {"at web": beyond(face)} | outer}
+    return tuple(Place(part, name, 1.0, found) for part, own in journals.items() for name, found in own.items())
 
 
 def _larger(first: Any, second: Any) -> Any:

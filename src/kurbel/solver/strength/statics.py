@@ -9,7 +9,9 @@
       |←────── a ──────→|←─────── b ─────────→|←── f ──→|
 
 Everything is told in the frame that turns with the throw: D from the pin toward the shaft, T in the sense of rotation,
-z along the shaft from A. Forces on bearings count as loads do: a load D on the pin gives A_D and B_D of its own sign.
+u along the shaft from the middle of the pin. Forces on bearings count as loads do: between the bearings a load D on the
+pin gives A_D and B_D of its own sign. An overhung crank has nothing before its pin: bearing A stands at u = +a, between
+its only web and bearing B.
 """
 
 from __future__ import annotations
@@ -67,33 +69,37 @@ class FreeBody:
 
     @cached_property
     def A(self) -> Vector:
-        """Force on bearing A in N: (F b − G f)/(a + b), G: A_p = P b/(a + b)."""
+        """Force on bearing A in N: (F b − G f)/(b − u_A), u_A = −a, overhung a; G: A_p = P b/(a + b)."""
         shaft = self.shaft
-        span, f = shaft.a + shaft.b, shaft.flywheel_position
+        span, f = shaft.span, shaft.flywheel_position
         return Vector(*((F * shaft.b - G * f) / span for F, G in zip(self.pin, self.weight)))
 
     @cached_property
     def B(self) -> Vector:
-        """Force on bearing B in N: (F a + G (a + b + f))/(a + b)."""
+        """Force on bearing B in N: (G (b − u_A + f) − F u_A)/(b − u_A)."""
         shaft = self.shaft
-        span, f = shaft.a + shaft.b, shaft.flywheel_position
-        return Vector(*((F * shaft.a + G * (span + f)) / span for F, G in zip(self.pin, self.weight)))
+        span, f = shaft.span, shaft.flywheel_position
+        return Vector(*((G * (span + f) - F * shaft.place_A) / span for F, G in zip(self.pin, self.weight)))
+
+    @cached_property
+    def before_pin(self) -> Vector:
+        """What stands before the pin, and so is carried through it, in N: the force of bearing A, nothing overhung."""
+        share = 0.0 if self.shaft.overhung else 1.0
+        return Vector(self.A.D * share, self.A.T * share)
 
     @cached_property
     def torque(self) -> Any:
         """Torque T r in N m that web B and the shaft beyond it carry."""
         return self.pin.T * self.crank
 
-    def moments_before_pin(self, z: float) -> Vector:
-        """Return the moments A z in N m about the section at z from A, 0 ≤ z ≤ a, of what lies before it."""
-        return Vector(self.A.D * z, self.A.T * z)
+    def moments_at(self, u: float) -> Vector:
+        """Return the moments in N m about the section at u beyond the pin, of what lies before it.
 
-    def moments_beyond_pin(self, beyond: float) -> Vector:
-        """Return the moments A (a + u) − F u in N m about the section at u = `beyond` the pin, of what lies before it.
-
-        Up to B, or to the flywheel where it stands before B. G: P e − A_p (a + e), with the other sign.
+        A (u − u_A) beyond bearing A, less F u beyond the pin; up to B, or to the flywheel where it stands before B.
+        G: P e − A_p (a + e), with the other sign.
         """
-        return Vector(*(A * (self.shaft.a + beyond) - F * beyond for A, F in zip(self.A, self.pin)))
+        arms = max(u - self.shaft.place_A, 0.0), max(u, 0.0)
+        return Vector(*(A * arms[0] - F * arms[1] for A, F in zip(self.A, self.pin)))
 
     @property
     def overhung_moments(self) -> Vector:
@@ -102,14 +108,12 @@ class FreeBody:
         return Vector(self.weight.D * outside, self.weight.T * outside)
 
     @property
-    def force_in_web_A(self) -> Any:
-        """Force along web A in N, compression positive."""
-        return self.A.D
+    def force_beyond_pin(self) -> Any:
+        """Force in N along the web toward B, compression positive: D − A_D, which is B_D less the flywheel beyond.
 
-    @property
-    def force_in_web_B(self) -> Any:
-        """Force along web B in N, compression positive: D − A_D, which is B_D less the flywheel beyond the web."""
-        return self.pin.D - self.A.D
+        D alone in the web of an overhung crank.
+        """
+        return self.pin.D - self.before_pin.D
 
 
 def equilibrium_residual(body: FreeBody, torque: Array) -> float:
@@ -132,7 +136,7 @@ def _forces_in_space(body: FreeBody, count: int) -> tuple[Array, Array]:
     forces = np.zeros((4, count, 3))
     for row, (force, sign) in enumerate(pairs):
         forces[row, :, 0], forces[row, :, 1] = sign * np.asarray(force.T), -sign * np.asarray(force.D)
-    z = (0.0, -shaft.a, shaft.b, shaft.b + shaft.flywheel_position)
+    z = (0.0, shaft.place_A, shaft.b, shaft.b + shaft.flywheel_position)
     points = [[0.0, 0.0 if row == 0 else -r, place] for row, place in enumerate(z)]
     return forces, np.asarray(points)[:, None, :]
 
