@@ -48,6 +48,8 @@ G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
         ("1 kg m²", "inertia", 1.0),
         ("1 kg·m^2", "inertia", 1.0),
         ("1 kg*m2", "inertia", 1.0),
+        ("1 lbf ft s2", "inertia", pytest.approx(0.45359237 * G * 0.3048, rel=1e-15)),
+        ("12 lbf in s2", "inertia", pytest.approx(0.45359237 * G * 0.3048, rel=1e-15)),
         ("10000 kg cm2", "inertia", 1.0),
         ("6 m/s", "velocity", 6.0),
         ("6 m / s", "velocity", 6.0),

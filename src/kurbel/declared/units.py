@@ -120,7 +120,10 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         "hp": (550 * _LBF * 3048, 1e4),
         "kgf m/s": (GRAVITY, 1),
     },
-    "inertia": lambda: _product(_MASS, _AREA, " "),
+    "inertia": lambda: {
+        **_product(_MASS, _AREA, " "),
+        **{f"lbf {name} s2": (_LBF * up, down) for name, (up, down) in _LENGTH.items() if name in ("in", "ft")},
+    },
     "gd2": lambda: {
         **_product({"kg": (1, 1), "t": (1e3, 1)}, {"m2": (1, 1), "cm2": (1, 1e4)}, " "),
         "kgf m2": (1, 1),
