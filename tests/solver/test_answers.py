@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-import pytest
+import json
+from typing import Any
 
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from mpmath import mp
+
+from kurbel.cli import kurbel
 from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import by_id
 from kurbel.machine_file import loads
@@ -47,3 +54,110 @@ class TestPeaks:
 
     def test_without_a_card_there_is_none(self) -> None:
         assert cylinder("speed: 60 rpm\ncrank: 1 m\nrod: 5 m\nmasses: {piston: 1 kg}").p_max is None
+
+
+STRAIGHT = "speed: 60 rpm\ncrank: 400 mm\nrod_ratio: 5\n"
+
+
+def json_of(*words: str, text: str = STRAIGHT) -> dict[str, Any]:
+    result = CliRunner().invoke(kurbel, [*words, "-f", "json", "-"], input=text)
+    assert result.exit_code == 0, result.output
+    (part,) = json.loads(result.stdout)["cylinders"]
+    return {column["id"]: column["values"] for column in part["columns"]}
+
+
+def refused(*words: str, text: str = STRAIGHT) -> tuple[int, str]:
+    result = CliRunner().invoke(kurbel, [*words, "-"], input=text)
+    return result.exit_code, result.stderr
+
+
+class TestWhere:
+    def test_blau_34_and_35(self) -> None:
+        """λ = 1/5: where b has fallen to a sixth of b(0), with x, c and b there."""
+        found = json_of("motion", "--where", "b = 1/6 b_max")
+        with mp.workdps(30):
+
+            def x(phi: Any) -> Any:
+                return (1 - mp.cos(phi) + 5 * (1 - mp.sqrt(1 - mp.sin(phi) ** 2 / 25))) * mp.mpf("0.4")
+
+            phi = mp.findroot(lambda p: mp.diff(x, p, 2) - mp.mpf("0.4") * 6 / 5 / 6, 1.2)
+            omega = 2 * mp.pi
+            expected = {"x": x(phi), "c": mp.diff(x, phi) * omega, "b": mp.diff(x, phi, 2) * omega**2}
+            degrees = float(mp.degrees(phi))
+        assert found["phi"] == pytest.approx([degrees, 360 - degrees], rel=1e-14)
+        for name, value in expected.items():
+            assert found[name][0] == pytest.approx(float(value), rel=1e-13), name
+
+    def test_a_number_with_a_unit(self) -> None:
+        found = json_of("motion", "--where", "x = 200 mm", "--columns", "x")
+        assert found["x"] == pytest.approx([0.2, 0.2], rel=1e-14)
+
+    def test_a_force_of_a_whole_cycle_and_a_jump(self) -> None:
+        """P turns over at the jumps of a constant card too, and the table says what stands just after."""
+        found = json_of("forces", "--where", "P = 0", text=COMPRESSOR)
+        assert found["phi"] == list(cylinder(COMPRESSOR).phi_reversal or ())
+
+    def test_a_value_that_is_only_reached(self) -> None:
+        assert json_of("motion", "--where", "c = c_max")["c"][0] == pytest.approx(
+            cylinder(STRAIGHT).motion.c_max.value,  # type: ignore[union-attr]
+            rel=1e-14,
+        )
+
+    @pytest.mark.parametrize(
+        ("condition", "status", "message"),
+        [
+            ("b = 2 b_max", 3, "b is nowhere"),
+            ("b = 2", 2, "has no unit"),
+            ("b = 1/6 stroke", 2, "neither a unit nor a key value of this kind"),
+            ("bb = 0", 2, "'bb' is no column"),
+            ("T = 0", 2, "left out for this machine"),
+            ("b > 0", 2, "expected a column and a value"),
+            ("b = 1/0 b_max", 2, "quotient"),
+        ],
+    )
+    def test_what_cannot_be_asked(self, condition: str, status: int, message: str) -> None:
+        found, said = refused("motion", "--where", condition)
+        assert (found, message in said) == (status, True), said
+
+
+class TestOverTheStroke:
+    @pytest.mark.parametrize("more", ["", "offset: 100 mm\n", "mechanism: yoke-frame\n"])
+    def test_both_strokes_by_fractions(self, more: str) -> None:
+        found = json_of("motion", "--over", "x", "--step", "25", text=STRAIGHT + more)
+        assert found["z"] == pytest.approx([0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0], abs=1e-15)
+        stroke = cylinder(STRAIGHT + more).motion.stroke
+        assert stroke is not None
+        assert found["x"] == pytest.approx([z * stroke for z in found["z"]], abs=1e-15)
+        assert np.all(np.diff(found["phi"]) > 0)
+
+    def test_a_cycle_of_two_turns_has_four_strokes(self) -> None:
+        found = json_of("forces", "--over", "x", "--step", "50", text=STRAIGHT + "cycle: four-stroke\n")
+        assert found["z"] == pytest.approx([0, 0.5, 1, 0.5, 0, 0.5, 1, 0.5, 0], abs=1e-15)
+        assert found["phi"][-1] == 720.0
+
+    def test_one_way_to_say_where(self) -> None:
+        assert refused("motion", "--over", "x", "--where", "b = 0")[0] == 2
+        assert refused("motion", "--over", "x", "--angles", "0,5")[0] == 2
+
+
+class TestCompare:
+    def test_the_books_approximations_beside_the_exact_columns(self) -> None:
+        """R 286, B 25, R 291 at 60° for λ = 1/5: x = 0.575 R, c = 0.9526 v, b = 0.4 v²/R."""
+        found = json_of("motion", "--compare", "--angles", "60")
+        R, v = 0.4, 0.4 * 2 * np.pi
+        assert found["x_book"] == pytest.approx([0.575 * R], rel=1e-14)
+        assert found["c_book"] == pytest.approx([v * (np.sqrt(0.75) + 0.1 * np.sqrt(0.75))], rel=1e-14)
+        assert found["b_book"] == pytest.approx([0.4 * v**2 / R], rel=1e-14)
+        assert list(found)[1:4] == ["psi", "x", "x_book"]
+
+    def test_without_the_word_they_are_not_shown(self) -> None:
+        assert not {"x_book", "z"} & set(json_of("motion"))
+
+    def test_an_offset_has_none(self) -> None:
+        assert "x_book" not in json_of("motion", "--compare", text=STRAIGHT + "offset: 50 mm\n")
+
+    def test_both_areas_alike(self) -> None:
+        """R 297 with 7 bar at the head and 0 bar at the crank end: ½ (A_H + A_C) · 7 bar, on the return stroke."""
+        found = json_of("forces", "--compare", "--angles", "270", text=COMPRESSOR)
+        area = np.pi / 4 * (0.1**2 + (0.1**2 - 0.025**2)) / 2
+        assert found["P_gas_book"] == pytest.approx([area * 7e5], rel=1e-14)

@@ -6,11 +6,13 @@ import click
 
 from kurbel.cli.exit_status import exit_statuses
 from kurbel.cli.output_options import Asked, machine_table
+from kurbel.cli.row_options import AskedRows, row_options
 
 
 @click.command(short_help="Displacement, velocity, acceleration of any mechanism.", epilog=exit_statuses())
 @machine_table
-def motion(asked: Asked) -> None:
+@row_options
+def motion(asked: Asked, rows: AskedRows) -> None:
     """Print the motion of every cylinder's mechanism in FILE over one turn of the crank, and the key values.
 
     What slides has x, c, b; what swings has theta, theta_dot, theta_ddot. Without a speed in FILE only the
@@ -19,5 +21,5 @@ def motion(asked: Asked) -> None:
     from kurbel.report.motion import motion_report
 
     case = asked.case()
-    angles = asked.crank_angles(360.0, len(case.cylinders))
-    asked.output.write(motion_report(case, angles, asked.columns, asked.units))
+    angles = rows.rows(asked) or asked.crank_angles(360.0, len(case.cylinders))
+    asked.output.write(motion_report(case, angles, asked.columns, asked.units, rows.columns))

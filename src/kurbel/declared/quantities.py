@@ -25,6 +25,7 @@ _COLUMNS = (
         "phi",
         commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS),
     ),
+    _motion("z", "z", "ratio", "Fraction of the stroke from the inner dead centre", on_request=("motion", "forces")),
     _motion("psi", "ψ", "angle", "Angle between connecting rod and stroke line", "psi"),
     _motion(
         "x",
@@ -46,6 +47,13 @@ _COLUMNS = (
     _forces("p_head", "p_H", "pressure", "Gauge pressure in the head-end chamber, just after a jump"),
     _forces("p_crank", "p_C", "pressure", "Gauge pressure in the crank-end chamber, just after a jump"),
     _forces("P_gas", "P_gas", "force", "Force of gas, steam or water on all pistons of the rod"),
+    _forces(
+        "P_gas_book",
+        "P_297",
+        "force",
+        "The same by the mean of both areas (R 297)",
+        on_request=_FORCES,
+    ),
     _forces("P_inertia", "P_b", "force", "Inertia force −m b of the reciprocating masses"),
     _forces("P_weight", "P_w", "force", "Weight of the reciprocating masses along the stroke line"),
     _forces("P_ram", "P_r", "force", "Force on a ram against its motion"),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Number, Physical
 from kurbel.declared.keys import Key, Keys
+from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, Offer, fan
@@ -25,7 +27,26 @@ CRANK_KEYS: Keys = {
 """The size of the crank, shared by the mechanisms that can be given by their stroke."""
 
 
+def _book(id: str, symbol: str, kind: str, text: str, after: str) -> Quantity:
+    both = ("motion", "forces")
+    return Quantity(f"{id}_book", symbol, kind, f"{text}, first order in λ", "", both, after=after, on_request=both)
+
+
 ROD_OFFERS = (
+    Offer(
+        _book("x", "x_0", "length", "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)", "x"),
+        lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_displacement(a.sin, a.cos, lam)),
+    ),
+    Offer(
+        _book("c", "c_0", "velocity", "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)", "c"),
+        lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_velocity(a.sin, a.cos, lam)),
+        ("omega",),
+    ),
+    Offer(
+        _book("b", "b_0", "acceleration", "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)", "b"),
+        lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_acceleration(a.sin, a.cos, lam)),
+        ("omega", "omega"),
+    ),
     Offer(
         turning_column("psi_dot", "ψ̇", "psi_dot", "angular_velocity", "Angular velocity of the rod, dψ/dt", "b"),
         lambda one, angle: -one.coupler_at(angle).slope,
@@ -202,6 +223,10 @@ class SliderCrank(Mechanism):
         sin_psi, cos_psi = self.rod_angle(angle)
         bend = self.lam * (angle.cos * angle.cos) / (cos_psi * cos_psi * cos_psi)
         return self.crank * (angle.cos - angle.sin * sin_psi / cos_psi + bend)
+
+    def of_book(self, angle: CrankAngle, factor: Callable[[CrankAngle, float], Any]) -> Any | None:
+        """Return R times an approximation of the book for the angle and λ, in m; None with an offset."""
+        return self.crank * factor(angle, self.lam) if self._straight else None
 
     def radial(self, angle: CrankAngle) -> Any:
         """Return D/P = cos(φ+ψ)/cos ψ, R 302."""

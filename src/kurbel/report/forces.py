@@ -13,17 +13,24 @@ from kurbel.report.frame import Answer, Frame, Subject, of_state
 from kurbel.report.left_out import left_out
 from kurbel.report.motion import mechanism_notes
 from kurbel.report.notes import Note, machine_notes, of_cylinder
+from kurbel.report.rows import Rows, rows_of
 from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
 
-def forces_report(case: Case, angles: Sequence[float], columns: Sequence[str] | None, system: str) -> Report:
-    """Return the forces of every cylinder; angles, columns, system: see `Frame`."""
+def forces_report(
+    case: Case,
+    angles: Sequence[float] | Rows,
+    columns: Sequence[str] | None,
+    system: str,
+    also: Sequence[str] = (),
+) -> Report:
+    """Return the forces of every cylinder; angles: crank angles, or what finds them; see `Frame`."""
     machine = case.machine
     if not machine.cylinders:
         raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
-    frame = Frame("forces", angles, columns, system)
+    frame = Frame("forces", rows_of(case, angles, 360.0 * machine.revolutions), columns, system, also)
     notes = (*mechanism_notes(machine), *_rod_notes(case))
     return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=notes)
 

@@ -84,13 +84,15 @@ def of_state(state: Any) -> Answer:
 class Frame(NamedTuple):
     """A report to be made: of which command, at which crank angles (n,) in degrees, with which columns, in which units.
 
-    columns: ids to show besides φ, None for all that the machine has; system: `si` or `technical`.
+    angles: of every subject, or what tells those of one. columns: ids to show besides φ, None for all that the machine
+    has and shows unasked; also: more of them; system: see `unit_systems`.
     """
 
     command: str
-    angles: Sequence[float]
+    angles: Sequence[float] | Callable[[Subject], Sequence[float]]
     columns: Sequence[str] | None
     system: str
+    also: Sequence[str] = ()
 
     def report(
         self,
@@ -131,10 +133,14 @@ class Frame(NamedTuple):
             return ()
         known = subject.lists.columns(self.command)
         if self.columns:
-            chosen = [known[name] for name in self.columns if name in known]
+            chosen = [known[name] for name in (*self.columns, *self.also) if name in known]
         else:
-            chosen = [one for one in known.values() if subject.says(one) and self.command not in one.on_request]
-        return shown_columns(known["phi"], chosen, subject.at, self.angles, self.system)
+            chosen = [one for one in known.values() if subject.says(one) and self._shows(one)]
+        angles = self.angles(subject) if callable(self.angles) else self.angles
+        return shown_columns(known["phi"], chosen, subject.at, angles, self.system)
+
+    def _shows(self, column: Quantity) -> bool:
+        return self.command not in column.on_request or column.id in self.also
 
     def _key_values(self, subject: Subject) -> Iterator[KeyValue]:
         for quantity, value in subject.key_values(self.command):

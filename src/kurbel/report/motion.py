@@ -8,17 +8,24 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.report.frame import Frame, Subject, of_state
 from kurbel.report.left_out import motion_left_out
+from kurbel.report.rows import Rows, rows_of
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
 
-def motion_report(case: Case, angles: Sequence[float], columns: Sequence[str] | None, system: str) -> Report:
-    """Return the motion of every cylinder's mechanism; angles, columns, system: see `Frame`."""
+def motion_report(
+    case: Case,
+    angles: Sequence[float] | Rows,
+    columns: Sequence[str] | None,
+    system: str,
+    also: Sequence[str] = (),
+) -> Report:
+    """Return the motion of every cylinder's mechanism; angles: crank angles, or what finds them; see `Frame`."""
     machine = case.machine
     if not machine.cylinders:
         raise UsageError(f"{machine.name} has no cylinder; kurbel motion needs one")
-    frame = Frame("motion", angles, columns, system)
+    frame = Frame("motion", rows_of(case, angles, 360.0), columns, system, also)
     return frame.report(machine, "Bewegung des Kurbeltriebes", subjects(case), notes=mechanism_notes(machine))
 
 

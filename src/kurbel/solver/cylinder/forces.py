@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,13 @@ from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+
+
+class Where(NamedTuple):
+    """The crank angles in degrees at which a column has a value, ascending, and between which values in SI it moves."""
+
+    angles: tuple[float, ...]
+    span: tuple[float, float]
 
 
 class CylinderForces:
@@ -83,6 +90,27 @@ class CylinderForces:
             return None
         largest, smallest = zip(*found, strict=True)
         return Extremes(max(largest, key=lambda one: one.value), min(smallest, key=lambda one: one.value))
+
+    def angles_where(self, column: str, value: float) -> Where | None:
+        """Return the crank angles of the cycle at which a column passes a value in SI, or reaches it as its extreme.
+
+        None for a column that is left out. At a jump over the value it is the angle of the jump.
+        """
+        if getattr(self._samples, column) is None:
+            return None
+        name = (column,)
+        whole = curves(self.grid, _sampled(self._samples, name), self._quantities(*name))[column]
+
+        def less(degrees: Array, within: Array) -> dict[str, Sampled]:
+            found = _sampled(self.drive.jets_at(degrees, within), name)[column]
+            return {column: Sampled(found.value - value, found.slope)}
+
+        passed = sign_changes(
+            self.grid, {column: whole._replace(value=whole.value - value)}, less, float(np.abs(whole.value).max())
+        )[column]
+        ends = extremes_of(whole)
+        reached = [one.degrees for one in ends if math.isclose(one.value, value, rel_tol=1e-14)]
+        return Where(tuple(sorted({*passed.tolist(), *reached})), (ends.smallest.value, ends.largest.value))
 
     @cached_property
     def p_max(self) -> Extreme | None:

@@ -48,13 +48,15 @@ class PistonGas:
         """Crank angles in degrees of a turn at which quadratures should split."""
         return tuple(angle for end in (self.head, self.crank) if end for angle in end.bends)
 
-    def force(self, x: Any, angle: CrankAngle, within: Array) -> Any:
-        """Return P = p_H A_H − p_C A_C in N, R 296, with gauge pressures."""
+    def force(self, x: Any, angle: CrankAngle, within: Array, alike: bool = False) -> Any:
+        """Return P = p_H A_H − p_C A_C in N, R 296, with gauge pressures; alike: with the mean of both areas, R 297."""
+        mean = (self.piston.head_area + self.piston.crank_area) / 2
+        at_head, at_crank = (mean, mean) if alike else (self.piston.head_area, self.piston.crank_area)
         force: Any = 0.0
         if self.head:
-            force = force + self.piston.head_area * self.head(x, angle, within)
+            force = force + at_head * self.head(x, angle, within)
         if self.crank:
-            force = force - self.piston.crank_area * self.crank(x, angle, within)
+            force = force - at_crank * self.crank(x, angle, within)
         return force
 
     @cached_property

@@ -13,6 +13,7 @@ from kurbel.declared.quantity import by_id
 from kurbel.errors import NoSolutionError
 from kurbel.mechanisms import every_quantity
 from kurbel.mechanisms.coupler import PointMotion, point_motion
+from kurbel.numerics.arithmetic import bearing
 from kurbel.numerics.jet import once_each
 
 if TYPE_CHECKING:
@@ -99,8 +100,13 @@ class State:
 
     @cached_property
     def psi(self) -> Any:
-        """Rod angle in degrees; not for jets."""
-        return None if self._rod is None else np.degrees(np.arctan2(*self._rod))
+        """Rod angle in degrees."""
+        return None if self._rod is None else bearing(*self._rod)
+
+    @property
+    def z(self) -> Any:
+        """What of the stroke is passed, from the inner dead centre."""
+        return self.way / self.drive.mechanism.stroke if self.drive.mechanism.slides else None
 
     @cached_property
     def _point(self) -> PointMotion | None:
@@ -154,6 +160,12 @@ class State:
     def P_gas(self) -> Any:
         """Force of gas, steam or water on all pistons in N, R 296."""
         return sum(gas.force(self.way, self.angle, self.within) for gas in self.drive.gas) if self.drive.gas else None
+
+    @property
+    def P_gas_book(self) -> Any:
+        """The same with both areas of a piston alike, in N, R 297."""
+        with_equal_areas = [gas.force(self.way, self.angle, self.within, alike=True) for gas in self.drive.gas]
+        return sum(with_equal_areas) if with_equal_areas else None
 
     @cached_property
     def P_inertia(self) -> Any:

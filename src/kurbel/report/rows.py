@@ -1,0 +1,129 @@
+"""At which crank angles a cylinder has its rows, where they are asked for otherwise than by angles."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from kurbel.declared.numerals import NUMBER, RATIO, parse_ratio, plain
+from kurbel.declared.quantity import Quantity
+from kurbel.declared.unit_systems import show
+from kurbel.declared.units import example, unit_factor
+from kurbel.errors import NoSolutionError, UnitError, UsageError
+from kurbel.mechanisms import every_quantity
+from kurbel.near_words import did_you_mean
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import ascending
+from kurbel.report.angles import stepped
+
+if TYPE_CHECKING:
+    from kurbel.report.frame import Subject
+    from kurbel.solver.case import Case
+    from kurbel.solver.cylinder.forces import CylinderForces
+
+Rows = Callable[["Subject", "CylinderForces", float], "Sequence[float]"]
+"""Takes what a cylinder answers, its results, and the degrees of the table; returns crank angles (n,) in degrees."""
+
+
+def rows_of(case: Case, angles: Sequence[float] | Rows, end: float) -> Sequence[float] | Callable[[Subject], Any]:
+    """Return angles as they are, or what tells those of each cylinder, whose table goes from 0 to `end` degrees."""
+    if not callable(angles):
+        return angles
+    found, results = angles, {forces.drive.name: forces for forces in case.cylinders}
+    return lambda subject: found(subject, results[subject.name], end)
+
+
+def over_stroke(step: float) -> Rows:
+    """Return the angles at which x passes 0, step, 2 step, … percent of the stroke, on both strokes.
+
+    Raises UsageError for a step that is not positive, and for what does not go to and fro.
+    """
+    fractions = np.asarray(stepped(step, 100.0)) / 100
+
+    def angles(subject: Subject, forces: CylinderForces, end: float) -> Sequence[float]:
+        mechanism = forces.drive.mechanism
+        if mechanism.turns:
+            raise UsageError(f"--over x: the output of a {mechanism.name} turns on and has no stroke")
+        way = mechanism.stroke * fractions
+        out = np.asarray(mechanism.crank_angles_at(way, True))
+        back = np.asarray(mechanism.crank_angles_at(way[::-1], False))
+        turn = np.concatenate((out, back[1:]))
+        return np.concatenate([turn[first:] + start for start, first in _turns(end)]).tolist()  # type: ignore[no-any-return]
+
+    return angles
+
+
+def _turns(end: float) -> list[tuple[float, int]]:
+    """Start of each turn in degrees, and how many of its angles the turn before has told."""
+    return [(start, int(start > 0)) for start in np.arange(0.0, end, 360.0).tolist()]
+
+
+class Place(NamedTuple):
+    """A condition such as `b = 1/6 b_max`: a column, and the value at which it is wanted, as it is written."""
+
+    column: str
+    factor: float
+    of: str
+    text: str
+
+    @classmethod
+    def parsed(cls, text: str) -> Place:
+        """Return the condition that a text is. Raises UsageError that says what to write instead."""
+        column, equals, value = plain(text).partition("=")
+        number = RATIO.match(value.strip()) or NUMBER.match(value.strip())
+        of = value.strip()[number.end() if number else 0 :].strip()
+        if not (re.fullmatch(r"\w+", column.strip()) and equals and (number or of)):
+            raise UsageError(f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{text}'")
+        try:
+            return cls(column.strip(), parse_ratio(number.group()) if number else 1.0, of, text)
+        except UnitError as error:
+            raise UsageError(f"--where: {error}") from None
+
+    def angles(self, subject: Subject, forces: CylinderForces, end: float) -> Sequence[float]:
+        """Return the crank angles in degrees, exact but for rounding; see `Rows`. Raises NoSolutionError for none."""
+        column = subject.lists.columns("forces").get(self.column)
+        if column is None:
+            known = tuple(every_quantity().columns("forces"))
+            raise UsageError(
+                f"--where: '{self.column}' is no column{did_you_mean(self.column, known)} (known: {', '.join(known)})"
+            )
+        value = self._value(subject, column)
+        found = forces.angles_where(self.column, value)
+        if found is None:
+            raise UsageError(f"--where: '{self.column}' is left out for this machine; kurbel check says why")
+        if not found.angles:
+            low, high = (show(one, column.kind) for one in found.span)
+            raise NoSolutionError(
+                f"{subject.name}: {self.column} is nowhere {show(value, column.kind)}: it goes from {low} to {high}"
+            )
+        # a table over one turn has what a cycle of two has in either
+        return ascending(np.mod(found.angles, end), 1e-9).tolist()  # type: ignore[no-any-return]
+
+    def _value(self, subject: Subject, column: Quantity) -> float:
+        """Return the value in SI: a number with a unit of the column's kind, or a fraction of a key value."""
+        if not self.of:
+            if self.factor and column.kind != "ratio":
+                raise UsageError(f"--where: {self.text} has no unit; write for instance {example(column.kind)}")
+            return self.factor
+        try:
+            up, down = unit_factor(self.of, column.kind)
+        except UnitError as error:
+            return self.factor * self._key_value(subject, column, str(error))
+        return self.factor * up / down
+
+    def _key_value(self, subject: Subject, column: Quantity, no_unit: str) -> float:
+        known = subject.lists.key_values("forces")
+        quantity = known.get(self.of)
+        if quantity is None or quantity.kind != column.kind:
+            alike = [one.id for one in known.values() if one.kind == column.kind and not one.listed]
+            raise UsageError(
+                f"--where: '{self.of}' is neither a unit nor a key value of this kind: {no_unit}; "
+                f"key values: {', '.join(alike)}"
+            )
+        value: Any = subject.answer(quantity)
+        if not isinstance(value, (Extreme, float)):
+            raise UsageError(f"--where: this machine has no {self.of}")
+        return value.value if isinstance(value, Extreme) else value
