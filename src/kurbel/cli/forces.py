@@ -21,4 +21,4 @@ def forces(asked: Asked) -> None:
 
     case = asked.case()
     angles = asked.crank_angles(360.0 * case.machine.revolutions, len(case.cylinders))
-    asked.output.write(forces_report(case, angles, asked.columns, asked.units))
+    asked.write(forces_report(case, angles, asked.columns, asked.units))

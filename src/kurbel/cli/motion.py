@@ -20,4 +20,4 @@ def motion(asked: Asked) -> None:
 
     case = asked.case()
     angles = asked.crank_angles(360.0, len(case.cylinders))
-    asked.output.write(motion_report(case, angles, asked.columns, asked.units))
+    asked.write(motion_report(case, angles, asked.columns, asked.units))

@@ -137,6 +137,10 @@ angle_options = _stacked(
 columns_option = click.option(
     "--columns", type=Columns(), metavar="ID,ID,...", help="Only these columns, in this order."
 )
+_part_options = _stacked(
+    click.option("--cylinder", metavar="NAME", help="Only the results of this cylinder."),
+    click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
+)
 units_option = click.option(
     "--units",
     type=click.Choice(["si", "metric", "technical", "imperial"]),
@@ -217,6 +221,8 @@ class Asked(NamedTuple):
     angles: tuple[float, ...] | None
     columns: tuple[str, ...] | None
     units: str
+    cylinder: str | None
+    key_values_only: bool
     output: Output
 
     def case(self) -> Case:
@@ -228,6 +234,14 @@ class Asked(NamedTuple):
     def crank_angles(self, end: float, parts: int = 1) -> Sequence[float]:
         """Return the crank angles in degrees to print for each part, from 0 to `end` where none are named."""
         return crank_angles(self.step, self.angles, end, parts)
+
+    def write(self, report: Report) -> None:
+        """Write what is asked of the report."""
+        if self.key_values_only and self.columns:
+            raise click.UsageError("--columns names columns of the table that --key-values leaves out.")
+        if self.cylinder is not None:
+            report = report.of_cylinder(self.cylinder)
+        self.output.write(report.key_values_alone() if self.key_values_only else report)
 
 
 def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
@@ -241,10 +255,15 @@ def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
         angles: tuple[float, ...] | None,
         columns: tuple[str, ...] | None,
         units: str | None,
+        cylinder: str | None,
+        key_values_only: bool,
         output: Output,
         **others: Any,
     ) -> None:
         system = units or ("si" if output.look.format in ("csv", "json") else "metric")
-        command(asked=Asked(file, overrides, step, angles, columns, system, output), **others)
+        asked = Asked(file, overrides, step, angles, columns, system, cylinder, key_values_only, output)
+        command(asked=asked, **others)
 
-    return _stacked(machine_file, angle_options, columns_option, units_option)(output_options(with_asked))
+    return _stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
+        output_options(with_asked)
+    )
