@@ -35,6 +35,7 @@ class Fault(NamedTuple):
 
     path: relative to the record that found it, until the reader has made it whole; at_key: the key itself is meant.
     Line and column count from 1, in characters; they and the source line are filled in when the text is searched.
+    override: the KEY=VALUE from outside that it is of, if it does not stand in the file.
     """
 
     path: Path
@@ -43,6 +44,7 @@ class Fault(NamedTuple):
     line: int = 0
     column: int = 0
     source_line: str = ""
+    override: str = ""
 
     def below(self, path: Path) -> Fault:
         """Return it as seen from further up: its path with this one before it."""
@@ -87,9 +89,10 @@ class MachineFileError(KurbelError):
         super().__init__("\n".join(self.line(fault) for fault in faults))
 
     def line(self, fault: Fault) -> str:
-        """Return `file:line:column: path: message`."""
+        """Return `file:line:column: path: message`, or what it is of instead of file and place."""
         where = f"{path_text(fault.path)}: " if fault.path else ""
-        return f"{self.file_name}:{fault.line}:{fault.column}: {where}{fault.message}"
+        place = f"--set {fault.override}" if fault.override else f"{self.file_name}:{fault.line}:{fault.column}"
+        return f"{place}: {where}{fault.message}"
 
     def pretty(self) -> str:
         """Return every fault with its source line below it and a caret under the place."""

@@ -5,22 +5,27 @@ from __future__ import annotations
 import click
 
 from kurbel.cli.exit_status import BROKEN, NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import Output, loaded, output_options
+from kurbel.cli.output_options import Output, loaded, output_options, set_option
 
 
 @click.command(short_help="Error against run time; stiff and extreme cases.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
 @click.argument("file", metavar="[FILE]", required=False)
+@set_option
 @click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")
 @click.option("--extremes", is_flag=True, help="Put stiff and extreme machines to kurbel instead.")
 @click.option("--plot", "picture", metavar="FILE.svg|png", help="Draw the picture too; needs matplotlib.")
 @output_options
-def accuracy(file: str | None, quick: bool, extremes: bool, picture: str | None, output: Output) -> int:
+def accuracy(
+    file: str | None, overrides: tuple[str, ...], quick: bool, extremes: bool, picture: str | None, output: Output
+) -> int:
     """Compare kurbel's own methods with others, quantity by quantity: error, time, and what went wrong.
 
     Without FILE for built-in scenes, with FILE for that machine (- for standard input). References have 40 digits
     and come from other methods than kurbel's. Numerical errors, errors of the model (the formulas of the book) and
     errors of the data (0.1 deg of dead centre, 0.5 % noise) stand apart; the last section says what leaving out saves.
     """
+    if overrides and file is None:
+        raise click.UsageError("--set sets a value over that of FILE; give the FILE.")
     if extremes:
         return _extremes(file, picture, output)
     from kurbel.render.plot import check_plot, draw
@@ -30,7 +35,7 @@ def accuracy(file: str | None, quick: bool, extremes: bool, picture: str | None,
     from kurbel.machine_file import loads
     from kurbel.report.accuracy import accuracy_report
 
-    report = accuracy_report(None if file is None else loaded(file, output.file_name, picture), quick, loads)
+    report = accuracy_report(None if file is None else loaded(file, overrides, output.file_name, picture), quick, loads)
     output.write(report)
     if picture is not None:
         draw(report, picture)

@@ -10,7 +10,7 @@ from kurbel.cli.output_options import machine_file
 
 @click.command(short_help="Read and check a machine file and its limits.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
 @machine_file
-def check(file: str) -> int:
+def check(file: str, overrides: tuple[str, ...]) -> int:
     """Read the machine in FILE and say what will be computed, what is left out and why.
 
     Where the file gives 'limits', compare the key values with them.
@@ -21,7 +21,7 @@ def check(file: str) -> int:
     from kurbel.render.output import stdout_charset, stdout_width, write_stdout
     from kurbel.report.check import checked
 
-    result = checked(load(file))
+    result = checked(load(file, overrides))
     write_stdout((listing(result, Look(encoding=stdout_charset().encoding, width=stdout_width())),))
     if result.errors:  # all of them, as one of the gravest kind
         gravest = min(result.errors, key=lambda error: error.exit_status)

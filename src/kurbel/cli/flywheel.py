@@ -21,4 +21,4 @@ def flywheel(asked: Asked) -> None:
 
     case = asked.case()
     angles = asked.crank_angles(360.0 * case.machine.revolutions)
-    asked.output.write(flywheel_report(case, angles, asked.columns, asked.units))
+    asked.write(flywheel_report(case, angles, asked.columns, asked.units))

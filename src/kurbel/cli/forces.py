@@ -23,4 +23,4 @@ def forces(asked: Asked, rows: AskedRows) -> None:
 
     case = asked.case()
     angles = rows.rows(asked) or asked.crank_angles(360.0 * case.machine.revolutions, len(case.cylinders))
-    asked.output.write(forces_report(case, angles, asked.columns, asked.units, rows.columns))
+    asked.write(forces_report(case, angles, asked.columns, asked.units, rows.columns))

@@ -22,4 +22,4 @@ def motion(asked: Asked, rows: AskedRows) -> None:
 
     case = asked.case()
     angles = rows.rows(asked) or asked.crank_angles(360.0, len(case.cylinders))
-    asked.output.write(motion_report(case, angles, asked.columns, asked.units, rows.columns))
+    asked.write(motion_report(case, angles, asked.columns, asked.units, rows.columns))

@@ -114,8 +114,15 @@ def _stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Comm
     return decorate
 
 
-machine_file = click.argument("file", metavar="FILE")
-"""The machine file, or - for standard input."""
+set_option = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="This value instead of that of FILE, such as cylinders.0.bore='450 mm'; may be repeated.",
+)
+machine_file = _stacked(click.argument("file", metavar="FILE"), set_option)
+"""The machine file, or - for standard input, and values over those in it."""
 
 angle_options = _stacked(
     click.option(
@@ -129,6 +136,10 @@ angle_options = _stacked(
 
 columns_option = click.option(
     "--columns", type=Columns(), metavar="ID,ID,...", help="Only these columns, in this order."
+)
+_part_options = _stacked(
+    click.option("--cylinder", metavar="NAME", help="Only the results of this cylinder."),
+    click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
 )
 units_option = click.option(
     "--units",
@@ -187,12 +198,15 @@ def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts:
     return angles
 
 
-def loaded(file: str, *outputs: str | None) -> Machine:
-    """Read the machine. Raises UsageError where an output would overwrite its file, or a trace that it names."""
+def loaded(file: str, overrides: Sequence[str], *outputs: str | None) -> Machine:
+    """Read the machine, with these values over those of its file.
+
+    Raises UsageError where an output would overwrite its file, or a trace that it names.
+    """
     from kurbel.machine_file import load
     from kurbel.render.output import refuse_overwriting
 
-    machine = load(file)
+    machine = load(file, overrides)
     for output in outputs:
         refuse_overwriting(output, (file, *machine.trace_files))
     return machine
@@ -202,21 +216,32 @@ class Asked(NamedTuple):
     """What is asked of a command that prints a table for a machine."""
 
     file: str
+    overrides: tuple[str, ...]
     step: float
     angles: tuple[float, ...] | None
     columns: tuple[str, ...] | None
     units: str
+    cylinder: str | None
+    key_values_only: bool
     output: Output
 
     def case(self) -> Case:
         """Read the machine and return it with its results, none of which is computed yet."""
         from kurbel.solver.case import Case
 
-        return Case(loaded(self.file, self.output.file_name))
+        return Case(loaded(self.file, self.overrides, self.output.file_name))
 
     def crank_angles(self, end: float, parts: int = 1) -> Sequence[float]:
         """Return the crank angles in degrees to print for each part, from 0 to `end` where none are named."""
         return crank_angles(self.step, self.angles, end, parts)
+
+    def write(self, report: Report) -> None:
+        """Write what is asked of the report."""
+        if self.key_values_only and self.columns:
+            raise click.UsageError("--columns names columns of the table that --key-values leaves out.")
+        if self.cylinder is not None:
+            report = report.of_cylinder(self.cylinder)
+        self.output.write(report.key_values_alone() if self.key_values_only else report)
 
 
 def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
@@ -225,14 +250,20 @@ def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
     @wraps(command)
     def with_asked(
         file: str,
+        overrides: tuple[str, ...],
         step: float,
         angles: tuple[float, ...] | None,
         columns: tuple[str, ...] | None,
         units: str | None,
+        cylinder: str | None,
+        key_values_only: bool,
         output: Output,
         **others: Any,
     ) -> None:
         system = units or ("si" if output.look.format in ("csv", "json") else "metric")
-        command(asked=Asked(file, step, angles, columns, system, output), **others)
+        asked = Asked(file, overrides, step, angles, columns, system, cylinder, key_values_only, output)
+        command(asked=asked, **others)
 
-    return _stacked(machine_file, angle_options, columns_option, units_option)(output_options(with_asked))
+    return _stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
+        output_options(with_asked)
+    )

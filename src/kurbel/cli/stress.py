@@ -23,4 +23,4 @@ def stress(asked: Asked, places_only: bool) -> None:
 
     case = asked.case()
     angles = asked.crank_angles(360.0 * case.machine.revolutions)
-    asked.output.write(stress_report(case, angles, asked.columns, asked.units, places_only))
+    asked.write(stress_report(case, angles, asked.columns, asked.units, places_only))

@@ -14,6 +14,7 @@ from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, shown
 from kurbel.errors import Fault, Path, Step
 
 DEPTH_LIMIT = 32
+_LIKE = "; a cylinder may be 'like: NAME' of another"
 _MOST_SCALARS = 3 * MOST_POINTS
 
 
@@ -112,7 +113,7 @@ class Builder:
 
     def alias(self, event: Any) -> None:
         """Refuse an alias."""
-        self._report(event, self._here(), f"'*{shown(event.anchor)}' is not supported; write the value itself")
+        self._report(event, self._here(), f"'*{shown(event.anchor)}' is not supported; write the value itself{_LIKE}")
         if self._key is None and self._open and isinstance(self._open[-1], dict):
             self._key = _ODD_KEY
         else:
@@ -188,7 +189,7 @@ class Builder:
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
             self._report(event, self._here(), f"the tag '{shown(tag)}' is not supported; leave it out")
         else:
-            what = f"'&{shown(event.anchor)}' is not supported; leave it out and write the value wherever it is needed"
+            what = f"'&{shown(event.anchor)}' is not supported; write the value wherever it is needed{_LIKE}"
             self._report(event, self._here(), what)
 
     def _report(self, event: Any, path: Path, message: str) -> None:

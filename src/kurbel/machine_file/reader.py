@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.forms import Record
 from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, glued_hint, kind_of
@@ -13,20 +14,24 @@ from kurbel.machine_file import source
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.source import Source
 
+if TYPE_CHECKING:
+    from kurbel.machine_file.overrides import Override
+
 ROOT = Record("kurbel.machine:Machine")
 """The form of a whole machine file."""
 
 
-def load(path: str | os.PathLike[str]) -> Machine:
+def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Machine:
     """Return the machine that a file describes; "-" is standard input.
 
-    Raises MachineFileError with every fault of the file, UnreadableFileError where there is none to read.
+    overrides: values in place of those of the file, such as `cylinders.0.bore=450 mm`. Raises UsageError for one that
+    cannot be set, MachineFileError with every fault of the file, UnreadableFileError where there is none to read.
     """
-    return read_machine(source.read(path))
+    return read_machine(source.read(path), overrides)
 
 
-def loads(text: str, name: str = "<text>") -> Machine:
-    """Return the machine that a text describes; `name` stands for the file in messages.
+def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Machine:
+    """Return the machine that a text describes; `name` stands for the file in messages; overrides: see `load`.
 
     Raises MachineFileError with every fault of the text.
 
@@ -34,19 +39,31 @@ def loads(text: str, name: str = "<text>") -> Machine:
     0.8
     """
     # half of a surrogate pair is no text: let the decoder say so
-    return read_machine(source.decode(name, text.encode("utf-8", "surrogatepass")))
+    return read_machine(source.decode(name, text.encode("utf-8", "surrogatepass")), overrides)
 
 
-def read_machine(origin: Source) -> Machine:
-    """Return the machine that a source describes; raises MachineFileError."""
+def read_machine(origin: Source, overrides: Iterable[str] = ()) -> Machine:
+    """Return the machine that a source describes; overrides and errors: see `load`."""
     reading = Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
     tree = parse(origin.text, reading)
     known = len(reading.faults)  # YAML has told their places
+    set_over = _set_over(tree, tuple(overrides))
     machine = REFUSED if tree is REFUSED else _machine(reading, tree, origin.stem)
     if reading.faults:
-        raise origin.error(*reading.faults[:known], *_located(origin.text, reading.faults[known:]))
+        raise origin.error(*reading.faults[:known], *_located(origin.text, reading.faults[known:], set_over))
     assert isinstance(machine, Machine)
     return machine
+
+
+def _set_over(tree: Any, overrides: Sequence[str]) -> list[Override]:
+    """Put the overrides into the tree, and return them."""
+    if not overrides or not isinstance(tree, dict):
+        return []
+    from kurbel.machine_file.overrides import overridden, read_override
+
+    read = [read_override(one) for one in overrides]
+    overridden(tree, read)
+    return read
 
 
 def _machine(reading: Reading, tree: Any, stem: str) -> Any:
@@ -60,10 +77,14 @@ def _machine(reading: Reading, tree: Any, stem: str) -> Any:
         return REFUSED
 
 
-def _located(text: str, faults: list[Fault]) -> list[Fault]:
-    """Return the faults with their places in the text."""
+def _located(text: str, faults: list[Fault], set_over: Sequence[Override]) -> list[Fault]:
+    """Return the faults with their places in the text, or with the override that they are of."""
     if not faults:
         return []
     from kurbel.machine_file.positions import located
 
-    return located(text, faults)
+    if set_over:
+        from kurbel.machine_file.overrides import named
+
+        faults = named(faults, set_over)
+    return [*(one for one in faults if one.override), *located(text, [one for one in faults if not one.override])]

@@ -20,7 +20,8 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
     """Yield the rows of the table as CSV with `\\n` line ends; with the decimal comma, `;` separates the columns.
 
     Several cylinders stand under one another, told apart by a first column; a column that one of them has not is
-    empty there. Tables of places are written where nothing stands over the crank angle, one under another likewise.
+    empty there. Tables of places are written where nothing stands over the crank angle, one under another likewise;
+    without them the key values, each on a row, of a list each of its values.
     """
     separator = ";" if look.comma else ","
     for row in _rows(report, look):
@@ -30,7 +31,8 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
 def _rows(report: Report, look: Look) -> Iterator[list[str]]:
     parts = [part for part in report.all_parts if part.columns]
     if not parts:
-        yield from _place_rows(report, look)
+        places = any(part.place_tables for part in report.all_parts)
+        yield from _place_rows(report, look) if places else _key_value_rows(report, look)
         return
     heads = _merged([[head(column) for column in part.columns] for part in parts])
     named = report.group == "ratios" or len(parts) > 1
@@ -57,10 +59,18 @@ def _merged(orders: list[list[str]]) -> list[str]:
     return merged
 
 
+def _key_value_rows(report: Report, look: Look) -> Iterator[list[str]]:
+    named = len(report.all_parts) > 1
+    yield [*(["cylinder"] if named else []), "key_value", "unit", "value", "at_deg"]
+    for part in report.all_parts:
+        for one in part.key_values:
+            for value in one.value if isinstance(one.value, tuple) else (one.value,):
+                texts = (one.id, one.unit, _number(value, look.digits, look), _number(one.at_deg, None, look))
+                yield [*([_name(part, look)] if named else []), *texts]
+
+
 def _place_rows(report: Report, look: Look) -> Iterator[list[str]]:
     tables = [(part, table) for part in report.all_parts for table in part.place_tables]
-    if not tables:
-        return
     heads = list(dict.fromkeys(name for _, table in tables for name in table.heads))
     columns = list(dict.fromkeys(head(column) for _, table in tables for column in table.columns))
     named = report.group == "scenes"

@@ -6,6 +6,9 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import NamedTuple, TypeVar, Union
 
+from kurbel.declared.reading import shown
+from kurbel.errors import UsageError
+
 Value = Union[float, int, None]
 Item = TypeVar("Item")
 
@@ -126,3 +129,19 @@ class Report(NamedTuple):
     def all_parts(self) -> tuple[Part, ...]:
         """The parts, and the whole machine after them."""
         return self.parts if self.whole is None else (*self.parts, self.whole)
+
+    def of_cylinder(self, name: str) -> Report:
+        """Return the results of one cylinder alone. Raises UsageError where there are none by that name."""
+        names = tuple(str(part.name) for part in self.parts)
+        if name not in names:
+            there = ", ".join(names) or "the whole machine only"
+            raise UsageError(
+                f"--cylinder: kurbel {self.command} has no results of '{shown(name)}'; it has those of {there}"
+            )
+        title = f"{self.title}: {name}" if len(self.all_parts) > 1 else self.title
+        return self._replace(title=title, parts=(self.parts[names.index(name)],), whole=None)
+
+    def key_values_alone(self) -> Report:
+        """Return the report without its tables."""
+        parts = [part._replace(columns=(), place_tables=()) for part in self.all_parts]
+        return self._replace(whole=parts.pop() if self.whole else None, parts=tuple(parts))

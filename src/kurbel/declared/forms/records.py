@@ -179,7 +179,7 @@ def _unknown_message(reading: Reading, name: str, meant: str) -> str:
     if meant:
         return f"unknown key; did you mean '{meant}'?"
     if name == "<<":
-        return "merging is not supported; write the keys themselves"
+        return "merging is not supported; write the keys themselves; a cylinder may be 'like: NAME' of another"
     home = reading.where_it_belongs(name)
     return f"does not belong here; {home}" if home else ""
 

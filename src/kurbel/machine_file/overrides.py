@@ -1,0 +1,85 @@
+"""Values set from outside over those of a machine file: `KEY=VALUE`, the key dotted, the value as in the file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
+
+from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
+from kurbel.errors import Fault, Path, UsageError, path_text
+from kurbel.machine_file.events import parse
+
+
+class Override(NamedTuple):
+    """One value in place of that of the file: as it was written, where it belongs, and what stands there."""
+
+    text: str
+    path: Path
+    value: Any
+
+
+def read_override(text: str) -> Override:
+    """Return the override that a text `cylinders.0.bore=450 mm` is; raises UsageError.
+
+    >>> read_override("cylinders[0].bore=450 mm")[1:]
+    (('cylinders', 0, 'bore'), '450 mm')
+    """
+    key, equals, value = text.partition("=")
+    steps = [step.strip() for step in key.replace("[", ".").replace("]", "").split(".")]
+    if not equals or not all(steps):
+        raise UsageError(f"--set {shown(text)}: write KEY=VALUE, such as --set cylinders.0.bore='450 mm'")
+    reading = Reading()
+    tree = parse(value, reading)
+    if reading.faults:
+        raise UsageError(f"--set {shown(text)}: {reading.faults[0].message}")
+    return Override(text, tuple(int(step) if step.isdecimal() else step for step in steps), tree)
+
+
+def overridden(tree: Tree, overrides: Iterable[Override]) -> None:
+    """Put the values into the tree; what leads there and is not given, is made. Raises UsageError."""
+    for one in overrides:
+        node: Any = tree
+        for place, step in enumerate(one.path):
+            if node is REFUSED:  # told already
+                break
+            node = _set(node, one, place, step)
+
+
+def _set(node: Any, one: Override, place: int, step: str | int) -> Any:
+    """Go one step down, or set the value at the last one, and return what stands there."""
+    last = place == len(one.path) - 1
+    if isinstance(node, list):
+        if not isinstance(step, int) or step >= len(node):
+            where, number = path_text(one.path[:place]), len(node)
+            raise UsageError(f"--set {shown(one.text)}: '{where}' is a list; its items are 0 to {number - 1}")
+        if last:
+            node[step] = one.value
+        return node[step]
+    if not isinstance(node, dict):
+        where = path_text(one.path[:place])
+        raise UsageError(f"--set {shown(one.text)}: nothing stands below '{where}', which is {kind_of(node)}")
+    if last:
+        node[str(step)] = one.value
+    elif is_nothing(node.get(str(step), Plain())):
+        if isinstance(one.path[place + 1], int):
+            raise UsageError(
+                f"--set {shown(one.text)}: there is no list '{path_text(one.path[: place + 1])}' in the file"
+            )
+        node[str(step)] = {}
+    return node[str(step)]
+
+
+def named(faults: Iterable[Fault], overrides: Sequence[Override]) -> list[Fault]:
+    """Return faults with the override that they are of; of others it is said that there are some."""
+    beside = f" (with {', '.join(f'--set {shown(one.text)}' for one in overrides)})"
+    return [
+        next(
+            (fault._replace(override=shown(one.text)) for one in overrides if _is_of(fault, one)),
+            fault._replace(message=fault.message + beside),
+        )
+        for fault in faults
+    ]
+
+
+def _is_of(fault: Fault, one: Override) -> bool:
+    return tuple(map(str, fault.path[: len(one.path)])) == tuple(map(str, one.path))

@@ -1,0 +1,99 @@
+"""`--set KEY=VALUE`: values over those of the file, and faults that name them."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from good_machines import DEMO, EQUAL, LIKE_ONE
+
+from kurbel.cli import kurbel
+from kurbel.errors import KurbelError
+from kurbel.machine_file import loads
+
+
+def test_a_value_of_any_depth_is_set() -> None:
+    machine = loads(
+        DEMO,
+        "m",
+        [
+            "speed=60 rpm",
+            "flywheel.fluctuation=1/80",
+            "indicator.head_end.expansion.1=[0.3, 9.5]",
+            "masses={piston: 9 kg}",
+        ],
+    )
+    assert machine.speed == 1
+    assert machine.flywheel is not None
+    assert machine.flywheel.fluctuation == 1 / 80
+    (cylinder,) = machine.cylinders
+    assert cylinder.masses is not None
+    assert cylinder.masses.parts == 9
+    assert cylinder.pistons[0].indicator.head_end.lines[0].fractions[1] == 0.3  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize("key", ["cylinders.0.crank", "cylinders[0].crank"])
+def test_what_is_like_the_changed_one_changes_with_it(key: str) -> None:
+    cylinders = loads(LIKE_ONE, "m", [f"{key}=150 mm"]).cylinders
+    assert [one.mechanism.crank for one in cylinders] == [0.15, 0.15]
+
+
+def test_equal_cylinders_change_together() -> None:
+    cylinders = loads(
+        EQUAL, "m", ["cylinders.count=2", "cylinders.firing_order=1-2", "cylinders.each.bore=1 m"]
+    ).cylinders
+    assert [(one.pistons[0].bore, one.crank_position) for one in cylinders] == [(1, 0), (1, 360)]
+
+
+def test_the_last_one_holds() -> None:
+    assert loads(DEMO, "m", ["speed=60 rpm", "speed=120 rpm"]).speed == 2
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("boore=3", "--set boore=3: boore: unknown key; did you mean 'bore'?"),
+        ("bore=450", "--set bore=450: bore: 450 has no unit"),
+        ("crank=", "--set crank=: crank: a value is missing"),
+        ("masses={piston: 80}", "--set masses={piston: 80}: masses.piston: 80 has no unit"),
+        # a fault elsewhere says what was set
+        ("crank=3 m", "m:4:6: rod: 2000 mm is shorter than the crank (3000 mm); the crank turns fully only with"),
+        ("crank=3 m", "(with --set crank=3 m)"),
+        ("bore.x=3", "--set bore.x=3: nothing stands below 'bore', which is '450 mm'"),
+        ("cylinders.0.bore=3 m", "--set cylinders.0.bore=3 m: there is no list 'cylinders' in the file"),
+        ("indicator.head_end.expansion.9=[1, 2]", "'indicator.head_end.expansion' is a list; its items are 0 to 5"),
+        ("speed", "--set speed: write KEY=VALUE"),
+        (".=3", "--set .=3: write KEY=VALUE"),
+        ("bore=*a", "'*a' is not supported; write the value itself; a cylinder may be 'like: NAME'"),
+        ("bore=[1", "--set bore=[1: a comma or ']' is missing"),
+    ],
+)
+def test_a_fault_names_the_override(override: str, message: str) -> None:
+    with pytest.raises(KurbelError, match=re.escape(message)) as caught:
+        loads(DEMO, "m", [override])
+    assert "Traceback" not in str(caught.value)
+
+
+@pytest.mark.parametrize("command", ["motion", "forces", "flywheel", "check", "accuracy --quick"])
+def test_every_command_that_reads_a_machine_has_it(command: str, tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(DEMO)
+    file = str(tmp_path / "m.yaml")
+    result = CliRunner().invoke(kurbel, [*command.split(), file, "--set", "bore=450"])
+    assert result.exit_code == 2
+    assert result.stderr.startswith("--set bore=450: bore: 450 has no unit; write it with one, such as '450 mm'")
+
+
+def test_the_answer_is_that_of_the_changed_machine(tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(DEMO)
+    asked = ["motion", str(tmp_path / "m.yaml"), "-f", "json", "--set", "crank=500 mm", "--set", "speed=60 rpm"]
+    found = json.loads(CliRunner().invoke(kurbel, asked).stdout)["cylinders"][0]["key_values"]
+    # c_m = 2 s n
+    assert next(one["value"] for one in found if one["id"] == "c_m") == pytest.approx(2 * 1.0 * 1)
+
+
+def test_without_a_file_there_is_nothing_to_set() -> None:
+    result = CliRunner().invoke(kurbel, ["accuracy", "--quick", "--set", "speed=1 rpm"])
+    assert (result.exit_code, "give the FILE" in result.stderr) == (2, True)

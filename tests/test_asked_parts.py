@@ -1,0 +1,80 @@
+"""`--cylinder` and `--key-values`: four cylinders once printed 709 lines."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+
+FOUR = str(Path(__file__).parent.parent / "configs" / "four-cylinder-generator.yaml")
+GAS_ENGINE = str(Path(__file__).parent.parent / "configs" / "gas-engine.yaml")
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(kurbel, list(arguments))
+
+
+@pytest.mark.parametrize("command", ["motion", "forces"])
+def test_one_cylinder_has_the_figures_that_it_has_among_the_others(command: str) -> None:
+    among = json.loads(run(command, FOUR, "-f", "json").stdout)["cylinders"][2]
+    assert json.loads(run(command, FOUR, "-f", "json", "--cylinder", "cylinder 3").stdout)["cylinders"] == [among]
+
+
+def test_the_page_says_which_cylinder() -> None:
+    asked = run("forces", FOUR, "--cylinder", "cylinder 3", "--key-values")
+    assert asked.stdout.splitlines()[0].endswith("Kräfte im Kurbeltriebe: cylinder 3")
+    assert "cylinder 1" not in asked.stdout
+    assert len(asked.stdout.splitlines()) < 50
+
+
+@pytest.mark.parametrize("format", ["table", "json", "markdown", "csv"])
+@pytest.mark.parametrize("layout", ["book", "rows"])
+def test_key_values_come_without_a_table(format: str, layout: str) -> None:
+    asked = run("forces", FOUR, "-f", format, "--layout", layout, "--key-values")
+    assert (asked.exit_code, asked.stderr) == (0, "")
+    assert "T_max" in asked.stdout.replace("\\", "")
+    assert "360" not in asked.stdout.splitlines()[2]
+    if format == "json":
+        assert all(one["columns"] == [] for one in json.loads(asked.stdout)["cylinders"])
+
+
+def test_key_values_as_csv_are_those_of_json() -> None:
+    rows = list(csv.DictReader(run("forces", GAS_ENGINE, "-f", "csv", "--key-values").stdout.splitlines()))
+    (cylinder,) = json.loads(run("forces", GAS_ENGINE, "-f", "json").stdout)["cylinders"]
+    expected = [
+        (one["id"], one["unit"], value)
+        for one in cylinder["key_values"]
+        for value in (one["value"] if isinstance(one["value"], list) else [one["value"]])
+    ]
+    assert [(row["key_value"], row["unit"], float(row["value"])) for row in rows] == expected
+    at = {one["id"]: one["at_deg"] for one in cylinder["key_values"] if "at_deg" in one}
+    assert {row["key_value"]: float(row["at_deg"]) for row in rows if row["at_deg"]} == at
+
+
+def test_strength_has_key_values_alone_too() -> None:
+    asked = run("stress", GAS_ENGINE, "--key-values")
+    assert "Position of the largest torque" in run("stress", GAS_ENGINE).stdout
+    assert "Position of the largest torque" not in asked.stdout
+    assert "Key values" in asked.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ("forces", FOUR, "--cylinder", "cylinder 5"),
+            "it has those of cylinder 1, cylinder 2, cylinder 3",
+        ),
+        (("flywheel", FOUR, "--cylinder", "cylinder 1"), "has no results of 'cylinder 1'; it has those of the whole"),
+        (("forces", FOUR, "--key-values", "--columns", "T"), "--columns names columns of the table that --key-values"),
+    ],
+)
+def test_what_does_not_exist_is_refused(arguments: tuple[str, ...], message: str) -> None:
+    asked = run(*arguments)
+    assert asked.exit_code == 2
+    assert message in asked.stderr
