@@ -6,6 +6,7 @@ Records check their own rules and raise RuleError. They hold numbers only; what 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -83,6 +84,9 @@ class Machine(Described):
             "N_e",
             absent="not compared",
         ),
+        "brake_torque": Key(
+            Physical("torque", least=0), "The same as a torque", "M_e", instead="brake_power", needs="speed"
+        ),
         "cylinder": Key(Inline(Record("kurbel.machine:Cylinder"), unless="cylinders"), "The keys of the only cylinder"),
         "cylinders": Key(
             Listing(Record("kurbel.machine:Cylinder"), inline_too=True),
@@ -120,11 +124,14 @@ class Machine(Described):
         cylinders: tuple[Cylinder, ...] = (),
         load: Load | str | None = None,
         kurbel: int = FORMAT,
+        brake_torque: float | None = None,
         **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
         from dataclasses import replace
 
+        if brake_torque is not None:
+            keys["brake_power"] = 2 * math.pi * keys["speed"] * brake_torque
         given = cylinders if cylinder is None else (cylinder,)
         named = tuple(c if c.name else replace(c, name=f"cylinder {i}") for i, c in enumerate(given, 1))
         return cls(named, load=None if isinstance(load, str) else load, **keys)
