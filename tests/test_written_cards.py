@@ -138,3 +138,83 @@ def test_a_card_drawn_from_the_other_dead_centre_is_told(head: str, crank: str, 
     found = "both ends have their high pressure at the same crank angle" in stdout
     assert found == bool(told)
     assert not told or f"piston, {told}: both ends" in stdout
+
+
+# no clearance, ratios
+
+
+@pytest.mark.parametrize("exponent", [1, 1.3])
+def test_a_steam_card_without_clearance(exponent: float) -> None:
+    """Full pressure p over x, then p x^n/z^n to the end, against the exhaust q: the integral of the books."""
+    steam = f"{{admission: 8 bar, exhaust: 1 bar, cut_off: 30 %, clearance: 0, exponent: {exponent}}}"
+    forces = forces_of(f"indicator: {{pressures: absolute, head_end: {{steam: {steam}}}}}\n")
+    log = math.log(1 / 0.3)
+    expanded = log if exponent == 1 else (1 - math.exp(-(exponent - 1) * log)) / (exponent - 1)
+    assert forces.mean_pressure == pytest.approx(1e5 * (8 * 0.3 * (1 + expanded) - 1), rel=1e-12)
+    assert abs(forces.energy_residual or 0) < 1e-12
+
+
+def test_a_compressor_without_clearance() -> None:
+    """W = n/(n−1) p₁ V ((p₂/p₁)^((n−1)/n) − 1), and the volume drawn in is the stroke."""
+    card = "{suction: 1 bar, delivery: 7 bar, clearance: 0, exponent: 1.3}"
+    forces = forces_of(f"indicator: {{pressures: absolute, head_end: {{compressor: {card}}}}}\n")
+    work = 1.3 / 0.3 * 1e5 * AREA * STROKE * (7 ** (0.3 / 1.3) - 1)
+    assert forces.work == pytest.approx(-work, rel=1e-12)
+    assert abs(forces.energy_residual or 0) < 1e-12
+    assert forces.at([0.001]).p_head == pytest.approx(1e5 - 101325, rel=1e-9)
+
+
+def test_a_card_that_needs_no_clearance() -> None:
+    card = "unit: at, expansion: [[0, 5], [1, 1]], compression: [[1, 1], [0, 5]], clearance: 0"
+    assert forces_of(f"indicator: {{head_end: {{{card}}}}}\n").work == 0
+    said = refused(f"indicator: {{head_end: {{{card}, interpolate: polytropic}}}}\n")
+    assert "'polytropic' needs the 'clearance' volume over the stroke volume, more than 0" in said
+
+
+@pytest.mark.parametrize(
+    ("card", "says"),
+    [
+        ("steam: {admission: 8 bar, exhaust: 1 bar, cut_off: 0.3, clearance: 0, compression: 0.1}", "give 'clearance'"),
+        ("otto: {intake: 0 bar, peak: 30 bar, clearance: 0}", "clearance: 0 is too small"),
+        ("compressor: {suction: 0 bar, delivery: 7 bar, clearance: 1e-7}", "clearance: 1e-7 is too small"),
+    ],
+)
+def test_where_a_clearance_is_needed(card: str, says: str) -> None:
+    assert says in refused(f"indicator: {{head_end: {{{card}}}}}\n")
+
+
+def test_fractions_of_the_stroke_in_percent_and_as_quotients() -> None:
+    lines = "expansion: [[0, 5], [35 %, 5], [100 %, 1]], compression: [[1, 1], [1/8, 1], [0, 5]]"
+    (forces, plain) = (
+        forces_of(f"indicator: {{head_end: {{unit: at, {text}}}}}\n")
+        for text in (lines, lines.replace("35 %", "0.35").replace("100 %", "1").replace("1/8", "0.125"))
+    )
+    assert forces.work == plain.work
+
+
+def test_fractions_in_percent_without_its_sign_are_told_once() -> None:
+    points = [[5 * i, 9 - i / 4] for i in range(21)]
+    said = refused(f"indicator: {{head_end: {{unit: at, expansion: {points}, compression: {points[::-1]}}}}}\n")
+    assert len(said.splitlines()) == 1
+    assert "expansion[1]: 5 is no fraction of the stroke" in said
+    assert "write 0.05 here if the line is in percent" in said
+
+
+def test_a_fluctuation_is_a_ratio() -> None:
+    machine = loads(ENGINE + "efficiency: 85 %\nrod_ratio: 10/3\nflywheel: {fluctuation: 1/80}\n".replace("rod_", "#"))
+    assert machine.flywheel is not None
+    assert (machine.flywheel.fluctuation, machine.efficiency) == (1 / 80, 0.85)
+
+
+@pytest.mark.parametrize(
+    ("option", "same"),
+    [
+        (["--ratio", "10/3"], ["--ratio", repr(10 / 3)]),
+        (["--ratio", "350 %"], ["--ratio", "3.5"]),
+        (["--step", "45/2"], ["--step", "22.5"]),
+        (["--angles", "0,45/4"], ["--angles", "0,11.25"]),
+    ],
+)
+def test_quotients_on_the_command_line(option: list[str], same: list[str]) -> None:
+    written, plain = (CliRunner().invoke(kurbel, ["table", "-f", "json", *each]) for each in (option, same))
+    assert (written.exit_code, written.stdout) == (0, plain.stdout)

@@ -176,7 +176,7 @@ class CylinderOracle:
         self.weight, self.guide_weight = _weights(cylinder)
         friction = cylinder.friction
         self.friction = Decimal(friction.crosshead or 0) if friction and self._has_guide else Decimal(0)
-        self.rings = _ring_force(cylinder)
+        self.rings = _steady_friction(cylinder)
 
     def stroke_number(self, within: Decimal) -> int:
         """Return how many dead centres lie between the first inner one of the cycle and an angle."""
@@ -306,9 +306,12 @@ def _weights(cylinder: Cylinder) -> tuple[Decimal, Decimal]:
     return weight * sin, weight * cos
 
 
-def _ring_force(cylinder: Cylinder) -> Decimal:
+def _steady_friction(cylinder: Cylinder) -> Decimal:
     rings = cylinder.friction.rings if cylinder.friction else None
+    constant = Decimal((cylinder.friction.constant if cylinder.friction else None) or 0.0)
     if rings is None:
-        return Decimal(0)
+        return constant
     bore = Decimal(cylinder.pistons[0].bore)
-    return rings.count * pi() * bore * Decimal(rings.height) * Decimal(rings.pressure) * Decimal(rings.coefficient)
+    return constant + rings.count * pi() * bore * Decimal(rings.height) * Decimal(rings.pressure) * Decimal(
+        rings.coefficient
+    )

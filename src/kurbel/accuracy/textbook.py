@@ -78,7 +78,7 @@ class TextbookCylinder:
         self._across = mass * _GRAVITY * math.cos(incline) if has_weight else 0.0
         friction = cylinder.friction
         self._f = (friction.crosshead or 0.0) if friction and cylinder.mechanism.has_rod else 0.0
-        self._rings = _ring_force(cylinder)
+        self._rings = _steady_friction(cylinder)
         self._ends = [end for piston in cylinder.pistons if piston.indicator for end in _ends(piston, machine.ambient)]
 
     def gas_force(self, phi: Array, shift: float = 0.0, noise: Callable[[Array], Array] | None = None) -> Array:
@@ -162,11 +162,14 @@ class TextbookMachine:
         return total
 
 
-def _ring_force(cylinder: Cylinder) -> float:
+def _steady_friction(cylinder: Cylinder) -> float:
     rings = cylinder.friction.rings if cylinder.friction else None
+    constant = float((cylinder.friction.constant if cylinder.friction else None) or 0.0)
     if rings is None:
-        return 0.0
-    return rings.count * math.pi * cylinder.pistons[0].bore * rings.height * rings.pressure * rings.coefficient
+        return constant
+    return (
+        constant + rings.count * math.pi * cylinder.pistons[0].bore * rings.height * rings.pressure * rings.coefficient
+    )
 
 
 _Line = Callable[[Array], Array]

@@ -25,7 +25,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class Number(_NumberType):
-    """A finite number with a decimal point; `words` are texts allowed instead, with their values."""
+    """A finite number with a decimal point, also 10/3 or 75 %; `words` are texts allowed instead, with their values."""
 
     name = "number"
 
@@ -38,11 +38,11 @@ class Number(_NumberType):
             return float(value)
         if value in self.words:
             return self.words[value]
-        from kurbel.declared.numerals import parse_number
+        from kurbel.declared.numerals import parse_ratio
         from kurbel.errors import UnitError
 
         try:
-            return parse_number(value)
+            return parse_ratio(value)
         except UnitError as error:
             self.fail(str(error), param, ctx)
 

@@ -122,7 +122,7 @@ _COLUMNS = (
         peak=True,
         commands=(*_FORCES, *_FLYWHEEL, *_STRESS),
     ),
-    _forces("F_friction", "F_f", "force", "Friction of crosshead and rings along the stroke line, opposing the motion"),
+    _forces("F_friction", "F_f", "force", "Friction along the stroke line, opposing the motion"),
     _flywheel("T_inertia", "T_b", "force", "Share of the inertia forces in T, at uniform rotation (Tolle)"),
     _turning("M", "M", "torque", "Torque on the shaft", extremes=_FLYWHEEL, called="torque"),
     _flywheel("E", "E", "energy", "Excess of the work of M over that of the resistance since angle 0"),
@@ -208,7 +208,7 @@ _WORK_VALUES = (
         "Change of the indicated work of the traces, over that work, if they are put 0.1 deg later",
     ),
     _turning("W", "W", "force", "Mean tangential force over the cycle: the resistance"),
-    _forces("friction_work", "A_f", "energy", "Work lost by crosshead and ring friction per cycle"),
+    _forces("friction_work", "A_f", "energy", "Work lost by friction per cycle"),
     _forces("loss_crosshead", "e_K", "ratio", "Work lost at the crosshead over that of the driving pistons"),
     _forces(
         "loss_crosshead_redtenbacher",

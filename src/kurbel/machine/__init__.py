@@ -6,6 +6,7 @@ Records check their own rules and raise RuleError. They hold numbers only; what 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -109,6 +110,9 @@ class Machine(Described):
             "N_e",
             absent="not compared",
         ),
+        "brake_torque": Key(
+            Physical("torque", least=0), "The same as a torque", "M_e", instead="brake_power", needs="speed"
+        ),
         "cylinder": Key(Inline(Record("kurbel.machine:Cylinder"), unless="cylinders"), "The keys of the only cylinder"),
         "cylinders": Key(
             OneOf(
@@ -155,11 +159,14 @@ class Machine(Described):
         firing_order: tuple[int, ...] | None = None,
         load: Load | str | None = None,
         kurbel: int = FORMAT,
+        brake_torque: float | None = None,
         **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
         from dataclasses import replace
 
+        if brake_torque is not None:
+            keys["brake_power"] = 2 * math.pi * keys["speed"] * brake_torque
         given = (cylinder,) if cylinder else cylinders
         if firing_order or not isinstance(given, tuple):
             given = _standing(given, firing_order, keys.get("cycle", "two-stroke"))

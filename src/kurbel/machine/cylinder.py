@@ -72,7 +72,9 @@ class Cylinder(Described):
         ),
         "masses": Key(Record("kurbel.machine.masses:Masses"), "Masses of the moving parts", absent="no inertia"),
         "friction": Key(
-            Record("kurbel.machine.friction:Friction"), "Friction of crosshead and piston rings", absent="no friction"
+            Record("kurbel.machine.friction:Friction"),
+            "Friction of crosshead and piston rings, or a force",
+            absent="no friction",
         ),
         "crank_position": Key(Physical("angle"), "Angle by which this crank follows crank 1", absent="0 deg"),
         "bank_angle": Key(

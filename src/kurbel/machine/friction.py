@@ -1,4 +1,4 @@
-"""Friction of the crosshead on its guide and of the piston rings in the bore (Redtenbacher 1862)."""
+"""Friction along the stroke line: of the crosshead on its guide, of piston rings (Redtenbacher 1862), or as a force."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.declared.forms import Count, Number, Physical, Record
-from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.keys import Described, Key, Keys, check
 from kurbel.errors import Fault, refuse
 
 
@@ -29,16 +29,19 @@ class Rings(Described):
 
 @dataclass(frozen=True, eq=False)
 class Friction(Described):
-    """Coefficient f of the crosshead, None where it is left out, and the piston rings."""
+    """Coefficient f of the crosshead, None where it is left out, piston rings, and a force in N against the motion."""
 
     crosshead: float | None = None
     rings: Rings | None = None
+    constant: float | None = None
 
     KEYS: ClassVar[Keys] = {
         "crosshead": Key(Number(least=0), "Coefficient of friction of the crosshead on its guide", "f"),
         "rings": Key(Record("kurbel.machine.friction:Rings"), "Piston rings"),
+        "constant": Key(Physical("force", least=0), "Force against the motion, the same over the stroke", "F_0"),
     }
 
     def __post_init__(self) -> None:
-        if self.crosshead is None and self.rings is None:
-            refuse(Fault((), "no friction is given; leave 'friction' out or give 'crosshead' or 'rings'"))
+        check(self.KEYS, vars(self))
+        if self.crosshead is None and self.rings is None and self.constant is None:
+            refuse(Fault((), "no friction is given; leave 'friction' out or give 'crosshead', 'rings' or 'constant'"))

@@ -14,9 +14,9 @@ from kurbel.declared.forms import Number, Physical
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
-from kurbel.machine.indicator import CLEARANCE
+from kurbel.machine.indicator import CLEARANCE, CLEARANCE_OR_NONE
 
-_CLEARANCE = Key(CLEARANCE, "Clearance volume over stroke volume", "c", required=True)
+_CLEARANCE = Key(CLEARANCE_OR_NONE, "Clearance volume over stroke volume", "c", required=True)
 AIR_EXPONENT = 1.4
 """Exponent of the adiabatic line of air."""
 
@@ -93,6 +93,9 @@ class Steam(Described):
             faults.append(
                 Fault(("release",), f"the exhaust opens at {self.release:g}, before the cut-off at {self.cut_off:g}")
             )
+        if not self.clearance and self.compression:
+            message = "what is compressed needs a volume in the end; give 'clearance', or leave 'compression' out"
+            faults.append(Fault(("clearance",), message))
         refuse(*faults)
 
     def fault_in(self, cycle: str, lift: float) -> str:
@@ -127,6 +130,8 @@ class Compressor(Described):
         )
         if fault:
             return fault
+        if not self.clearance:
+            return ""
         top = after_polytrope(self.suction + lift, 1 + self.clearance, self.clearance, self.exponent) - lift
         if self.delivery < top:
             return ""

@@ -20,6 +20,11 @@ if TYPE_CHECKING:
 
 CLEARANCE = Number(least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
+CLEARANCE_OR_NONE = Number(least=1e-6, most=1e5, zero=True)
+"""The same where nothing need be compressed into it: then it may be left out of the theory."""
+
+
+_POINTS = Points("stroke fraction", "pressure", ratio=True)
 
 
 class Chamber(Protocol):
@@ -82,12 +87,12 @@ class Card(Described):
             instead="area",
             needs="drawn",
         ),
-        "expansion": Key(Points("stroke fraction", "pressure"), "Line while the burnt or admitted gas expands"),
-        "compression": Key(Points("stroke fraction", "pressure"), "Line while the chamber is compressed or empties"),
-        "intake": Key(Points("stroke fraction", "pressure"), "Suction line of a four-stroke cycle"),
-        "exhaust": Key(Points("stroke fraction", "pressure"), "Exhaust line of a four-stroke cycle"),
+        "expansion": Key(_POINTS, "Line while the burnt or admitted gas expands"),
+        "compression": Key(_POINTS, "Line while the chamber is compressed or empties"),
+        "intake": Key(_POINTS, "Suction line of a four-stroke cycle"),
+        "exhaust": Key(_POINTS, "Exhaust line of a four-stroke cycle"),
         "interpolate": Key(Choice(("linear", "polytropic")), "How points are joined", absent="linear"),
-        "clearance": Key(CLEARANCE, "Clearance volume over stroke volume, for `polytropic`", absent="not known"),
+        "clearance": Key(CLEARANCE_OR_NONE, "Clearance over stroke volume, for `polytropic`", absent="not known"),
     }
 
     @classmethod
@@ -105,8 +110,9 @@ class Card(Described):
         factor = drawn.unit if drawn else unit or (1, 1)
         whole = drawn.whole if drawn else 1.0
         faults = [*_missing_lines(given), *_all_line_faults(given, whole)]
-        if interpolate == "polytropic" and clearance is None:
-            faults.append(Fault(("interpolate",), "'polytropic' needs the 'clearance' volume over the stroke volume"))
+        if interpolate == "polytropic" and not clearance:
+            needed = "'polytropic' needs the 'clearance' volume over the stroke volume"
+            faults.append(Fault(("interpolate",), needed + (", more than 0" if clearance == 0 else "")))
         for name, points in given.items():
             faults += size_faults(points, factor, "pressure", (name,))
         refuse(*faults)

@@ -13,6 +13,10 @@ from kurbel.errors import Fault, refuse
 _ONE_OR_MORE: Form = OneOf(Physical("mass", least=0), Listing(Physical("mass", least=0)))
 
 
+def _part(text: str) -> Key:
+    return Key(_ONE_OR_MORE, text, instead="reciprocating")
+
+
 @dataclass(frozen=True, eq=False)
 class ConnectingRod(Described):
     """The connecting rod's mass in kg and how it moves.
@@ -84,13 +88,19 @@ class Masses(Described):
     connecting_rod: ConnectingRod | None = None
 
     KEYS: ClassVar[Keys] = {
-        "piston": Key(_ONE_OR_MORE, "Piston, or a list of pistons"),
-        "piston_rod": Key(_ONE_OR_MORE, "Piston rod"),
-        "crosshead": Key(_ONE_OR_MORE, "Crosshead"),
-        "other": Key(_ONE_OR_MORE, "Whatever else goes to and fro"),
+        "reciprocating": Key(
+            Physical("mass", least=0),
+            "All that goes to and fro, with its share of the connecting rod; instead of the parts",
+            "m",
+        ),
+        "piston": _part("Piston, or a list of pistons"),
+        "piston_rod": _part("Piston rod"),
+        "crosshead": _part("Crosshead"),
+        "other": _part("Whatever else goes to and fro"),
         "connecting_rod": Key(
             OneOf(Physical("mass", least=0), Record("kurbel.machine.masses:ConnectingRod")),
             "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
+            instead="reciprocating",
         ),
     }
 
@@ -99,7 +109,9 @@ class Masses(Described):
         """Return the masses that these keys of a machine file describe."""
         each = [mass for part in parts.values() for mass in (part if isinstance(part, tuple) else (part,))]
         if not each and connecting_rod is None:
-            refuse(Fault((), "no mass is given; leave 'masses' out or give 'piston', 'crosshead', …"))
+            refuse(
+                Fault((), "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …")
+            )
         rod = ConnectingRod(connecting_rod) if isinstance(connecting_rod, float) else connecting_rod
         return cls(math.fsum(each), rod)
 

@@ -8,7 +8,7 @@ from typing import Any
 from kurbel.declared.bounds import MOST_POINTS
 from kurbel.declared.forms.scalars import refused
 from kurbel.declared.keys import Form, Schema
-from kurbel.declared.numerals import parse_number
+from kurbel.declared.numerals import parse_number, parse_ratio
 from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.errors import Path, UnitError
 
@@ -16,25 +16,32 @@ _FAULTS_SHOWN = 3  # of one list: the others are of the same sort, as when every
 
 
 class Points(Form):
-    """A list of pairs of bare numbers, `[[x, y], …]`; becomes a list of (float, float)."""
+    """A list of pairs of bare numbers, `[[x, y], …]`, or of triples; becomes a list of tuples of floats.
+
+    ratio: the first number of each may also be a quotient or in percent.
+    """
 
     shape = list
 
-    def __init__(self, x: str, y: str, least: int = 2) -> None:
-        self.x, self.y, self.least = x, y, least
+    def __init__(self, *names: str, least: int = 2, ratio: bool = False) -> None:
+        self.columns, self.least, self.ratio = names, least, ratio
+        self.called, self.count = {2: ("pair", "two"), 3: ("triple", "three")}[len(names)]
+        self.one = f"[{', '.join(names)}]"
 
     def expected(self) -> str:
-        return f"a list of pairs [[{self.x}, {self.y}], …]"
+        return f"a list of {self.called}s [{self.one}, …]"
 
     def example(self) -> str:
-        return "[[0, 1], [1, 2]]"
+        return "[[0, 1], [1, 2]]" if len(self.columns) == 2 else "[[1, 20, -5]]"
 
     def written(self) -> str:
-        return f"`[[{self.x}, {self.y}], …]`"
+        return f"`[{self.one}, …]`"
 
     def schema(self, definitions: Schema) -> Schema:
-        pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
-        return {"type": "array", "items": pair, "minItems": self.least, "maxItems": MOST_POINTS}
+        length = len(self.columns)
+        number = {"type": ["number", "string"] if self.ratio else "number"}
+        one = {"type": "array", "items": number, "minItems": length, "maxItems": length}
+        return {"type": "array", "items": one, "minItems": self.least, "maxItems": MOST_POINTS}
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read the pairs, and tell the first few that are none."""
@@ -44,18 +51,18 @@ class Points(Form):
             refused(f"{'a value is missing; write' if missing else 'expected'} {self.expected()}{got}")
         if len(value) > MOST_POINTS:
             refused(f"{len(value)} points; more than {MOST_POINTS} are not taken, thin them out")
-        pairs = [_pair(item) for item in value]
+        pairs = [self._numbers(item) for item in value]
         bad = [index for index, pair in enumerate(pairs) if pair is None]
         if bad:
             return self._report(reading, value, path, bad)
         if len(pairs) < self.least:
             only = f"only {len(pairs)} point" if pairs else "no points"
-            refused(f"{only}; at least {self.least} are needed, [[{self.x}, {self.y}], …]")
+            refused(f"{only}; at least {self.least} are needed, [{self.one}, …]")
         return pairs
 
     def _report(self, reading: Reading, value: list[Any], path: Path, bad: list[int]) -> Any:
         if all(isinstance(item, str) for item in value):
-            refused(f"expected {self.expected()}, got single values; put each pair into its own brackets")
+            refused(f"expected {self.expected()}, got single values; put each {self.called} into its own brackets")
         told = [index for index in bad if value[index] is not REFUSED]
         for index in told[:_FAULTS_SHOWN]:
             self._explain(reading, value[index], (*path, index))
@@ -67,48 +74,51 @@ class Points(Form):
 
     def _explain(self, reading: Reading, item: Any, path: Path) -> None:
         """Note what is wrong with one point."""
-        pair = f"[{self.x}, {self.y}]"
+        pair = f"{self.called} {self.one}"
         if not isinstance(item, list):
-            reading.fault(path, f"expected a pair {pair}, got {kind_of(item)}")
+            reading.fault(path, f"expected a {pair}, got {kind_of(item)}")
         elif any(isinstance(entry, (list, dict)) for entry in item):
-            reading.fault(path, f"expected a pair {pair} of numbers; are there too many brackets?")
-        elif len(item) != 2:
-            reading.fault(path, _wrong_length(item, pair))
+            reading.fault(path, f"expected a {pair} of numbers; are there too many brackets?")
+        elif len(item) != len(self.columns):
+            reading.fault(path, _wrong_length(item, pair, self.count, len(self.columns)))
         else:
-            for index, name in enumerate((self.x, self.y)):
-                if item[index] is not REFUSED and (message := _wrong_number(name, item[index])):
+            for index, name in enumerate(self.columns):
+                if item[index] is not REFUSED and (message := self._wrong_number(index, name, item[index])):
                     reading.fault((*path, index), message)
 
+    def _numbers(self, item: Any) -> tuple[float, ...] | None:
+        """Return the numbers of a point, None where it is none."""
+        if type(item) is not list or len(item) != len(self.columns):
+            return None
+        if any(type(entry) is not Plain or len(entry) > LONGEST_VALUE for entry in item):
+            return None
+        try:
+            return tuple(map(parse_number, item))
+        except UnitError:
+            return self._with_ratio(item) if self.ratio else None
 
-def _pair(item: Any) -> tuple[float, float] | None:
-    """Return the numbers of a point, None where it is none."""
-    if type(item) is not list or len(item) != 2:
-        return None
-    x, y = item
-    if type(x) is not Plain or type(y) is not Plain or len(x) > LONGEST_VALUE or len(y) > LONGEST_VALUE:
-        return None
-    try:
-        return parse_number(x), parse_number(y)
-    except UnitError:
-        return None
+    def _with_ratio(self, item: list[str]) -> tuple[float, ...] | None:
+        try:
+            return parse_ratio(item[0]), *map(parse_number, item[1:])
+        except UnitError:
+            return None
+
+    def _wrong_number(self, index: int, name: str, entry: Any) -> str:
+        if is_nothing(entry):
+            return f"a value is missing; write the {name} as a number"
+        if not isinstance(entry, Plain):
+            return f'expected a number, got the text "{shown(entry)}"; leave out the quotation marks'
+        try:
+            (parse_ratio if self.ratio and not index else parse_number)(shown(entry, LONGEST_VALUE))
+        except UnitError as error:
+            return str(error)
+        return ""
 
 
-def _wrong_length(item: list[Any], pair: str) -> str:
+def _wrong_length(item: list[Any], pair: str, count: str, length: int) -> str:
     written = shown(", ".join(str(entry) for entry in item[:6]))
-    if len(item) == 1 and re.fullmatch(r"\S+\s+\S+", str(item[0])):
+    if len(item) == 1 < length < 3 and re.fullmatch(r"\S+\s+\S+", str(item[0])):
         return f"a comma is missing between the two numbers; write [{shown(', '.join(str(item[0]).split()))}]"
-    if len(item) in (3, 4) and all(re.fullmatch(r"[-+]?\d+", str(entry)) for entry in item):
-        return f"a pair {pair} has two numbers, [{written}] has {len(item)}; write decimal points, such as 1.5 for 1,5"
-    return f"a pair {pair} has two numbers, [{written}] has {len(item) or 'none'}"
-
-
-def _wrong_number(name: str, entry: Any) -> str:
-    if is_nothing(entry):
-        return f"a value is missing; write the {name} as a number"
-    if not isinstance(entry, Plain):
-        return f'expected a number, got the text "{shown(entry)}"; leave out the quotation marks'
-    try:
-        parse_number(shown(entry, LONGEST_VALUE))
-    except UnitError as error:
-        return str(error)
-    return ""
+    if length < len(item) <= 2 * length and all(re.fullmatch(r"[-+]?\d+", str(entry)) for entry in item):
+        return f"a {pair} has {count} numbers, [{written}] has {len(item)}; write decimal points, such as 1.5 for 1,5"
+    return f"a {pair} has {count} numbers, [{written}] has {len(item) or 'none'}"

@@ -53,7 +53,7 @@ class _Bounded(Scalar):
     """A number with its bounds, in the base of its kind.
 
     above, below: the value must be larger or smaller; least, most: it must not be smaller or larger. `words` are texts
-    allowed instead, such as `infinite`, with the value they stand for.
+    allowed instead, such as `infinite`, with the value they stand for; zero: 0 is allowed beside what is in the bounds.
     """
 
     def __init__(
@@ -64,8 +64,9 @@ class _Bounded(Scalar):
         below: float | None = None,
         most: float | None = None,
         words: Words = (),
+        zero: bool = False,
     ) -> None:
-        self.kind, self.words = kind, words
+        self.kind, self.words, self.zero = kind, words, zero
         self.above, self.least, self.below, self.most = above, least, below, most
 
     def parse(self, text: str, folder: str) -> float:
@@ -98,6 +99,8 @@ class _Bounded(Scalar):
         >>> Physical("length", least=0.1).out_of_bounds(-0.3)
         'is too small; it must be at least 100 mm'
         """
+        if self.zero and value == 0:
+            return ""
         for bound, holds, wrong in (
             (self.above, gt, "is too small; it must be more than"),
             (self.least, ge, "is too small; it must be at least"),
@@ -112,7 +115,8 @@ class _Bounded(Scalar):
         return "".join(f" or '{word}'" for word, _ in self.words)
 
     def _schema(self, number: Schema) -> Schema:
-        return {"anyOf": [number, {"enum": [word for word, _ in self.words]}]} if self.words else number
+        others: list[Any] = [word for word, _ in self.words] + [0] * self.zero
+        return {"anyOf": [number, {"enum": others}]} if others else number
 
 
 class Physical(_Bounded):

@@ -140,6 +140,12 @@ class Drive:
 
         return ring_force(friction.rings, self.cylinder.pistons[0].bore)
 
+    @cached_property
+    def steady_friction(self) -> float:
+        """Friction in N that is the same over the stroke: of the piston rings, and what is given as a force."""
+        friction = self.cylinder.friction
+        return self.ring_force + ((friction.constant or 0.0) if friction else 0.0)
+
     @property
     def has_friction(self) -> bool:
         """Whether the machine names any friction."""

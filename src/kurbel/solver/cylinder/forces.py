@@ -242,12 +242,23 @@ class CylinderForces:
         friction = self.drive.cylinder.friction
         if friction is None or friction.rings is None:
             return None
-        return self.drive.ring_force * 2 * self.drive.mechanism.stroke * self.drive.revolutions
+        return self.drive.ring_force * self._way
+
+    @cached_property
+    def constant_work(self) -> float | None:
+        """Work of the friction that is given as a force, in J per cycle."""
+        friction = self.drive.cylinder.friction
+        return None if friction is None or friction.constant is None else friction.constant * self._way
+
+    @property
+    def _way(self) -> float:
+        """The way in m of what slides, there and back, per cycle."""
+        return 2 * self.drive.mechanism.stroke * self.drive.revolutions
 
     @cached_property
     def friction_work(self) -> float | None:
         """Work of all friction in J per cycle."""
-        given = [work for work in (self.crosshead_work, self.ring_work) if work is not None]
+        given = [work for work in (self.crosshead_work, self.ring_work, self.constant_work) if work is not None]
         return math.fsum(given) if given and self.drive.has_force else None
 
     @cached_property

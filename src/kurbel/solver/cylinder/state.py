@@ -208,15 +208,16 @@ class State:
         return _sum(self.P_inertia, self.P_start)
 
     @cached_property
-    def _after_rings(self) -> Any:
-        """Force left for crosshead and rod after ring friction in N."""
-        return self.P - self.direction * self.drive.ring_force if self.drive.ring_force else self.P
+    def _after_steady_friction(self) -> Any:
+        """Force left for crosshead and rod after friction that is the same over the stroke, in N."""
+        steady = self.drive.steady_friction
+        return self.P - self.direction * steady if steady else self.P
 
     @cached_property
     def guide_sense(self) -> Any:
         """The force whose sign is that of N: P sin ψ + G cos ψ with the load G on the guide, in N."""
         sin_psi, cos_psi = self._rod if self._rod else (0.0, 1.0)
-        return self._after_rings * sin_psi + cos_psi * self._guide_load
+        return self._after_steady_friction * sin_psi + cos_psi * self._guide_load
 
     @cached_property
     def _guide_load(self) -> Any:
@@ -241,7 +242,7 @@ class State:
             alone = self.drive.weight if self.drive.mechanism.known_across else None
             return alone and np.full_like(self.within, alone[1])
         if not self.drive.crosshead_friction:
-            return self._after_rings * (self._rod[0] / self._rod[1]) + self._guide_load
+            return self._after_steady_friction * (self._rod[0] / self._rod[1]) + self._guide_load
         return self.guide_sense / self._below
 
     @cached_property
@@ -273,10 +274,10 @@ class State:
 
     @cached_property
     def F_friction(self) -> Any:
-        """Friction of crosshead and rings along the stroke line in N, positive toward the shaft."""
+        """All friction along the stroke line in N, positive toward the shaft."""
         if self.P is None or not self.drive.has_friction:
             return None
-        return (self._crosshead_drag + self.drive.ring_force) * -self.direction
+        return (self._crosshead_drag + self.drive.steady_friction) * -self.direction
 
     @cached_property
     def along_rod(self) -> Any:

@@ -65,12 +65,11 @@ class ProcessPressure:
     def _curved(self, straight: Any, share: Any, segment: Indices) -> Any:
         """Return P (V/V′)^n less the ambient on polytropic segments, and the straight value elsewhere."""
         exponents, clearance = self._exponents[segment], self.process.clearance
+        curved = exponents != 0  # what is straight may begin without any volume
         # beside a dead centre rounding may put x a hair outside the stroke; the clearance keeps the volume positive
-        swelling = (share + clearance) / (self._z[segment] + clearance)
+        swelling = _chosen(curved, share + clearance, 1.0) / np.where(curved, self._z[segment] + clearance, 1.0)
         power = (self._p[segment] + self.process.lift) * swelling**-exponents - self.setting.ambient
-        if hasattr(power, "where"):
-            return power.where(exponents != 0, power, straight)
-        return np.where(exponents != 0, power, straight)
+        return _chosen(curved, power, straight)
 
     @cached_property
     def bends(self) -> tuple[float, ...]:
@@ -87,6 +86,11 @@ class ProcessPressure:
     def area(self) -> float:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
         return self.process.area
+
+
+def _chosen(condition: Array, value: Any, otherwise: Any) -> Any:
+    """Return an array or a jet that is `value` where the condition holds, and `otherwise` elsewhere."""
+    return getattr(value, "where", np.where)(condition, value, otherwise)
 
 
 _ROUNDING = 3e-13

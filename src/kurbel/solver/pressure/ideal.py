@@ -36,6 +36,8 @@ class _Drawing:
 
     def polytrope(self, z: float, p: float, next_z: float, exponent: float) -> Segment:
         """Return p V^n = const from the point (z, p) to the stroke fraction next_z."""
+        if next_z == z:  # even where there is no volume
+            return _isobar(z, p, z)
         absolute = after_polytrope(p + self.lift, z + self.clearance, next_z + self.clearance, exponent)
         return Segment(z, p, next_z, absolute - self.lift, exponent)
 

@@ -1,0 +1,68 @@
+"""Masses, friction and what turns with the shaft, as people know them: a sum, a force, a rim, harmonics, a file."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from click.testing import CliRunner
+
+from kurbel import loads, solve
+from kurbel.cli import kurbel
+from kurbel.errors import MachineFileError
+from kurbel.solver.cylinder.forces import CylinderForces
+
+ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
+GAS = "indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}\n"
+OMEGA = 2 * math.pi
+
+
+def forces_of(text: str) -> CylinderForces:
+    (forces,) = solve(loads(ENGINE + text)).cylinders
+    return forces
+
+
+def refused(text: str) -> str:
+    with pytest.raises(MachineFileError) as caught:
+        loads(text)
+    return str(caught.value)
+
+
+def test_the_sum_of_the_reciprocating_masses() -> None:
+    forces = forces_of("masses: {reciprocating: 250 kg}\n")
+    b = 0.4 * OMEGA**2 * (1 + 0.2)  # at the inner dead centre, R 291
+    assert forces.m == 250
+    assert forces.at([0]).P_inertia[0] == pytest.approx(-250 * b, rel=1e-13)
+    assert "'reciprocating' and 'piston' say the same thing" in refused(
+        ENGINE + "masses: {reciprocating: 250 kg, piston: 20 kg}\n"
+    )
+    assert "'reciprocating' and 'connecting_rod'" in refused(
+        ENGINE + "masses: {reciprocating: 250 kg, connecting_rod: 20 kg}\n"
+    )
+
+
+@pytest.mark.parametrize("crosshead", ["", ", crosshead: 0.1"])
+def test_a_constant_friction_takes_its_force_times_the_way(crosshead: str) -> None:
+    forces = forces_of(GAS + f"friction: {{constant: 2 kN{crosshead}}}\n")
+    (plain,) = solve(loads(ENGINE + GAS)).cylinders
+    if not crosshead:
+        assert forces.friction_work == pytest.approx(2000 * 2 * 0.8, rel=1e-14)
+        assert forces.at([60, 300]).F_friction.tolist() == [-2000, 2000]
+        assert forces.at([60]).S[0] == pytest.approx(plain.at([60]).S[0] * (1 - 2000 / plain.at([60]).P[0]), rel=1e-13)
+    else:
+        assert forces.constant_work == 3200
+        assert forces.friction_work == pytest.approx(3200 + (forces.crosshead_work or 0), rel=1e-15)
+    assert abs(forces.energy_residual or 0) < 1e-13
+    assert "no friction is given" in refused(ENGINE + "friction: {}\n")
+    assert "constant: -2 kN is too small" in refused(ENGINE + "friction: {constant: -2 kN}\n")
+
+
+def test_brake_torque() -> None:
+    """At 60 rpm 10 kN m are 62.8 kW; 4 bar on the piston indicate 50.9 kW."""
+    machine = loads(ENGINE + GAS + "brake_torque: 10 kN m\n")
+    assert machine.brake_power == pytest.approx(2 * math.pi * 1e4, rel=1e-15)
+    told = CliRunner().invoke(kurbel, ["check", "-"], input=ENGINE + GAS + "brake_torque: 10 kN m\n").stdout
+    assert "is below the brake power" in " ".join(told.split())
+    both = refused(ENGINE + GAS + "brake_torque: 10 kN m\nbrake_power: 3 kW\n")
+    assert "'brake_power' and 'brake_torque' say the same thing" in both
+    assert "'brake_torque' needs 'speed' beside it" in refused("crank: 1 m\nrod: 4 m\nbrake_torque: 10 kN m\n")
