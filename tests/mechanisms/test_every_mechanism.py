@@ -51,10 +51,15 @@ MACHINES = {
     "four-bar, nearly flat": FourBar(0.1, 0.3, 0.25, 0.4499),
     "four-bar, long rocker": FourBar(0.1, 0.5, 9.0, 9.0),
     "four-bar, slow back": FourBar(0.04, 0.08, 0.15, 0.15),
+    "drag link": FourBar(0.3, 0.25, 0.3, 0.1),
+    "drag link, nearly flat": FourBar(0.3, 0.25, 0.2, 0.1499),
+    "drag link, long coupler": FourBar(0.2, 2.0, 1.9, 0.05),
     "parallel crank": ParallelCrank(0.3, 2.0),
     "parallel crank, heavy coupler": ParallelCrank(0.3, 2.0, 140.0),
 }
-STROKES = {name: machine for name, machine in MACHINES.items() if machine.name != "parallel-crank"}
+STROKES = {name: machine for name, machine in MACHINES.items() if not machine.turns}
+TURNING = {name: machine for name, machine in MACHINES.items() if machine.turns}
+MOVED = {name: machine for name, machine in MACHINES.items() if machine.slides or hasattr(machine, "direction")}
 ANGLES = (3.0, 47.0, 90.0, 118.0, 177.0, 181.0, 233.0, 291.0, 352.0)
 
 
@@ -73,7 +78,7 @@ def exact_swing(machine):
     return lambda angle: mp.atan2(*machine.direction(angle))
 
 
-@every(STROKES)
+@every(MOVED)
 @pytest.mark.parametrize("degrees", ANGLES)
 def test_slope_and_curvature_are_the_derivatives_of_the_coordinate(machine, degrees):
     function = exact_coordinate(machine)
@@ -110,6 +115,23 @@ def test_one_turn_later_all_is_the_same(machine):
     angles = np.arange(0.0, 360.0, 7.5)
     for function in (machine.coordinate, machine.slope, machine.curvature):
         assert (function(CrankAngle.of(angles)) == function(CrankAngle.of(angles + 360.0))).all()
+
+
+@every(TURNING)
+def test_what_turns_fully_comes_round_with_the_crank(machine):
+    """Without a jump, forward all the way, from `start` by `stroke` = 2π, one turn a turn; and back by the inverse."""
+    angles = np.arange(0.0, 360.5, 0.5)
+    theta = machine.coordinate(CrankAngle.of(angles))
+    assert machine.stroke == math.tau
+    assert theta[0] == pytest.approx(machine.start, abs=1e-15)
+    assert theta[-1] - theta[0] == pytest.approx(math.tau, rel=1e-14)
+    mean = (machine.slope(CrankAngle.of(angles))[1:] + machine.slope(CrankAngle.of(angles))[:-1]) / 2
+    assert np.diff(theta) == pytest.approx(mean * math.radians(0.5), rel=0.05)
+    assert (mean > 0).all()
+    assert machine.coordinate(CrankAngle.of(angles - 720.0)) == pytest.approx(theta - 4 * math.pi, abs=1e-14)
+    assert np.degrees(theta) == pytest.approx(machine.swing_at(CrankAngle.of(angles)).degrees, abs=1e-12)
+    if type(machine).crank_angles_at is not Mechanism.crank_angles_at:
+        assert machine.crank_angles_at(theta - machine.start, True) == pytest.approx(angles, abs=1e-9)
 
 
 @every(STROKES)
@@ -239,7 +261,7 @@ def test_the_force_on_the_pin_has_the_parts_t_and_d(machine):
     assert abs(offered[0] / state.P) == pytest.approx(parts, rel=1e-13)
 
 
-@every(STROKES)
+@every(MOVED)
 @pytest.mark.parametrize("wrong", [0.0, -1.0, math.inf, math.nan])
 def test_lengths_must_be_positive_and_finite(machine, wrong):
     fields = {field.name: getattr(machine, field.name) for field in dataclasses.fields(machine)}
@@ -254,7 +276,7 @@ def resized(machine, scale):
     return type(machine)(**{key: value * scale if value and key in lengths else value for key, value in fields.items()})
 
 
-@every(STROKES)
+@every(MOVED)
 @pytest.mark.parametrize("scale", [2.0**-1000, 2.0**1000])
 def test_size_does_not_matter(machine, scale):
     scaled = resized(machine, scale)

@@ -7,14 +7,17 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from precise import DEGREE, exact_angle
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import RuleError
+from kurbel.machine_file import loads
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.report.motion import motion_report
+from kurbel.solver.case import Case
 
 LINKAGES = {
     "usual": FourBar(0.04, 0.15, 0.08, 0.15),
@@ -166,8 +169,16 @@ def test_the_working_swing_is_the_slower_one():
         ((0.1, 0.2, 0.3, 0.2), "the linkage folds flat once a turn"),
         ((0.04, 0.08, 0.11, 0.15), "the linkage folds flat once a turn"),
         ((0.1, 0.1, 0.3, 0.3), "the linkage folds flat once a turn"),
-        ((0.2, 0.15, 0.3, 0.3), "200 mm is longer than the coupler 150 mm; the crank must be the shortest link"),
-        ((0.3, 0.25, 0.3, 0.1), "300 mm is longer than the frame 100 mm"),
+        ((0.2, 0.15, 0.3, 0.3), "200 mm is longer than the coupler 150 mm; the crank or the frame must be the"),
+        ((0.3, 0.25, 0.2, 0.15), "the linkage folds flat once a turn"),
+        (
+            (0.3, 0.25, 0.2, 0.16),
+            "it cannot turn fully: frame 160 mm + crank 300 mm is more than coupler 250 mm + rocker",
+        ),
+        (
+            (0.9, 0.25, 0.3, 0.1),
+            "the links do not meet: crank 900 mm is no shorter than coupler 250 mm + rocker 300 mm",
+        ),
         (
             (0.1, 0.2, 0.3, 0.7),
             "the links do not meet: frame 700 mm is no shorter than crank 100 mm + coupler 200 mm + rocker 300 mm",
@@ -183,11 +194,14 @@ def test_loops_that_do_not_turn(lengths, message):
 @given(st.tuples(*[st.integers(1, 60)] * 4))
 @settings(max_examples=300, deadline=None)
 def test_grashof_decides(lengths):
-    """Every linkage of whole centimetres is taken exactly when its crank is shortest and Grashof's sum is less."""
+    """Every linkage of whole centimetres is taken exactly when the triangle on its diagonal closes all round.
+
+    That is where crank or frame is shortest and Grashof's sum is less; a diagonal runs from |d − a| to d + a.
+    """
     crank, coupler, rocker, frame = lengths
-    longest = max(coupler, rocker, frame)
-    turns = crank < min(coupler, rocker, frame) and 2 * (crank + longest) < sum(lengths)
-    assume(min(lengths) > 0)
+    turns = abs(frame - crank) > abs(coupler - rocker) and frame + crank < coupler + rocker
+    grashof = 2 * (min(lengths) + max(lengths)) < sum(lengths) and min(crank, frame) < min(coupler, rocker)
+    assert turns == grashof
     metres = [length / 100 for length in lengths]
     if turns:
         angle = CrankAngle.of(np.linspace(0, 360, 25))
@@ -199,3 +213,27 @@ def test_grashof_decides(lengths):
 
 def test_exact_angles_agree_with_floats():
     assert float(exact_angle(30.0).sin) == 0.5
+
+
+def test_drag_link_in_a_machine_file():
+    """Frame shortest: both cranks turn. No dead centres, strokes or swing; one turn takes out 2π of the moment."""
+    keys = "crank: 300 mm\ncoupler: 250 mm\nrocker: 300 mm\nframe: 100 mm"
+    case = Case(loads(f"speed: 60 rpm\nmechanism: four-bar\n{keys}\nmoment: {{work: 900 Nm}}"))
+    report = motion_report(case, (0.0, 90.0), None, "si")
+    told = {one.id for one in report.parts[0].key_values}
+    assert {"theta_dot_max", "transmission_min"} <= told
+    assert not {"phi_idc", "phi_odc", "swing", "theta_max", "time_ratio", "c_work_max"} & told
+    assert any("drag link" in note for note in report.notes)
+    assert case.cylinders[0].drive.resistance_work == pytest.approx(-900 * math.tau, rel=1e-15)
+    # mean of θ̇ over a turn is ω: both shafts make one turn in a second
+    turn = case.cylinders[0].at(np.arange(360.0)).theta_dot
+    assert turn.mean() == pytest.approx(math.tau, rel=1e-12)
+
+
+def test_drag_link_of_equal_cranks_passes_the_line_of_the_pivots_in_symmetry():
+    """a = c: turned by 180° − θ(φ) it runs backward through itself, so that θ(180° − θ) = 180° − φ."""
+    machine = FourBar(0.3, 0.25, 0.3, 0.1)
+    phi = np.linspace(0, 360, 25)
+    theta = machine.swing_at(CrankAngle.of(phi)).degrees
+    back = machine.swing_at(CrankAngle.of(180 - theta)).degrees
+    assert back == pytest.approx(180 - phi, abs=1e-11)

@@ -87,11 +87,6 @@ class Mechanism(Described):
     name: ClassVar[str]
     OFFERS: ClassVar[tuple[Offer, ...]] = ()
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = ()
-    slides: ClassVar[bool] = True
-    turns: ClassVar[bool] = False
-    """Whether the output turns on and on, so that it has no return stroke."""
-    quick_return: ClassVar[bool] = False
-    """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
     guided: ClassVar[bool] = True
     """Whether the side force N rests on a guide; otherwise it bends the piston rod."""
     far_pin: ClassVar[str] = "crosshead_pin"
@@ -106,6 +101,26 @@ class Mechanism(Described):
         missing = [name for name in _REQUIRED if name not in given]
         if missing:
             raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
+
+    @property
+    def slides(self) -> bool:
+        """Whether the output moves to and fro on a line."""
+        return True
+
+    @property
+    def turns(self) -> bool:
+        """Whether the output turns on and on, so that it has no return stroke."""
+        return False
+
+    @property
+    def has_dead_centres(self) -> bool:
+        """Whether there are dead centres; otherwise `dead_centres` only part a turn into halves."""
+        return True
+
+    @property
+    def quick_return(self) -> bool:
+        """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
+        return False
 
     @property
     def stroke(self) -> float:

@@ -1,12 +1,13 @@
-"""Four-bar crank-rocker (Bogenschubkurbel), R ch. 14 A: a crank, a coupler and a rocker on a frame."""
+"""Four-bar linkage: the crank-rocker (Bogenschubkurbel), R ch. 14 A, and the drag link, whose rocker turns too."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.quantity import Quantity
@@ -18,16 +19,13 @@ from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
 
-if TYPE_CHECKING:
-    from kurbel.crank_angle import CrankAngle
-
 
 class Loop(NamedTuple):
     """Four links over the length of the frame, with the gaps that decide how they close.
 
-    crank a, coupler b, rocker c; span 1 − a; flat b + c − a − 1; near_coupler 1 − a + b − c; near_rocker 1 − a + c − b.
-    It closes at the crank angles where its triangle of coupler, rocker and diagonal does, whether the crank turns fully
-    or not.
+    crank a, coupler b, rocker c; span 1 − a; flat b + c − a − 1; near_coupler |1 − a| + b − c; near_rocker
+    |1 − a| + c − b. It closes at the crank angles where its triangle of coupler, rocker and diagonal does, whether the
+    crank turns fully or not.
     """
 
     crank: float
@@ -43,14 +41,15 @@ class Loop(NamedTuple):
     def of(cls, crank: float, coupler: float, rocker: float, frame: float) -> Loop:
         """Return the loop of four lengths in one unit."""
         a, b, c = crank / frame, coupler / frame, rocker / frame
+        near, far = min(crank, frame), max(crank, frame)
         return cls(
             a,
             b,
             c,
             (frame - crank) / frame,
             math.fsum((coupler, rocker, -crank, -frame)) / frame,
-            math.fsum((frame, coupler, -crank, -rocker)) / frame,
-            math.fsum((frame, rocker, -crank, -coupler)) / frame,
+            math.fsum((far, coupler, -near, -rocker)) / frame,
+            math.fsum((far, rocker, -near, -coupler)) / frame,
             (coupler - rocker) / frame,
         )
 
@@ -59,7 +58,7 @@ class Loop(NamedTuple):
         a, near, far = self.crank, angle.versine, angle.vercosine
         square = self.span * self.span + 2 * a * near
         diagonal = sqrt(square)
-        lift = 2 * a * near / (diagonal + abs(self.span)) + (abs(self.span) - self.span)  # diagonal − (1 − a)
+        lift = 2 * a * near / (diagonal + abs(self.span))  # diagonal − |1 − a|
         drop = 2 * a * far / (1 + a + diagonal)  # 1 + a − diagonal
         first, second = self.near_coupler + lift, self.near_rocker + lift
         beyond, total = self.flat + drop, self.coupler + self.rocker + diagonal
@@ -84,6 +83,13 @@ class Closure(NamedTuple):
         foot = (self.square - self.loop.unlike * (self.loop.coupler + self.loop.rocker)) / 2
         scale = self.square * self.loop.rocker
         return (foot * across + self.area * along) / scale, (self.area * across - foot * along) / scale
+
+    @property
+    def turned(self) -> Any:
+        """θ in degrees of a rocker that runs on with φ: the turning of the diagonal less the angle at its pivot."""
+        foot = (self.square - self.loop.unlike * (self.loop.coupler + self.loop.rocker)) / 2
+        lead = bearing(self.angle.sin, self.near - self.loop.span)  # of the diagonal before the crank
+        return self.angle.degrees + lead - bearing(self.area, foot)
 
     @property
     def _by_coupler(self) -> Any:
@@ -158,11 +164,12 @@ COUPLER_OFFERS = (
 
 @dataclass(frozen=True, eq=False)
 class FourBar(Mechanism):
-    """A crank that turns fully and swings a rocker through a coupler.
+    """A crank that turns fully and through a coupler swings a rocker, or, where the frame is shortest, turns it too.
 
     crank, coupler, rocker, frame: a, b, c, d in m. φ and θ count from the line crank pivot → rocker pivot, with the
     coupler's joint on the side where the crank pin is for 0 < φ < 180°; that side holds for the whole turn. The working
-    swing is the slower one. Raises RuleError unless the crank is the shortest link and a + longest < sum of the others.
+    swing is the slower one. Raises RuleError unless crank or frame is the shortest link and together with the longest
+    shorter than the other two (Grashof): no other crank turns fully.
     """
 
     crank: float
@@ -178,7 +185,6 @@ class FourBar(Mechanism):
         _transmission("transmission_min", "min", "Smallest transmission angle"),
         _transmission("transmission_max", "max", "Largest transmission angle"),
     )
-    quick_return: ClassVar[bool] = True
     far_pin: ClassVar[str] = "rocker_pin"
     KEYS: ClassVar[Keys] = {
         "crank": Key(Physical("length", above=0), "Crank radius", "a", required=True),
@@ -188,32 +194,45 @@ class FourBar(Mechanism):
     }
 
     def __post_init__(self) -> None:
-        links = {"coupler": self.coupler, "rocker": self.rocker, "frame": self.frame}
-        check_lengths(crank=self.crank, **links)
-        longest = max(links, key=lambda name: links[name])
-        others = [name for name in links if name != longest]
-        gap = math.fsum((*(links[name] for name in others), -self.crank, -links[longest]))
+        # among equals the crank comes first
+        links = {name: float(getattr(self, name)) for name in ("crank", "frame", "coupler", "rocker")}
+        check_lengths(**links)
+        shortest, *others, longest = sorted(links, key=lambda name: links[name])
+        gap = math.fsum((*(links[name] for name in others), -links[shortest], -links[longest]))
         # lengths that were written in decimals meet a change point only within their rounding
         rounding = 2 * math.ulp(links[longest])
-        if gap > rounding and self.crank < min(links.values()):
-            return
-        raise RuleError(Fault(("crank",), self._locked(longest, others, gap, rounding)))
+        if gap <= rounding or shortest not in ("crank", "frame"):
+            raise RuleError(Fault(("crank",), self._locked(shortest, longest, gap, rounding)))
 
-    def _locked(self, longest: str, others: list[str], gap: float, rounding: float) -> str:
+    def _locked(self, shortest: str, longest: str, gap: float, rounding: float) -> str:
         def named(name: str) -> str:
             return f"{name} {show(getattr(self, name), 'length')}"
 
-        pair = " + ".join(named(name) for name in others)
-        shortest = min((*others, longest), key=lambda name: float(getattr(self, name)))
-        if math.fsum((self.crank, *(getattr(self, name) for name in others), -getattr(self, longest))) <= 0:
-            return f"the links do not meet: {named(longest)} is no shorter than {named('crank')} + {pair}"
-        if self.crank > getattr(self, shortest):
+        rest = [name for name in self.KEYS if name != longest]
+        pair = " + ".join(named(name) for name in rest if name != shortest)
+        if math.fsum((*(getattr(self, name) for name in rest), -getattr(self, longest))) <= 0:
+            sides = " + ".join(named(name) for name in rest)
+            return f"the links do not meet: {named(longest)} is no shorter than {sides}"
+        if shortest not in ("crank", "frame"):
             crank = show(self.crank, "length")
-            return f"{crank} is longer than the {named(shortest)}; the crank must be the shortest link"
+            return f"{crank} is longer than the {named(shortest)}; the crank or the frame must be the shortest link"
+        sums = f"{named(shortest)} + {named(longest)}"
         if abs(gap) <= rounding:
-            sums = f"{named('crank')} + {named(longest)} = {pair}"
-            return f"the linkage folds flat once a turn and may go on either way from there (change point): {sums}"
-        return f"it cannot turn fully: {named('crank')} + {named(longest)} is more than {pair} (Grashof)"
+            flat = "the linkage folds flat once a turn and may go on either way from there (change point)"
+            return f"{flat}: {sums} = {pair}"
+        return f"it cannot turn fully: {sums} is more than {pair} (Grashof)"
+
+    @property
+    def turns(self) -> bool:
+        """Whether the rocker turns fully with the crank: the frame is the shortest link (drag link, double crank)."""
+        return self.frame < self.crank
+
+    @property
+    def quick_return(self) -> bool:
+        """Whether the rocker swings."""
+        return not self.turns
+
+    has_dead_centres = quick_return
 
     @cached_property
     def loop(self) -> Loop:
@@ -225,8 +244,8 @@ class FourBar(Mechanism):
         return self.loop.at(angle).direction
 
     def coordinate(self, angle: CrankAngle) -> Any:
-        """Return θ in radians."""
-        return bearing(*self.direction(angle)) * (math.pi / 180)
+        """Return θ in radians; where it turns fully, it runs on with φ."""
+        return self.swing_at(angle).degrees * (math.pi / 180)
 
     def slope(self, angle: CrankAngle) -> Any:
         """Return dθ/dφ, by loop closure."""
@@ -239,7 +258,8 @@ class FourBar(Mechanism):
     def swing_at(self, angle: CrankAngle) -> Swing:
         """Return the rocker at the crank angle."""
         closure = self.loop.at(angle)
-        return Swing(bearing(*closure.direction), closure.slope, closure.curvature)
+        degrees = closure.turned if self.turns else bearing(*closure.direction)
+        return Swing(degrees, closure.slope, closure.curvature)
 
     @property
     def coupler_length(self) -> float:
@@ -270,7 +290,12 @@ class FourBar(Mechanism):
         return math.sqrt(frame_share * (no_line / no_rocker)), math.sqrt(frame_share * (no_rocker / no_line))
 
     def dead_centres(self) -> tuple[float, float]:
-        """Return the crank angles of smallest and of largest θ: crank and coupler in line, stretched and folded."""
+        """Return the crank angles of smallest and of largest θ: crank and coupler in line, stretched and folded.
+
+        Where the rocker turns fully there is none, and a turn counts from 0° by way of 180°.
+        """
+        if self.turns:
+            return 0.0, 180.0
         return 2 * bearing(self._half_tangents(1)[0], 1.0), 180.0 + 2 * bearing(self._half_tangents(-1)[0], 1.0)
 
     @property
@@ -279,8 +304,13 @@ class FourBar(Mechanism):
         return 180.0 - 2 * bearing(self._half_tangents(1)[1], 1.0), 180.0 - 2 * bearing(self._half_tangents(-1)[1], 1.0)
 
     @property
-    def swing(self) -> float:
-        """θ_max − θ_min in degrees, from the difference of the half tangents: a small swing keeps its digits."""
+    def swing(self) -> float | None:
+        """θ_max − θ_min in degrees, from the difference of the half tangents: a small swing keeps its digits.
+
+        None where the rocker turns fully.
+        """
+        if self.turns:
+            return None
         stretched, folded = self._half_tangents(1)[1], self._half_tangents(-1)[1]
         a, b, c = self.loop.crank, self.loop.coupler, self.loop.rocker
         below = self._line_gap(1) * self._line_gap(-1) * (stretched + folded)
@@ -293,13 +323,13 @@ class FourBar(Mechanism):
 
     @property
     def stroke(self) -> float:
-        """The swing in radians."""
-        return math.radians(self.swing)
+        """The swing in radians; 2π where the rocker turns fully."""
+        return math.tau if self.swing is None else math.radians(self.swing)
 
     @property
     def start(self) -> float:
-        """The smallest θ in radians."""
-        return math.radians(self.limits[0])
+        """The smallest θ in radians; where the rocker turns fully, that of φ = 0."""
+        return float(self.coordinate(CrankAngle.of(0.0))) if self.turns else math.radians(self.limits[0])
 
     @property
     def works_outward(self) -> bool:
@@ -314,9 +344,11 @@ class FourBar(Mechanism):
         return outer - inner if self.works_outward else 360.0 - (outer - inner)
 
     def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
-        """Return the crank angles in degrees where θ − θ_min (n,) in rad is passed, θ rising (outstroke) or falling."""
+        """Return the crank angles in degrees where θ − start (n,) in rad is passed, θ rising (outstroke) or falling."""
         import numpy as np
 
+        if self.turns:
+            return self._turned_to(self.start + displacement)
         a, b, c = self.loop.crank, self.loop.coupler, self.loop.rocker
         low, high = (math.radians(theta) for theta in self.limits)
         theta = low + displacement
@@ -328,10 +360,24 @@ class FourBar(Mechanism):
         turn = bearing(c * np.sin(theta), 1 + c * np.cos(theta))
         return turn + sweep if outstroke else 360.0 + turn - sweep
 
+    def _turned_to(self, theta: Any) -> Any:
+        """φ of a rocker that runs on at θ (n,) in rad: the line to the coupler's joint, and the crank ahead of it."""
+        import numpy as np
+
+        a, b, c = self.loop.crank, self.loop.coupler, self.loop.rocker
+        line = np.hypot(1 + c * np.cos(theta), c * np.sin(theta))
+        sweep = 2 * np.arctan2(np.sqrt((b + line - a) * (b + a - line)), np.sqrt((line + a + b) * (line + a - b)))
+        return np.degrees(theta + sweep) - bearing(np.sin(theta), c + np.cos(theta))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Say that the rocker turns fully, where it does."""
+        return ("The frame is the shortest link: the rocker turns fully with the crank (drag link).",) * self.turns
+
     def landmarks(self) -> tuple[float, ...]:
         """Return 0° and 180°, each with a widening fan where the linkage comes near to lying flat."""
         loop = self.loop
-        gap = min(loop.near_coupler, loop.near_rocker) * (loop.span / loop.crank)
+        gap = min(loop.near_coupler, loop.near_rocker) * (abs(loop.span) / loop.crank)
         nearest = math.degrees(math.sqrt(2 * min(gap, loop.span * loop.span / loop.crank)))
         flat = math.degrees(math.sqrt(2 * loop.flat * (1 + loop.crank) / loop.crank))
         return *fan(0.0, nearest), *fan(180.0, flat)
@@ -340,7 +386,8 @@ class FourBar(Mechanism):
     def transmission(self) -> tuple[Extreme, Extreme]:
         """The transmission angle μ between coupler and rocker at 0° and at 180°, its smallest and largest."""
         c, b, loop = self.rocker / self.frame, self.coupler / self.frame, self.loop
-        small = math.sqrt(loop.near_coupler / (b + c + loop.span) * (loop.near_rocker / (loop.flat + 2 * loop.crank)))
-        far_coupler, far_rocker = loop.near_coupler + 2 * loop.crank, loop.near_rocker + 2 * loop.crank
+        twice = 2 * min(loop.crank, 1.0)
+        small = math.sqrt(loop.near_coupler / (b + c + abs(loop.span)) * (loop.near_rocker / (loop.flat + twice)))
+        far_coupler, far_rocker = loop.near_coupler + twice, loop.near_rocker + twice
         large = math.sqrt(far_coupler / loop.flat * (far_rocker / (b + c + 1 + loop.crank)))
         return Extreme(2 * bearing(small, 1.0), 0.0), Extreme(2 * bearing(large, 1.0), 180.0)

@@ -38,14 +38,14 @@ class Motion:
         return self.mechanism.stroke if self.mechanism.slides else None
 
     @cached_property
-    def phi_idc(self) -> float:
-        """Inner dead centre in degrees, from 0 to 360."""
-        return _within_turn(self.mechanism.dead_centres()[0])
+    def phi_idc(self) -> float | None:
+        """Inner dead centre in degrees, from 0 to 360; None where there is none."""
+        return _within_turn(self.mechanism.dead_centres()[0]) if self.mechanism.has_dead_centres else None
 
     @cached_property
-    def phi_odc(self) -> float:
-        """Outer dead centre in degrees, from 0 to 360."""
-        return _within_turn(self.mechanism.dead_centres()[1])
+    def phi_odc(self) -> float | None:
+        """Outer dead centre in degrees, from 0 to 360; None where there is none."""
+        return _within_turn(self.mechanism.dead_centres()[1]) if self.mechanism.has_dead_centres else None
 
     @cached_property
     def phi_work(self) -> float:

@@ -157,10 +157,12 @@ class CrankshaftStrength:
 
         Starting and slow running (R p. 608): the inner dead centre, or the outer one where pulling is stronger.
         """
-        found = self._force_extremes("P_start")
+        found, motion = self._force_extremes("P_start"), self.forces.motion
+        assert motion.phi_idc is not None
+        assert motion.phi_odc is not None
         if found.largest.value >= -found.smallest.value:
-            return Extreme(found.largest.value, self.forces.motion.phi_idc)
-        return Extreme(found.smallest.value, self.forces.motion.phi_odc)
+            return Extreme(found.largest.value, motion.phi_idc)
+        return Extreme(found.smallest.value, motion.phi_odc)
 
     @cached_property
     def largest_torque(self) -> Extreme:
