@@ -10,13 +10,26 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Choice, Count, Inline, Limits, Listing, Number, OneOf, Physical, Record, Text
+from kurbel.declared.forms import (
+    Choice,
+    Count,
+    Expectations,
+    Inline,
+    Limits,
+    Listing,
+    Number,
+    OneOf,
+    Physical,
+    Record,
+    Text,
+)
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, refuse
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import Cylinder
 
 if TYPE_CHECKING:
+    from kurbel.declared.forms.figures import Expected
     from kurbel.declared.quantity import Quantity
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.turning import Coupling, Effort, Flywheel, Load
@@ -42,7 +55,8 @@ class Machine(Described):
 
     speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
     pressure in Pa; efficiency η multiplies the turning effort of the whole machine, or divides it where the machine is
-    driven; brake_power: measured, in W; limits: key-value id -> bound in SI.
+    driven; brake_power: measured, in W; limits: key-value id -> bound in SI; expect: key-value id -> the smallest and
+    the largest value in SI that are met.
     """
 
     cylinders: tuple[Cylinder, ...]
@@ -58,6 +72,7 @@ class Machine(Described):
     coupling: Coupling | None = None
     crankshaft: Crankshaft | None = None
     limits: tuple[tuple[str, float], ...] = ()
+    expect: tuple[tuple[str, Expected], ...] = ()
 
     KEYS: ClassVar[Keys] = {
         "kurbel": Key(Count(least=FORMAT, most=FORMAT), "Number of the file format", absent="1"),
@@ -111,6 +126,9 @@ class Machine(Described):
             absent="no strength check",
         ),
         "limits": Key(Limits(_key_values), "Bounds for key values, checked by `kurbel check`", absent="none"),
+        "expect": Key(
+            Expectations(_key_values), "Figures that key values are to meet, compared by `kurbel check`", absent="none"
+        ),
     }
 
     @classmethod

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from kurbel.declared.forms.figures import Expectations, Limits
 from kurbel.declared.forms.points import Points
 from kurbel.declared.forms.records import Inline, Record, Variant
 from kurbel.declared.forms.scalars import Choice, Count, FilePath, Number, Physical, Text, UnitName
-from kurbel.declared.forms.structures import Keyed, Limits, Listing, OneOf
+from kurbel.declared.forms.structures import Keyed, Listing, OneOf
 
 __all__ = [
     "Choice",
     "Count",
+    "Expectations",
     "FilePath",
     "Inline",
     "Keyed",
