@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import json
 import math
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
-from kurbel import loads, solve
+from kurbel import load, loads, solve
 from kurbel.cli import kurbel
+from kurbel.declared.forms.figures import Expected
 from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import by_id
 from kurbel.errors import UsageError
-from kurbel.report.check import _compared, checked
+from kurbel.report.check import checked
+from kurbel.report.compared import Unjudged, compared
 
+CONFIGS = Path(__file__).parent.parent / "configs"
 ENDLESS = "{constant: {expansion: 1e300 at, compression: 1e300 at}}"
 HUGE = f"crank: 1 m\nrod_ratio: 5\nbore: 1 m\nindicator: {{head_end: {ENDLESS}}}\n"
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -45,9 +50,11 @@ def test_what_overflows_is_neither_kept_nor_broken() -> None:
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize("name", ["mean_pressure", "T_min", "energy_residual"])
 def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
-    found = _compared(by_id(COMMON.all_key_values)[name], 1.0, "cylinder 1", value)
-    assert isinstance(found, UsageError)
-    assert f"limits.{name} (cylinder 1): {name} is too large to compute with" in str(found)
+    for figure, key in ((1.0, "limits"), (Expected(0.0, 1.0), "expect")):
+        found = compared((key, name), by_id(COMMON.all_key_values)[name], figure, "cylinder 1", value)
+        assert isinstance(found, Unjudged)
+        assert isinstance(found.error, UsageError)
+        assert f"{key}.{name} (cylinder 1): {name} is too large to compute with" in str(found.error)
 
 
 # by the trapezoid rule the work of a sawtooth of four samples is far from that between them
@@ -82,7 +89,109 @@ def test_a_machine_that_stalls_does_not_hide_a_broken_limit() -> None:
     assert run(text + "limits: {delta: 0.01, sigma_pin_max: 1 MPa}\n", "check")[0] == 2
 
 
+@pytest.mark.parametrize(
+    ("limit", "shown"),
+    [
+        ("c_max: 6000 mm/s", "≤ 6000 mm/s  kept"),
+        ("stroke: 3 ft", "≤ 3 ft  kept"),
+        ("stroke: 2 1/2 ft", "2.62467192 ft > 2.5 ft  BROKEN"),
+        ("N_i: 50 PS", "> 50 PS  BROKEN"),
+        ("loss_crosshead_redtenbacher: 1 %", "1 % ≤ 1 %  kept"),
+        ("loss_crosshead_redtenbacher: 1/200", "0.01 > 0.005  BROKEN"),
+    ],
+)
+def test_a_limit_is_shown_in_the_unit_in_which_it_was_written(limit: str, shown: str) -> None:
+    """s = 0.8 m / 0.3048 m; ½ λ f = ½ · 0.2 · 0.1."""
+    text = ENGINE + f"friction: {{crosshead: 0.1}}\nindicator: {{head_end: {{{PRESSURE}}}}}\nlimits: {{{limit}}}\n"
+    assert shown in run(text, "check")[1]
+
+
+def test_a_limit_passed_in_magnitude_by_the_other_sign_is_told() -> None:
+    text = ENGINE + f"masses: {{piston: 500 kg}}\nindicator: {{head_end: {{{PRESSURE}}}}}\n"
+    low, high = sorted(solve(loads(text)).cylinders[0].extremes_of("T") or (), key=lambda one: one.value)
+    assert high.value > 0 > low.value
+    assert -low.value < high.value  # so that the largest magnitude is that of T_max
+    halfway = (high.value - low.value) / 2
+    status, listed, _ = run(text + f"limits: {{T_min: -{halfway} N}}\n", "check")
+    assert status == 0
+    assert f"T_max = {high.value:.9g} N is beyond it with the other sign; " in listed
+    for told in ("", f", T_max: {2 * high.value} N"):  # who bounds the other end too knows
+        status, listed, _ = run(text + f"limits: {{T_min: -{2 * high.value} N{told}}}\n", "check")
+        assert (status, "other sign" in listed) == (0, False)
+
+
+# expectations
+
+
+def test_expected_figures_are_compared() -> None:
+    """b_max = ω² R (1 + λ) for the straight slider-crank: (2π)² · 0.4 · 1.2 = 18.9496 m/s²."""
+    for figure in ("18.95 m/s2 ± 0.5 %", "18.95 m/s2 +- 0.5 %", "18.95 ± 0.05 m/s2", "18.95 m/s2 ± 1 cm/s2"):
+        for name in ("b_max", "'b_max'"):
+            status, listed, _ = run(ENGINE + f'expect: {{{name}: "{figure}"}}\n', "check")
+            assert (status, "  met  (cylinder 1)" in listed) == (0, True), figure
+    status, listed, _ = run(ENGINE + "expect: {b_max: [18.9 m/s2, 19 m/s2], c_m: 1600 mm/s +/- 1 %}\n", "check")
+    assert (status, listed.count("  met  ")) == (0, 2)
+    status, listed, _ = run(ENGINE + 'expect: {b_max: "18.8 m/s2 ± 0.5 %"}\n', "check")
+    off = (2 * math.pi) ** 2 * 0.4 * 1.2 - 18.8 * 1.005
+    assert status == 1
+    assert f"OFF, {off:.9g} m/s2 too large  (cylinder 1)" in listed
+    status, listed, _ = run(ENGINE + "expect: {c_m: [1.7 m/s, 1.8 m/s]}\n", "check")
+    assert (status, "1.6 m/s, expected 1.7 m/s to 1.8 m/s  OFF, 0.1 m/s too small" in listed) == (1, True)
+
+
+@pytest.mark.parametrize(
+    ("figure", "told"),
+    [
+        ("13.16 m/s2", "expected a figure and its tolerance, such as '10 m/s2 ± 0.5 %' or '10 m/s2 ± 0.1 m/s2'"),
+        ("13.16 ± 0.5 %", "13.16 has no unit"),
+        ("13.16 m/s2 ± 0.5 kg", "unknown acceleration unit 'kg'"),
+        ("13.16 m/s2 ± 0 %", "the tolerance of '13.16 m/s2 ± 0 %' is 0"),
+        ("0 m/s2 ± 5 %", "the tolerance of '0 m/s2 ± 5 %' is 0"),
+        ("13 m/s2 ± -1 m/s2", "is negative"),
+        ("[2 m/s2, 1 m/s2]", "the first bound, 2 m/s2, is larger than the second"),
+        ("[2 m/s2]", "got a list"),
+        ("[2 m/s2, 3]", "3 has no unit"),
+    ],
+)
+def test_an_expectation_that_cannot_be_read_says_what_to_write(figure: str, told: str) -> None:
+    status, _, said = run(ENGINE + f"expect: {{b_max: {figure}}}\n", "check")
+    assert (status, told in said) == (2, True), said
+
+
+def test_an_expectation_of_what_is_not_there_is_a_fault() -> None:
+    status, _, said = run(
+        ENGINE + "expect: {T_max: 1 N ± 1 %, phi_reversal: 1 deg ± 1 deg, c_mx: 1 N ± 1 %}\n", "check"
+    )
+    assert status == 2
+    assert "'phi_reversal' is a list of values; no expectation can be put on it" in said
+    assert "unknown key value 'c_mx'; did you mean 'c_max'?" in said
+    status, _, said = run(ENGINE + "expect: {T_max: 1 N ± 1 %}\n", "check")
+    assert (status, "expect.T_max: this machine has no T_max" in said) == (2, True)
+
+
 # notes
+
+
+@pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.yaml")), ids=lambda path: path.stem)
+def test_warnings_are_the_same_in_every_command(path: Path) -> None:
+    """Of every shipped machine, forces, flywheel, stress and check print the same set of them."""
+    found = {}
+    for command in ("forces", "flywheel", "stress"):
+        result = CliRunner().invoke(kurbel, [command, str(path), "-f", "json", "--step", "360"])
+        if result.exit_code == 0:
+            parts = json.loads(result.stdout)
+            warnings = [one["warnings"] for one in parts.get("cylinders", [])] + [parts.get("machine_warnings", [])]
+            found[command] = {unnamed(text, path) for texts in warnings for text in texts}
+    entries = [entry for section in checked(load(path)).sections for entry in section.entries]
+    found["check"] = {entry.text for entry in entries if entry.what == "note" and entry.severity == "warning"}
+    assert len(found) > 1
+    assert all(one == found["check"] for one in found.values()), found
+
+
+def unnamed(text: str, path: Path) -> str:
+    """Return a warning without the name of its cylinder before it."""
+    names = [cylinder.name for cylinder in load(path).cylinders]
+    return next((text[len(name) + 2 :] for name in names if text.startswith(f"{name}, ")), text)
 
 
 @pytest.mark.parametrize("command", ["check", "forces", "flywheel", "stress"])

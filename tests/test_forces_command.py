@@ -266,4 +266,7 @@ def test_what_a_machine_does_not_need_is_not_imported(tmp_path: Path) -> None:
     assert "numpy" in loaded
     for needless in ("rich", "kurbel.machine.turning", "kurbel.machine.crankshaft", "kurbel.machine.trace"):
         assert needless not in loaded
+    for needless in ("kurbel.solver.turning", "kurbel.solver.strength"):
+        assert needless not in modules_after("check", str(plain))
+    plain.write_text("{speed: 60 rpm, crank: 400 mm, rod: 2 m}", encoding="utf-8")
     assert "numpy" not in modules_after("check", str(plain))

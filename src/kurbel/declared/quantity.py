@@ -99,3 +99,20 @@ def placed(declared: Iterable[Quantity]) -> tuple[Quantity, ...]:
 def by_id(quantities: Iterable[Quantity]) -> dict[str, Quantity]:
     """Return the quantities by their ids."""
     return {quantity.id: quantity for quantity in quantities}
+
+
+def called(name: str, quantities: Iterable[Quantity]) -> tuple[str, ...]:
+    """Return the ids of the quantities that a name may mean: their id, or else a symbol as it is printed.
+
+    >>> called("A_H", [Quantity("A_head", "A_H", "area", "Piston area at the head end")])
+    ('A_head',)
+    """
+    given = tuple(quantities)
+    if any(name == one.id for one in given):
+        return (name,)
+    return tuple(dict.fromkeys(one.id for one in given if name in (one.symbol, one.ascii_symbol)))
+
+
+def ambiguity(name: str, found: tuple[str, ...]) -> str:
+    """Return what is to be said of a symbol that several quantities have; '' where it is one."""
+    return f"'{name}' is the symbol of {' and of '.join(found)}; write which" if len(found) > 1 else ""

@@ -243,6 +243,18 @@ def parse_quantity(text: str, kind: str) -> float:
     return value
 
 
+def written_unit(text: str) -> str:
+    """Return the unit that a value is written with, as it stands there; '%' of a percentage, '' of a bare number.
+
+    >>> written_unit("5.4 at"), written_unit("2 1/4 in"), written_unit("2 %"), written_unit("1/200")
+    ('at', 'in', '%', '')
+    """
+    stripped = plain(text)
+    number = _INCHES.match(stripped) or NUMBER.match(stripped)
+    unit = stripped[number.end() :].strip() if number else ""
+    return "" if re.match(r"/\s*[0-9.]", unit) else unit
+
+
 _INCHES = re.compile(r"([-+]?)(?:([0-9]{1,4})[ -])?([0-9]{1,4})/([1-9][0-9]{0,3})(?=\s*[A-Za-z]|$)")
 """A number as drawings in inches have it: 2 1/4, 2-1/4, 3/8."""
 

@@ -15,6 +15,7 @@ from kurbel.declared.forms import (
     Alike,
     Choice,
     Count,
+    Expectations,
     FiringOrder,
     Inline,
     Limits,
@@ -30,6 +31,7 @@ from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import Cylinder
 
 if TYPE_CHECKING:
+    from kurbel.declared.forms.figures import Expected
     from kurbel.declared.quantity import Quantity
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.equal import EqualCylinders
@@ -69,7 +71,8 @@ class Machine(Described):
 
     speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
     pressure in Pa; efficiency η multiplies the turning effort of the whole machine, or divides it where the machine is
-    driven; brake_power: measured, in W; limits: key-value id -> bound in SI.
+    driven; brake_power: measured, in W; limits: key-value id -> bound in SI; expect: key-value id -> the smallest and
+    the largest value in SI that are met.
     """
 
     cylinders: tuple[Cylinder, ...]
@@ -85,6 +88,7 @@ class Machine(Described):
     coupling: Coupling | None = None
     crankshaft: Crankshaft | None = None
     limits: tuple[tuple[str, float], ...] = ()
+    expect: tuple[tuple[str, Expected], ...] = ()
 
     KEYS: ClassVar[Keys] = {
         "kurbel": Key(Count(least=FORMAT, most=FORMAT), "Number of the file format", absent="1"),
@@ -149,6 +153,9 @@ class Machine(Described):
             absent="no strength check",
         ),
         "limits": Key(Limits(_key_values), "Bounds for key values, checked by `kurbel check`", absent="none"),
+        "expect": Key(
+            Expectations(_key_values), "Figures that key values are to meet, compared by `kurbel check`", absent="none"
+        ),
     }
 
     @classmethod

@@ -1,4 +1,4 @@
-"""The report of `kurbel check`: what a machine has, what is left out, and how its limits stand."""
+"""The report of `kurbel check`: what a machine has, what is left out, and how its limits and expectations stand."""
 
 from __future__ import annotations
 
@@ -7,22 +7,13 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from kurbel.declared.forms import Physical
-from kurbel.declared.quantity import NOISE_POWER, Quantity, by_id
-from kurbel.declared.unit_systems import SI, show
-from kurbel.errors import KurbelError, NoSolutionError, UsageError
+from kurbel.declared.unit_systems import show
+from kurbel.errors import KurbelError, Path
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.cylinder import may_lock
-from kurbel.mechanisms import Mechanism, every_quantity
+from kurbel.mechanisms import Mechanism
+from kurbel.report.compared import Entry, Unjudged, judged
 from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages
-from kurbel.report.notes import Note, machine_notes, of_cylinder
-
-
-class Entry(NamedTuple):
-    """One line of a section: what, and what is to be said of it; `bad` marks a limit that is broken."""
-
-    what: str
-    text: str
-    bad: bool = False
+from kurbel.report.notes import Note, machine_notes
 
 
 class Section(NamedTuple):
@@ -33,29 +24,35 @@ class Section(NamedTuple):
 
 
 class Checked(NamedTuple):
-    """The outcome of a check; `broken` says that a limit is, `errors` which ones cannot be judged, and why."""
+    """The outcome of a check; `broken`: a limit is, or a figure is off; `unjudged`: which cannot be judged, and why."""
 
     title: str
     sections: tuple[Section, ...]
     broken: bool
-    errors: tuple[KurbelError, ...]
+    unjudged: tuple[Unjudged, ...]
+
+    @property
+    def errors(self) -> tuple[KurbelError, ...]:
+        """What keeps limits and expectations from being judged."""
+        return tuple(one.error for one in self.unjudged)
 
 
 def checked(machine: Machine) -> Checked:
-    """Return what is to be said of a machine; key values are computed only where it has limits."""
-    judged = tuple(_limits(machine))
-    limits = tuple(one for one in judged if isinstance(one, Entry))
-    found = machine_notes(machine)
+    """Return what is to be said of a machine; key values are computed only as far as it needs."""
+    found = tuple(judged(machine))
+    entries = [one for one in found if isinstance(one, Entry)]
+    notes = machine_notes(machine)
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
-        *(_cylinder_section(machine, cylinder, found) for cylinder in machine.cylinders),
-        Section("Whole machine", tuple(_turning_entries(machine))),
+        *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
+        Section("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
         Section("Crankshaft", tuple(_crankshaft_entries(machine))),
-        Section("Limits", limits),
+        Section("Limits", tuple(one for one in entries if one.path[0] == "limits")),
+        Section("Expected", tuple(one for one in entries if one.path[0] == "expect")),
     )
-    broken = any(entry.bad for entry in limits)
-    errors = tuple(one for one in judged if isinstance(one, KurbelError))
-    return Checked(f"{machine.name}: a valid machine", tuple(s for s in sections if s.entries), broken, errors)
+    broken = any(one.severity == "error" for one in entries)
+    unjudged = tuple(one for one in found if isinstance(one, Unjudged))
+    return Checked(f"{machine.name}: a valid machine", tuple(s for s in sections if s.entries), broken, unjudged)
 
 
 def _machine_entries(machine: Machine) -> Iterable[Entry]:
@@ -65,28 +62,22 @@ def _machine_entries(machine: Machine) -> Iterable[Entry]:
 
 
 def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note]) -> Section:
+    several = len(machine.cylinders) > 1
+    path: Path = ("cylinders", machine.cylinders.index(cylinder)) if several else ()
     entries = [
         Entry("mechanism", _described(cylinder.mechanism)),
         *(Entry(f"{piston.name}", f"bore {show(piston.bore, 'length')}") for piston in cylinder.pistons),
         Entry("computed", ", ".join(what for what, why in stages(machine, cylinder).items() if not why)),
-        *(Entry("left out", f"{what}: {why}") for what, why in left_out(machine, cylinder)),
-        *(Entry("note", note) for note in (*of_cylinder(found, machine, cylinder), *cylinder.mechanism.notes)),
-        *(Entry("note", note) for note in _of_locking(machine, cylinder)),
+        *(Entry("left out", f"{what}: {why}", "info", path) for what, why in left_out(machine, cylinder)),
+        *_notes(found, cylinder.name, path),
+        *(Entry("note", note, "info", path) for note in cylinder.mechanism.notes),
     ]
     return Section(cylinder.name, tuple(entries))
 
 
-def _of_locking(machine: Machine, cylinder: Cylinder) -> Iterable[str]:
-    """Yield where a crosshead locks itself; nothing is computed unless it may."""
-    if not may_lock(cylinder):
-        return
-    from kurbel.solver.case import Case
-
-    forces = Case(machine).cylinders[machine.cylinders.index(cylinder)]
-    try:
-        forces.extremes_of("N")
-    except NoSolutionError as error:
-        yield f"{error}. kurbel forces ends with status {error.exit_status}"
+def _notes(found: Sequence[Note], cylinder: str | None, path: Path = ()) -> Iterable[Entry]:
+    """Yield the notes on a cylinder, or on the whole machine."""
+    return (Entry("note", text, "warning", path) for name, text in found if name == cylinder)
 
 
 def _turning_entries(machine: Machine) -> Iterable[Entry]:
@@ -98,7 +89,7 @@ def _turning_entries(machine: Machine) -> Iterable[Entry]:
     yield Entry("computed", ", ".join(what for what, why in stages.items() if not why))
     for what, why in stages.items():
         if why:
-            yield Entry("left out", f"{what}: {why}")
+            yield Entry("left out", f"{what}: {why}", "info")
     yield Entry("load", _load(machine))
 
 
@@ -115,11 +106,11 @@ def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
     if machine.crankshaft is None:
         return
     if obstacle := machine.strength_obstacle:
-        yield Entry("left out", f"strength: {obstacle}")
+        yield Entry("left out", f"strength: {obstacle}", "info", ("crankshaft",))
         return
     yield Entry("computed", "forces on the bearings, stresses in pin and webs")
     for what, why in strength_left_out(machine):
-        yield Entry("left out", f"{what}: {why}")
+        yield Entry("left out", f"{what}: {why}", "info", ("crankshaft",))
 
 
 def _described(mechanism: Mechanism) -> str:
@@ -130,50 +121,3 @@ def _described(mechanism: Mechanism) -> str:
         if isinstance(key.form, Physical) and isinstance(size := getattr(mechanism, name, None), float) and size
     ]
     return f"{mechanism.name}: {', '.join(lengths)}"
-
-
-def _limits(machine: Machine) -> Iterable[Entry | KurbelError]:
-    """Yield how each limit stands, or why that cannot be told."""
-    if not machine.limits:
-        return
-    from kurbel.report.limits import limited_values
-
-    values = limited_values(machine, (name for name, _ in machine.limits))
-    declared = by_id(every_quantity().all_key_values)
-    for name, bound in machine.limits:
-        found, quantity = values[name], declared[name]
-        if isinstance(found, KurbelError):
-            yield type(found)(f"limits.{name}: {found}")
-        elif not found:
-            yield UsageError(
-                f"limits.{name}: this machine has no {name}: {quantity.text[:1].lower()}{quantity.text[1:]}"
-            )
-        else:
-            yield from (_compared(quantity, bound, where, value) for where, value in found)
-
-
-_ROUNDING = 1e-9
-"""A bound is no more exact than what is printed of it: a stroke of 110 mm does not break a limit of 110 mm."""
-
-
-def _compared(quantity: Quantity, bound: float, where: str, value: float) -> Entry | KurbelError:
-    """Compare a value with its bound: a `_min` may not fall below it, everything else may not exceed it.
-
-    Of a residual the magnitude counts. What is not finite cannot be compared.
-    """
-    name, kind = quantity.id, quantity.kind
-    if not math.isfinite(value):
-        from kurbel.report.shown import too_large
-
-        return UsageError(f"limits.{name} ({where}): {too_large(quantity)}")
-    lower, bars = name.endswith("_min"), "|" if name.endswith("_residual") else ""
-    excess = bound - value if lower else (abs(value) if bars else value) - bound
-    broken = excess > _ROUNDING * abs(bound)
-    relation = ("<" if broken else "≥") if lower else (">" if broken else "≤")
-    size = f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else f"{bars}{_shown(value, kind)}{bars}"
-    text = f"{size} {relation} {_shown(bound, kind)}"
-    return Entry(name, f"{text}  {'BROKEN' if broken else 'kept'}  ({where})", broken)
-
-
-def _shown(value: float, kind: str) -> str:
-    return f"{value:.9g} {SI[kind]}".rstrip()

@@ -16,11 +16,6 @@ from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.turning.flywheel import MachineTurning
 
-_BEYOND = 1e308
-"""Floquet multiplier that is as large as a float can be."""
-_LINEAR = 0.1
-"""δ up to which a harmonic balance about the mean speed may be trusted."""
-
 
 def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] | None, system: str) -> Report:
     """Return the turning effort of the machine over the angle of crank 1; angles, columns, system: see `Frame`.
@@ -58,7 +53,7 @@ def subjects(case: Case) -> Iterable[Subject]:
         results,
         lambda degrees: of_state(turning.at(degrees)),
         left_out=lambda: flywheel_left_out(case.machine),
-        warnings=lambda: _warnings(case, turning),
+        warnings=lambda: of_machine(machine_notes(case.machine, case), case.machine),
     )
 
 
@@ -76,47 +71,3 @@ def _notes(machine: Machine, turning: MachineTurning) -> Iterable[str]:
             f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "
             "the driven inertia turns with the flywheel."
         )
-
-
-def _warnings(case: Case, turning: MachineTurning) -> Iterable[str]:
-    machine = case.machine
-    yield from of_machine(machine_notes(machine, case), machine)
-    if turning.deficit is not None:
-        yield (
-            f"mean effort {show(turning.M_mean, 'torque')} and mean resistance "
-            f"{show(turning.M_mean - turning.deficit, 'torque')} differ: the machine does not run steadily like this; "
-            f"E and ω count {show(turning.deficit, 'torque')} more resistance all the time"
-        )
-    if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
-        yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
-    yield from _wish_warnings(turning)
-    if turning.multiplier is not None and turning.multiplier > 1:
-        least = "at least " if turning.multiplier > _BEYOND else ""
-        yield f"unstable: a disturbance of the speed grows {least}{turning.multiplier:.4g} times in every cycle"
-    if turning.load_ignored:
-        yield "the mean torque is zero, so that a load in proportion to it does not hold the speed; it is left out"
-    yield from _coupling_warnings(turning)
-
-
-def _wish_warnings(turning: MachineTurning) -> Iterable[str]:
-    """Yield by how much the flywheel of the books misses the wish, which is for the speed under the true load."""
-    if turning.J_needed is None or turning.delta_needed is None or not turning.misses_the_wish:
-        return
-    better = "" if turning.J_exact is None else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
-    yield (
-        f"with J = ΔE/(δ ω²) = {show(turning.J_needed, 'inertia')} of the books the speed line has δ = "
-        f"{turning.delta_needed:.4g}{better}"
-    )
-
-
-def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
-    if not turning.elastic:
-        return
-    for near in turning.elastic.resonances:
-        yield (
-            f"resonance: harmonic {near.order:g} of the torque ({near.amplitude:.4g} N m) lies "
-            f"{100 * abs(near.distance):.2g} % from the natural order {turning.elastic.natural_order:.4g} and is "
-            f"amplified {near.amplification:.3g} times"
-        )
-    if turning.elastic.delta > _LINEAR:
-        yield "the speed varies so much that the harmonic balance of the coupling is only a rough guide"

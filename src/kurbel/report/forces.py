@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from typing import Any
 
-from kurbel.declared.unit_systems import show
 from kurbel.errors import UsageError
 from kurbel.machine.cylinder import may_lock
 from kurbel.report.frame import Answer, Frame, Subject, of_state
@@ -61,42 +60,12 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
 
     def warnings() -> Iterable[str]:
         yield from of_cylinder(found(), case.machine, cylinder)
-        yield from _balance_warnings(forces)
-        yield from _bound_warnings(forces)
 
     def left() -> Iterable[LeftOut]:
         yield from left_out(case.machine, cylinder)
         yield from _no_loss(forces)
 
     return Subject(cylinder.name, (forces, forces.motion), at, cylinder.mechanism, left, warnings)
-
-
-_CLOSED = 1e-9
-"""An energy residual beyond this is no rounding."""
-_COARSE = 0.01
-"""An energy residual beyond this is more than an indicator may miss by its spacing."""
-
-
-def _balance_warnings(forces: CylinderForces) -> Iterable[str]:
-    residual = forces.energy_residual or 0.0
-    if any(gas.traced for gas in forces.drive.gas):
-        # with a measured trace it shows the spacing of the samples
-        if abs(residual) > _COARSE:
-            yield (
-                "the samples stand too far apart: the indicated work, by the trapezoid rule, and that of T, by "
-                f"straight lines between them, differ by {abs(residual):.1%} of what goes to and fro"
-            )
-    elif abs(residual) > _CLOSED:
-        yield f"the energy balance of the cycle does not close (residual {residual:.1e}); trust no figure beyond that"
-
-
-def _bound_warnings(forces: CylinderForces) -> Iterable[str]:
-    """Yield what of the mechanism's own key values is above that to which the sources let it go."""
-    for quantity, _, bound in forces.drive.mechanism.KEY_OFFERS:
-        found = forces.offered(quantity.id) if bound else None
-        if bound and found and found.value > bound:
-            shown, most = show(found.value, quantity.kind), show(bound, quantity.kind)
-            yield f"{quantity.text[0].lower()}{quantity.text[1:]}: {shown} is above {most}"
 
 
 def _no_loss(forces: CylinderForces) -> tuple[LeftOut, ...]:

@@ -21,9 +21,9 @@ class Note(NamedTuple):
 
 
 def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...]:
-    """Return the notes on a machine, each once: on cards that the reader tidied up, on traces, on the brake power.
+    """Return the notes on a machine, each once: on what was given, on measurements, and on what comes out.
 
-    case: the machine with its results; without measurements nothing is computed.
+    case: the machine with its results; of a machine that only moves nothing is computed.
     """
     chambers = [(cylinder, *one) for cylinder in machine.cylinders for one in _chambers(cylinder)]
     found = [
@@ -39,8 +39,13 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
     ]
     found += [Note(None, text) for text in speed_notes(machine)]
     found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in size_notes(cylinder)]
-    if machine.brake_power is not None or any(hasattr(chamber, "angle_zero") for _, _, chamber in chambers):
-        found += _on_measurements(machine, case)
+    if machine.effort or any(map(_acts, machine.cylinders)):
+        import numpy as np
+
+        from kurbel.solver.case import Case
+
+        with np.errstate(all="ignore"):
+            found += _on_results(case or Case(machine))
     return tuple(dict.fromkeys(found))
 
 
@@ -51,14 +56,21 @@ def _chambers(cylinder: Cylinder) -> Iterable[tuple[str, Any]]:
             yield f"{piston.name}, crank end", piston.indicator.crank_end
 
 
-def _on_measurements(machine: Machine, case: Case | None) -> Iterable[Note]:
-    from kurbel.report.plausibility import brake_warnings, trace_warnings
-    from kurbel.solver.case import Case
+def _acts(cylinder: Cylinder) -> bool:
+    """Return whether forces are given, of which something may come out that looks wrong."""
+    return bool(cylinder.pistons or cylinder.masses or cylinder.ram_force or cylinder.moment)
 
-    cylinders = (case or Case(machine)).cylinders
-    for forces in cylinders:
+
+def _on_results(case: Case) -> Iterable[Note]:
+    from kurbel.report.plausibility import brake_warnings, trace_warnings
+    from kurbel.report.warnings import cylinder_warnings, strength_warnings, turning_warnings
+
+    for forces in case.cylinders:
         yield from (Note(forces.drive.name, text) for text in trace_warnings(forces))
-    yield from (Note(None, text) for text in brake_warnings(machine, cylinders))
+    yield from (Note(None, text) for text in brake_warnings(case.machine, case.cylinders))
+    for forces in case.cylinders:
+        yield from (Note(forces.drive.name, text) for text in cylinder_warnings(forces))
+    yield from (Note(None, text) for text in (*turning_warnings(case), *strength_warnings(case)))
 
 
 def of_cylinder(found: Iterable[Note], machine: Machine, cylinder: Cylinder) -> Iterable[str]:

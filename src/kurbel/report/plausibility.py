@@ -36,7 +36,7 @@ def trace_warnings(forces: CylinderForces) -> Iterable[str]:
 
 def brake_warnings(machine: Machine, cylinders: Sequence[CylinderForces]) -> Iterable[str]:
     """Yield a warning where the whole machine indicates less power than the brake has measured."""
-    powers = [forces.power for forces in cylinders]
+    powers = [forces.power for forces in cylinders] if machine.brake_power is not None else [None]
     if machine.brake_power is None or None in powers:
         return
     indicated = math.fsum(power for power in powers if power is not None)

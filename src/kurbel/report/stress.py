@@ -8,12 +8,12 @@ import numpy as np
 
 from kurbel.declared.quantities import COLUMNS
 from kurbel.declared.shaft import STRESSES
-from kurbel.declared.unit_systems import convert
 from kurbel.report.frame import Frame, Subject, of_state
 from kurbel.report.left_out import left_out, strength_left_out
 from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.shown import shown_column
 from kurbel.report.tables import Column, PlaceTable, Report
+from kurbel.report.warnings import shell_verdict
 from kurbel.solver.case import Case
 from kurbel.solver.strength.crankshaft import CrankshaftStrength, Strained
 
@@ -22,13 +22,6 @@ _TITLES = {
     "largest_torque": "Position of the largest torque",
     "largest_stress": "Whole cycle: each place where its combined stress is largest",
 }
-_SHELLS = (
-    (25, "bronze shells stand it (25)"),
-    (30, "too much for bronze shells (25), white metal stands it (30)"),
-    (35, "only the best white metal stands it (30 to 35)"),
-    (float("inf"), "more than white metal stands (30 to 35)"),
-)
-"""p_m v of the crank pin in kgf m/(cm² s), and what G says of it up to there."""
 
 
 def stress_report(
@@ -42,7 +35,7 @@ def stress_report(
         (whole,) = subjects(case)
         tables = tuple(_place_tables(case.strength, system))
         whole = whole._replace(name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
-        cool, verdict = _shell_verdict(case.strength)
+        cool, verdict = shell_verdict(case.strength)
         notes = (*_NOTES, *((_TURNING_ROD,) if case.strength.rod_pull else ()), *(verdict if cool else ()))
     frame = Frame("stress", angles, columns, system)
     return frame.report(case.machine, "Festigkeit der Kurbelwelle", (), whole, notes)
@@ -51,18 +44,12 @@ def stress_report(
 def subjects(case: Case) -> Iterable[Subject]:
     """Yield the crankshaft."""
     machine, strength = case.machine, case.strength
-
-    def warnings() -> Iterable[str]:
-        yield from of_machine(machine_notes(machine, case), machine)
-        cool, verdict = _shell_verdict(strength)
-        yield from () if cool else verdict
-
     yield Subject(
         "crankshaft",
         (strength,),
         lambda degrees: of_state(strength.at(degrees)),
         left_out=lambda: (*left_out(machine, machine.cylinders[0]), *strength_left_out(machine)),
-        warnings=warnings,
+        warnings=lambda: of_machine(machine_notes(machine, case), machine),
     )
 
 
@@ -91,13 +78,3 @@ def _place_columns(strained: tuple[Strained, ...], system: str) -> Iterable[Colu
     for name, quantity in STRESSES.items():
         values = [getattr(one if name in ("combined", "von_mises") else one.stresses, name) for one in strained]
         yield shown_column(quantity, values, system)
-
-
-def _shell_verdict(strength: CrankshaftStrength) -> tuple[bool, tuple[str, ...]]:
-    """Return whether all shells stand p_m v of the crank pin, and a sentence that tells (G); none without a speed."""
-    found = strength.pressure_velocity("pin")
-    if found is None:
-        return True, ()
-    shown = convert(found, "pressure_velocity", "kgf m/s/cm2")
-    bound, verdict = next((shell for shell in _SHELLS if shown <= shell[0]), _SHELLS[-1])
-    return bound == _SHELLS[0][0], (f"Crank pin: p_m v = {shown:.3g} kgf m/(cm² s); {verdict}.",)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from kurbel.declared.forms.alike import Alike
+from kurbel.declared.forms.figures import Expectations, Limits
 from kurbel.declared.forms.firing_order import FiringOrder
 from kurbel.declared.forms.points import Points
 from kurbel.declared.forms.records import Inline, Record, Variant
 from kurbel.declared.forms.scalars import Choice, Count, FilePath, Number, Physical, Text, Truth, UnitName
-from kurbel.declared.forms.structures import Keyed, Limits, Listing, OneOf
+from kurbel.declared.forms.structures import Keyed, Listing, OneOf
 
 __all__ = [
     "Alike",
     "Choice",
     "Count",
+    "Expectations",
     "FilePath",
     "FiringOrder",
     "Inline",

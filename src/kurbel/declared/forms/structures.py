@@ -1,20 +1,17 @@
-"""Forms made of others: lists, alternatives, mappings with one telling key, bounds for key values."""
+"""Forms made of others: lists, alternatives, mappings with one telling key."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator
+from typing import Any
 
 from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms.records import Record, no_mapping
-from kurbel.declared.forms.scalars import Number, Physical, refused
+from kurbel.declared.forms.scalars import refused
 from kurbel.declared.keys import Form, Schema
-from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
+from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, kind_of
 from kurbel.errors import Path
-from kurbel.near_words import did_you_mean, near
-
-if TYPE_CHECKING:
-    from kurbel.declared.quantity import Quantity
+from kurbel.near_words import near
 
 
 class Listing(Form):
@@ -135,51 +132,3 @@ class Keyed(Form):
 
     def records(self, word: str) -> Iterator[tuple[str, Record]]:
         return super().records("card")
-
-
-class Limits(Form):
-    """A mapping from ids of key values to bounds; becomes pairs of id and bound in the base of its quantity.
-
-    known: returns the key values by id, and the ids of those that are lists; asked only where a machine has limits.
-    """
-
-    shape = dict
-
-    def __init__(self, known: Callable[[], tuple[dict[str, Quantity], Collection[str]]]) -> None:
-        self.known = known
-
-    def expected(self) -> str:
-        return "a mapping of key values to bounds, such as 'c_max: 6 m/s'"
-
-    def written(self) -> str:
-        return "`{key value: bound}`"
-
-    def schema(self, definitions: Schema) -> Schema:
-        known, lists = self.known()
-        properties = {
-            name: {**_bound(quantity).schema(definitions), "description": quantity.text}
-            for name, quantity in known.items()
-            if name not in lists
-        }
-        return {"type": "object", "additionalProperties": False, "minProperties": 1, "properties": properties}
-
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
-        """Read every bound by the form of its quantity."""
-        if not isinstance(value, dict) or not value:
-            refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
-        known, lists = self.known()
-        bounds = []
-        for name, bound in value.items():
-            if name not in known:
-                hint = did_you_mean(name, tuple(known)) or f"; known are {', '.join([*known][:6])}, …"
-                reading.fault((*path, name), f"unknown key value '{shown(name)}'{hint}", at_key=True)
-            elif name in lists:
-                reading.fault((*path, name), f"'{name}' is a list of values; no bound can be put on it", at_key=True)
-            else:
-                bounds.append((name, _bound(known[name]).read(reading, bound, (*path, name))))
-        return REFUSED if any(bound is REFUSED for _, bound in bounds) else tuple(bounds)
-
-
-def _bound(quantity: Quantity) -> Form:
-    """Return the form of a bound for this quantity."""
-    return Number() if quantity.kind == "ratio" else Physical(quantity.kind)

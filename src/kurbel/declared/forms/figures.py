@@ -1,0 +1,201 @@
+"""Forms of what key values are held against: bounds, and expected figures with their tolerance."""
+
+from __future__ import annotations
+
+import re
+from abc import abstractmethod
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from kurbel.declared.forms.scalars import Number, Physical, refused
+from kurbel.declared.keys import Form, Schema
+from kurbel.declared.numerals import NUMBER, familiar
+from kurbel.declared.quantity import ambiguity, called
+from kurbel.declared.reading import REFUSED, Plain, Reading, is_nothing, kind_of, shown
+from kurbel.declared.units import written_unit
+from kurbel.errors import Path
+from kurbel.near_words import did_you_mean
+
+if TYPE_CHECKING:
+    from kurbel.declared.quantity import Quantity
+
+Known = Callable[[], tuple[dict[str, "Quantity"], Collection[str]]]
+"""Returns the key values by id, and the ids of those that are lists; asked only where a machine names some."""
+
+
+class Bound(float):
+    """A bound in the base of its kind, which keeps the unit that it was written in."""
+
+    __slots__ = ("unit",)
+    unit: str
+
+    def __new__(cls, value: float, unit: str = "") -> Bound:
+        bound = super().__new__(cls, value)
+        bound.unit = unit
+        return bound
+
+
+class Expected(NamedTuple):
+    """The smallest and the largest value that meet an expectation, in the base; its unit and its text as written."""
+
+    low: float
+    high: float
+    unit: str = ""
+    text: str = ""
+
+
+class _Figures(Form):
+    """A mapping from key values, by id or printed symbol, to a figure each; becomes pairs of id and figure."""
+
+    shape = dict
+    what: str
+    """What is put on a key value, for messages."""
+
+    def __init__(self, known: Known) -> None:
+        self.known = known
+
+    @abstractmethod
+    def figure(self, quantity: Quantity) -> Form:
+        """Return the form of a figure for this quantity."""
+
+    def schema(self, definitions: Schema) -> Schema:
+        known, lists = self.known()
+        properties = {
+            name: {**self.figure(quantity).schema(definitions), "description": quantity.text}
+            for id, quantity in known.items()
+            for name in (id, quantity.symbol, quantity.ascii_symbol)
+            if id not in lists and called(name, known.values()) == (id,)
+        }
+        return {"type": "object", "additionalProperties": False, "minProperties": 1, "properties": properties}
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read every figure by the form of its quantity."""
+        if not isinstance(value, dict) or not value:
+            refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+        known, lists = self.known()
+        found: dict[str, Any] = {}
+        for name, figure in value.items():
+            id, wrong = self._meant(name, known, lists)
+            if id in found:
+                wrong = f"'{shown(name)}' is the symbol of {id}, which is given already; leave one of them out"
+            if wrong:
+                reading.fault((*path, name), wrong, at_key=True)
+            else:
+                found[id] = self.figure(known[id]).read(reading, figure, (*path, name))
+        return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
+
+    def _meant(self, name: str, known: dict[str, Quantity], lists: Collection[str]) -> tuple[str, str]:
+        """Return the id that a name stands for, and what is wrong with it."""
+        found = called(name, known.values())
+        if not found:
+            hint = did_you_mean(name, tuple(known)) or f"; known are {', '.join([*known][:6])}, …"
+            return "", f"unknown key value '{shown(name)}'{hint}"
+        listed = f"'{name}' is a list of values; no {self.what} can be put on it" if found[0] in lists else ""
+        return found[0], ambiguity(name, found) or listed
+
+
+class Limits(_Figures):
+    """A mapping from key values to bounds; becomes pairs of id and Bound."""
+
+    what = "bound"
+
+    def figure(self, quantity: Quantity) -> Form:
+        return _LimitOfRatio() if quantity.kind == "ratio" else _Limit(quantity.kind)
+
+    def expected(self) -> str:
+        return "a mapping of key values to bounds, such as 'c_max: 6 m/s'"
+
+    def written(self) -> str:
+        return "`{key value: bound}`"
+
+
+class _Limit(Physical):
+    def parse(self, text: str, folder: str) -> float:
+        return Bound(super().parse(text, folder), written_unit(text))
+
+
+class _LimitOfRatio(Number):
+    def parse(self, text: str, folder: str) -> float:
+        return Bound(super().parse(text, folder), written_unit(text))
+
+
+class Expectations(_Figures):
+    """A mapping from key values to figures with a tolerance; becomes pairs of id and Expected."""
+
+    what = "expectation"
+
+    def figure(self, quantity: Quantity) -> Form:
+        return _Figure(Number() if quantity.kind == "ratio" else Physical(quantity.kind), quantity.kind)
+
+    def expected(self) -> str:
+        return "a mapping of key values to figures, such as 'b_max: 13.16 m/s2 ± 0.5 %'"
+
+    def written(self) -> str:
+        return "`{key value: figure ± tolerance}`, or two bounds `[least, most]`"
+
+
+_PLUS_MINUS = re.compile(r"\s*(?:±|\+\s*/?\s*-)\s*")
+_PERCENT = re.compile(rf"({NUMBER.pattern})\s*%")
+
+
+class _Figure(Form):
+    """A figure with its tolerance, such as `13.16 m/s2 ± 0.5 %`, or a list of two bounds; becomes an Expected."""
+
+    def __init__(self, size: Number | Physical, kind: str) -> None:
+        self.size, self.kind = size, kind
+
+    def expected(self) -> str:
+        return (
+            f"a figure and its tolerance, such as '{self.example()}' or '{self._absolute()}', or two bounds in a list"
+        )
+
+    def example(self) -> str:
+        return f"{self.size.example()} ± 0.5 %"
+
+    def _absolute(self) -> str:
+        return f"{self.size.example()} ± 0.1 {written_unit(self.size.example())}".rstrip()
+
+    def schema(self, definitions: Schema) -> Schema:
+        name = f"figure_{self.kind}"
+        definitions[name] = {
+            "anyOf": [
+                {"type": "string", "pattern": r"^[^±]*[0-9][^±]*(±|\+\s*/?\s*-)\s*[0-9.][^±]*$"},
+                {"type": "array", "items": self.size.schema(definitions), "minItems": 2, "maxItems": 2},
+            ],
+            "errorMessage": f"write {self.expected()}",
+            "examples": [self.example(), self._absolute()],
+        }
+        return {"allOf": [{"$ref": f"#/definitions/{name}"}]}
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read a figure with its tolerance, or two bounds."""
+        if isinstance(value, list) and len(value) == 2:
+            low, high = (self.size.read(reading, one, (*path, index)) for index, one in enumerate(value))
+            return self._between(low, high, value)
+        parts = _PLUS_MINUS.split(familiar(value)) if isinstance(value, str) else []
+        if len(parts) != 2 or not all(parts):
+            refused(f"expected {self.expected()}, got {kind_of(value)}")
+        figure, tolerance = parts
+        if not written_unit(figure) and not _PERCENT.fullmatch(tolerance):
+            figure = f"{figure} {written_unit(tolerance)}"  # 13.16 ± 0.05 m/s2
+        middle = self.size.read(reading, Plain(figure), path)
+        around = REFUSED if middle is REFUSED else self._around(reading, tolerance, middle, path)
+        if around is REFUSED:
+            return REFUSED
+        if not around > 0:
+            refused(f"the tolerance of '{value}' is {'0' if not around else 'negative'}; write how far off it may be")
+        return Expected(middle - around, middle + around, written_unit(figure), value)
+
+    def _around(self, reading: Reading, tolerance: str, middle: float, path: Path) -> Any:
+        """Return the tolerance in the base; one in percent is a share of the figure."""
+        share = _PERCENT.fullmatch(tolerance)
+        if share:
+            return float(share[1]) / 100 * abs(middle)
+        return self.size.read(reading, Plain(tolerance), path)
+
+    def _between(self, low: Any, high: Any, value: list[str]) -> Any:
+        if low is REFUSED or high is REFUSED:
+            return REFUSED
+        if low > high:
+            refused(f"the first bound, {value[0]}, is larger than the second, {value[1]}; exchange them")
+        return Expected(low, high, written_unit(value[0]), f"{value[0]} to {value[1]}")

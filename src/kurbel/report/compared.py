@@ -1,0 +1,138 @@
+"""How key values stand against the limits and the expectations of a machine file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, NamedTuple, Union
+
+from kurbel.declared.forms.figures import Expected
+from kurbel.declared.quantity import NOISE_POWER, Quantity, by_id
+from kurbel.declared.unit_systems import SI, convert
+from kurbel.errors import KurbelError, Path, UsageError, path_text
+from kurbel.machine import Machine
+from kurbel.mechanisms import every_quantity
+
+if TYPE_CHECKING:
+    from kurbel.report.limits import Found
+
+
+class Entry(NamedTuple):
+    """One line of a section of a check: what, and what is to be said of it.
+
+    severity: `error` of a limit that is broken or a figure that is off, `warning`, `info`, or '' of a plain statement;
+    path: of what it is about in the machine file.
+    """
+
+    what: str
+    text: str
+    severity: str = ""
+    path: Path = ()
+
+
+class Unjudged(NamedTuple):
+    """Why a figure of the file cannot be compared; the error tells its path, too."""
+
+    path: Path
+    error: KurbelError
+
+
+Judged = Union[Entry, Unjudged]
+Values = Union["list[Found]", KurbelError]
+_ROUNDING = 1e-9
+"""A bound is no more exact than what is printed of it: a stroke of 110 mm does not break a limit of 110 mm."""
+
+
+def judged(machine: Machine) -> Iterator[Judged]:
+    """Yield how each limit and then each expectation stands, or why that cannot be told."""
+    if not machine.limits and not machine.expect:
+        return
+    from kurbel.report.limits import limited_values
+
+    declared = by_id(every_quantity().all_key_values)
+    opposites = [other for name, _ in machine.limits if (other := _opposite(name)) in declared]
+    asked = (*(name for name, _ in (*machine.limits, *machine.expect)), *opposites)
+    values = limited_values(machine, dict.fromkeys(asked))
+    for name, bound in machine.limits:
+        yield from _all_of(("limits", name), declared[name], bound, values[name])
+        yield from _beyond_by_sign(machine, name, bound, values, declared)
+    for name, figure in machine.expect:
+        yield from _all_of(("expect", name), declared[name], figure, values[name])
+
+
+def _all_of(path: Path, quantity: Quantity, figure: float | Expected, found: Values) -> Iterator[Judged]:
+    """Yield how the values of every cylinder, and of the whole machine, stand against a figure."""
+    if isinstance(found, KurbelError):
+        yield Unjudged(path, type(found)(f"{path_text(path)}: {found}"))
+    elif not found:
+        text = f"this machine has no {quantity.id}: {quantity.text[:1].lower()}{quantity.text[1:]}"
+        yield Unjudged(path, UsageError(f"{path_text(path)}: {text}"))
+    else:
+        for where, value in found:
+            yield compared(path, quantity, figure, where, value)
+
+
+def compared(path: Path, quantity: Quantity, figure: float | Expected, where: str, value: float) -> Judged:
+    """Compare a value with its bound or expectation. What is not finite cannot be compared."""
+    if not math.isfinite(value):
+        from kurbel.report.shown import too_large
+
+        return Unjudged(path, UsageError(f"{path_text(path)} ({where}): {too_large(quantity)}"))
+    judge = _met if isinstance(figure, Expected) else _kept
+    text, verdict, good = judge(quantity, figure, value)  # type: ignore[arg-type]
+    return Entry(quantity.id, f"{text}  {verdict}  ({where})", "info" if good else "error", path)
+
+
+def _kept(quantity: Quantity, bound: float, value: float) -> tuple[str, str, bool]:
+    """Judge by a bound: a `_min` may not fall below it, all else may not exceed it; of a residual the size counts."""
+    name, unit = quantity.id, getattr(bound, "unit", "")
+    lower, bars = name.endswith("_min"), "|" if name.endswith("_residual") else ""
+    excess = bound - value if lower else (abs(value) if bars else value) - bound
+    broken = excess > _ROUNDING * abs(bound)
+    relation = ("<" if broken else "≥") if lower else (">" if broken else "≤")
+    size = f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else f"{bars}{_shown(value, quantity.kind, unit)}{bars}"
+    text = f"{size} {relation} {_shown(bound, quantity.kind, unit)}"
+    return text, "BROKEN" if broken else "kept", not broken
+
+
+def _met(quantity: Quantity, figure: Expected, value: float) -> tuple[str, str, bool]:
+    """Judge by an expectation: the value may stand between its ends."""
+    kind, slack = quantity.kind, _ROUNDING * max(abs(figure.low), abs(figure.high))
+    low, high = figure.low - value, value - figure.high
+    verdict = "met"
+    if max(low, high) > slack:
+        verdict = f"OFF, {_shown(max(low, high), kind, figure.unit)} too {'small' if low > high else 'large'}"
+    wanted = figure.text or f"{_shown(figure.low, kind, '')} to {_shown(figure.high, kind, '')}"
+    size = f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else _shown(value, kind, figure.unit)
+    return f"{size}, expected {wanted}", verdict, verdict == "met"
+
+
+def _opposite(name: str) -> str:
+    """Return the id of the extreme on the other side, '' where there is none."""
+    base, _, end = name.rpartition("_")
+    return f"{base}_{'min' if end == 'max' else 'max'}" if end in ("max", "min") else ""
+
+
+def _beyond_by_sign(
+    machine: Machine, name: str, bound: float, values: Mapping[str, Values], declared: Mapping[str, Quantity]
+) -> Iterator[Entry]:
+    """Yield where the magnitude of a limit is passed by the other sign, which the limit does not see."""
+    other = _opposite(name)
+    found = values.get(other, [])
+    upward = 1 if name.endswith("_max") else -1
+    if bound * upward <= 0 or isinstance(found, KurbelError) or any(other == limited for limited, _ in machine.limits):
+        return
+    peak = f"{name[:-4]}_peak"
+    way = f"'{peak}' bounds the magnitude" if peak in declared else f"bound '{other}' too"
+    for where, value in found:
+        if -value * upward > abs(bound) * (1 + _ROUNDING):
+            size = _shown(value, declared[other].kind, getattr(bound, "unit", ""))
+            text = f"{other} = {size} is beyond it with the other sign; {way}  ({where})"
+            yield Entry(name, text, "warning", ("limits", name))
+
+
+def _shown(value: float, kind: str, unit: str) -> str:
+    """Return a value with its unit, in that of the file where one is written there."""
+    if unit == "%":
+        return f"{100 * value:.9g} %"
+    return f"{convert(value, kind, unit):.9g} {unit or SI[kind]}".rstrip()

@@ -1,0 +1,153 @@
+"""What looks wrong in the results: the same warnings whichever command computes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+from kurbel.declared.unit_systems import convert, show
+from kurbel.errors import KurbelError, NoSolutionError
+from kurbel.machine.cylinder import may_lock
+
+if TYPE_CHECKING:
+    from kurbel.solver.case import Case
+    from kurbel.solver.cylinder.forces import CylinderForces
+    from kurbel.solver.strength.crankshaft import CrankshaftStrength
+    from kurbel.solver.turning.flywheel import MachineTurning
+
+
+def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
+    """Return what looks wrong in the forces of a cylinder, or that it locks itself."""
+
+    def found() -> Iterable[str]:
+        if may_lock(forces.drive.cylinder):
+            # first, so that a crosshead that locks itself is told with an angle that does not depend on the step
+            forces.extremes_of("N")
+        yield from _balance_warnings(forces)
+        yield from _bound_warnings(forces)
+
+    return _as_far_as_solved(found, "forces")
+
+
+def turning_warnings(case: Case) -> tuple[str, ...]:
+    """Return what looks wrong in the turning effort and the speed of the whole machine, or that it stalls."""
+    machine = case.machine
+    if machine.efficiency == 1 and not any((machine.flywheel, machine.load, machine.coupling)):
+        return ()
+    return _as_far_as_solved(lambda: _of_turning(case.flywheel), "flywheel")
+
+
+def strength_warnings(case: Case) -> tuple[str, ...]:
+    """Return what looks wrong in the crankshaft."""
+    if case.machine.strength_obstacle:
+        return ()
+
+    def found() -> Iterable[str]:
+        cool, verdict = shell_verdict(case.strength)
+        return () if cool else verdict
+
+    return _as_far_as_solved(found, "stress")
+
+
+def _as_far_as_solved(found: Callable[[], Iterable[str]], command: str) -> tuple[str, ...]:
+    """Return the warnings; where there is no solution, why; what a command refuses is for that command to tell."""
+    try:
+        return tuple(found())
+    except NoSolutionError as error:
+        return (f"{error}. kurbel {command} ends with status {error.exit_status}",)
+    except (KurbelError, OverflowError):
+        return ()
+
+
+_BEYOND = 1e308
+"""Floquet multiplier that is as large as a float can be."""
+_LINEAR = 0.1
+"""δ up to which a harmonic balance about the mean speed may be trusted."""
+_CLOSED = 1e-9
+"""An energy residual beyond this is no rounding."""
+_COARSE = 0.01
+"""An energy residual beyond this is more than an indicator may miss by its spacing."""
+
+
+def _balance_warnings(forces: CylinderForces) -> Iterable[str]:
+    residual = forces.energy_residual or 0.0
+    if any(gas.traced for gas in forces.drive.gas):
+        # with a measured trace it shows the spacing of the samples
+        if abs(residual) > _COARSE:
+            yield (
+                "the samples stand too far apart: the indicated work, by the trapezoid rule, and that of T, by "
+                f"straight lines between them, differ by {abs(residual):.1%} of what goes to and fro"
+            )
+    elif abs(residual) > _CLOSED:
+        yield f"the energy balance of the cycle does not close (residual {residual:.1e}); trust no figure beyond that"
+
+
+def _bound_warnings(forces: CylinderForces) -> Iterable[str]:
+    """Yield what of the mechanism's own key values is above that to which the sources let it go."""
+    for quantity, _, bound in forces.drive.mechanism.KEY_OFFERS:
+        found = forces.offered(quantity.id) if bound else None
+        if bound and found and found.value > bound:
+            shown, most = show(found.value, quantity.kind), show(bound, quantity.kind)
+            yield f"{quantity.text[0].lower()}{quantity.text[1:]}: {shown} is above {most}"
+
+
+def _of_turning(turning: MachineTurning) -> Iterable[str]:
+    machine = turning.machine
+    if turning.deficit is not None:
+        yield (
+            f"mean effort {show(turning.M_mean, 'torque')} and mean resistance "
+            f"{show(turning.M_mean - turning.deficit, 'torque')} differ: the machine does not run steadily like this; "
+            f"E and ω count {show(turning.deficit, 'torque')} more resistance all the time"
+        )
+    if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
+        yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
+    yield from _wish_warnings(turning)
+    if turning.multiplier is not None and turning.multiplier > 1:
+        least = "at least " if turning.multiplier > _BEYOND else ""
+        yield f"unstable: a disturbance of the speed grows {least}{turning.multiplier:.4g} times in every cycle"
+    if turning.load_ignored:
+        yield "the mean torque is zero, so that a load in proportion to it does not hold the speed; it is left out"
+    yield from _coupling_warnings(turning)
+
+
+def _wish_warnings(turning: MachineTurning) -> Iterable[str]:
+    """Yield by how much the flywheel of the books misses the wish, which is for the speed under the true load."""
+    if turning.J_needed is None or turning.delta_needed is None or not turning.misses_the_wish:
+        return
+    better = "" if turning.J_exact is None else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
+    yield (
+        f"with J = ΔE/(δ ω²) = {show(turning.J_needed, 'inertia')} of the books the speed line has δ = "
+        f"{turning.delta_needed:.4g}{better}"
+    )
+
+
+def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
+    if not turning.elastic:
+        return
+    for near in turning.elastic.resonances:
+        yield (
+            f"resonance: harmonic {near.order:g} of the torque ({near.amplitude:.4g} N m) lies "
+            f"{100 * abs(near.distance):.2g} % from the natural order {turning.elastic.natural_order:.4g} and is "
+            f"amplified {near.amplification:.3g} times"
+        )
+    if turning.elastic.delta > _LINEAR:
+        yield "the speed varies so much that the harmonic balance of the coupling is only a rough guide"
+
+
+_SHELLS = (
+    (25, "bronze shells stand it (25)"),
+    (30, "too much for bronze shells (25), white metal stands it (30)"),
+    (35, "only the best white metal stands it (30 to 35)"),
+    (float("inf"), "more than white metal stands (30 to 35)"),
+)
+"""p_m v of the crank pin in kgf m/(cm² s), and what G says of it up to there."""
+
+
+def shell_verdict(strength: CrankshaftStrength) -> tuple[bool, tuple[str, ...]]:
+    """Return whether all shells stand p_m v of the crank pin, and a sentence that tells (G); none without a speed."""
+    found = strength.pressure_velocity("pin")
+    if found is None:
+        return True, ()
+    shown = convert(found, "pressure_velocity", "kgf m/s/cm2")
+    bound, verdict = next((shell for shell in _SHELLS if shown <= shell[0]), _SHELLS[-1])
+    return bound == _SHELLS[0][0], (f"Crank pin: p_m v = {shown:.3g} kgf m/(cm² s); {verdict}.",)
