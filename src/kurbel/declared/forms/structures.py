@@ -9,7 +9,7 @@ from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms.records import Record, no_mapping
 from kurbel.declared.forms.scalars import refused
 from kurbel.declared.keys import Form, Schema
-from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, kind_of
+from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of
 from kurbel.errors import Path
 from kurbel.near_words import near
 
