@@ -63,6 +63,11 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
         yield from of_cylinder(found(), case.machine, cylinder)
         yield from _balance_warnings(forces)
         yield from _bound_warnings(forces)
+        if forces.reversals_in_noise:
+            yield (
+                f"{forces.reversals_in_noise} changes of the sign of P are within the noise of the trace and are not "
+                "counted as Druckwechsel"
+            )
 
     def left() -> Iterable[LeftOut]:
         yield from left_out(case.machine, cylinder)
