@@ -127,6 +127,15 @@ _COLUMNS = (
     _turning("M", "M", "torque", "Torque on the shaft", extremes=_FLYWHEEL, called="torque"),
     _flywheel("E", "E", "energy", "Excess of the work of M over that of the resistance since angle 0"),
     _flywheel("omega", "ω", "angular_velocity", "Angular velocity of the shaft", "omega"),
+    _flywheel(
+        "alpha",
+        "α",
+        "angular_acceleration",
+        "Angular acceleration of the shaft, just after a jump",
+        "alpha",
+        extremes=_FLYWHEEL,
+        called="angular acceleration of the shaft",
+    ),
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
     *STRENGTH_COLUMNS,
 )
