@@ -136,6 +136,16 @@ class TestOverTheStroke:
         assert found["z"] == pytest.approx([0, 0.5, 1, 0.5, 0, 0.5, 1, 0.5, 0], abs=1e-15)
         assert found["phi"][-1] == 720.0
 
+    def test_what_swings_has_fractions_of_its_swing(self) -> None:
+        text = "mechanism: four-bar\ncrank: 100 mm\ncoupler: 300 mm\nrocker: 250 mm\nframe: 330 mm\n"
+        found = json_of("motion", "--over", "x", "--step", "50", text=text)
+        assert found["z"] == pytest.approx([0, 0.5, 1, 0.5, 0], abs=1e-14)
+        assert found["theta"][1] == pytest.approx((found["theta"][0] + found["theta"][2]) / 2, rel=1e-14)
+
+    def test_what_turns_on_has_no_stroke(self) -> None:
+        status, said = refused("motion", "--over", "x", text="mechanism: parallel-crank\ncrank: 1 m\nframe: 2 m\n")
+        assert (status, "turns on and has no stroke" in said) == (2, True)
+
     def test_one_way_to_say_where(self) -> None:
         assert refused("motion", "--over", "x", "--where", "b = 0")[0] == 2
         assert refused("motion", "--over", "x", "--angles", "0,5")[0] == 2

@@ -25,7 +25,13 @@ _COLUMNS = (
         "phi",
         commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS),
     ),
-    _motion("z", "z", "ratio", "Fraction of the stroke from the inner dead centre", on_request=("motion", "forces")),
+    _motion(
+        "z",
+        "z",
+        "ratio",
+        "Fraction of the stroke, or of the swing, from the inner dead centre",
+        on_request=("motion", "forces"),
+    ),
     _motion("psi", "ψ", "angle", "Angle between connecting rod and stroke line", "psi"),
     _motion(
         "x",
