@@ -103,6 +103,11 @@ def test_without_a_speed_only_its_place_is_told() -> None:
     assert s.x_point is not None
 
 
+def test_at_rest_it_stands() -> None:
+    s = cylinder("speed: 0 rpm\ncrank: 300 mm\nrod: 1300 mm\n" + POINT).at(ANGLES)
+    assert (s.v_point.tolist(), s.b_point.tolist(), s.psi_dot.tolist()) == ([0.0] * 7, [0.0] * 7, [0.0] * 7)
+
+
 def test_one_end_of_the_rod_at_a_time() -> None:
     text = "crank: 300 mm\nrod: 1300 mm\npoint: {from: rocker_pin, along: 1 mm}"
     with pytest.raises(MachineFileError, match="the pins of a slider-crank are crank_pin and crosshead_pin"):

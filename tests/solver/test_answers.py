@@ -14,6 +14,7 @@ from kurbel.cli import kurbel
 from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import by_id
 from kurbel.machine_file import loads
+from kurbel.numerics.search import Curve, lasting
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
@@ -135,6 +136,16 @@ class TestOverTheStroke:
         assert found["z"] == pytest.approx([0, 0.5, 1, 0.5, 0, 0.5, 1, 0.5, 0], abs=1e-15)
         assert found["phi"][-1] == 720.0
 
+    def test_what_swings_has_fractions_of_its_swing(self) -> None:
+        text = "mechanism: four-bar\ncrank: 100 mm\ncoupler: 300 mm\nrocker: 250 mm\nframe: 330 mm\n"
+        found = json_of("motion", "--over", "x", "--step", "50", text=text)
+        assert found["z"] == pytest.approx([0, 0.5, 1, 0.5, 0], abs=1e-14)
+        assert found["theta"][1] == pytest.approx((found["theta"][0] + found["theta"][2]) / 2, rel=1e-14)
+
+    def test_what_turns_on_has_no_stroke(self) -> None:
+        status, said = refused("motion", "--over", "x", text="mechanism: parallel-crank\ncrank: 1 m\nframe: 2 m\n")
+        assert (status, "turns on and has no stroke" in said) == (2, True)
+
     def test_one_way_to_say_where(self) -> None:
         assert refused("motion", "--over", "x", "--where", "b = 0")[0] == 2
         assert refused("motion", "--over", "x", "--angles", "0,5")[0] == 2
@@ -161,3 +172,48 @@ class TestCompare:
         found = json_of("forces", "--compare", "--angles", "270", text=COMPRESSOR)
         area = np.pi / 4 * (0.1**2 + (0.1**2 - 0.025**2)) / 2
         assert found["P_gas_book"] == pytest.approx([area * 7e5], rel=1e-14)
+
+
+class TestReversalsInTheNoise:
+    @staticmethod
+    def traced(noise: float, mean: float, swing: float) -> CylinderForces:
+        """Gauge pressure `swing` · cos φ + mean in bar, a sample every half degree, with normal noise of this size."""
+        angles = np.arange(0.0, 360.5, 0.5)
+        pressures = mean + swing * np.cos(np.radians(angles)) ** 5
+        pressures[:-1] += noise * np.random.default_rng(7).standard_normal(len(angles) - 1)
+        pressures[-1] = pressures[0]
+        points = ", ".join(f"[{a}, {p!r}]" for a, p in zip(angles.tolist(), pressures.tolist()))
+        trace = f"indicator: {{head_end: {{trace: {{unit: bar, points: [{points}]}}}}}}"
+        return cylinder(f"crank: 100 mm\nrod: 500 mm\nbore: 100 mm\n{trace}\n")
+
+    def test_a_noisy_trace_has_the_reversals_of_the_clean_one(self) -> None:
+        """cos⁵ lies flat round its zeros at 90° and 270°: noise of 0.02 bar crosses there many times."""
+        noisy = self.traced(0.02, 0.0, 5.0)
+        assert noisy.reversals_in_noise > 10
+        assert noisy.phi_reversal == pytest.approx([90.0, 270.0], abs=20.0)
+        assert len(noisy.phi_reversal or ()) == 2
+
+    def test_the_noise_is_estimated_from_the_samples(self) -> None:
+        (gas,) = self.traced(0.02, 0.0, 5.0).drive.gas
+        assert gas.noise == pytest.approx(0.02e5 * np.pi / 4 * 0.1**2, rel=0.1)
+
+    def test_nothing_but_noise_has_none(self) -> None:
+        noisy = self.traced(0.02, 0.0, 0.0)
+        assert noisy.phi_reversal == ()
+        assert noisy.reversals_in_noise > 100
+
+    def test_a_clean_trace_keeps_its_exact_reversals(self) -> None:
+        """1 + 5 cos⁵ φ, straight between samples, passes zero at cos φ = −0.2^(1/5)."""
+        clean = self.traced(0.0, 1.0, 5.0)
+        turn = np.degrees(np.arccos(-(0.2**0.2)))
+        assert clean.phi_reversal == pytest.approx([turn, 360 - turn], abs=1e-3)
+        assert clean.reversals_in_noise == 0
+
+    def test_changes_in_a_band_lead_on_or_back(self) -> None:
+        """Above, thrice through zero within the band, below; then to zero and back below; then above again."""
+        angles = np.array([10.0, 30, 50, 70, 90, 110, 130, 150, 170])
+        values = np.array([9.0, -0.5, 0.5, -9, 0.5, -9, 9, 0.1, 8])
+        curve = Curve(angles, angles, values)
+        changes = np.array([20.0, 40, 60, 80, 100, 120])
+        assert lasting(curve, changes, 1.0).tolist() == [40.0, 120.0]
+        assert lasting(curve, changes, 0.0).tolist() == changes.tolist()

@@ -25,7 +25,13 @@ _COLUMNS = (
         "phi",
         commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS),
     ),
-    _motion("z", "z", "ratio", "Fraction of the stroke from the inner dead centre", on_request=("motion", "forces")),
+    _motion(
+        "z",
+        "z",
+        "ratio",
+        "Fraction of the stroke, or of the swing, from the inner dead centre",
+        on_request=("motion", "forces"),
+    ),
     _motion("psi", "ψ", "angle", "Angle between connecting rod and stroke line", "psi"),
     _motion(
         "x",
@@ -127,6 +133,15 @@ _COLUMNS = (
     _turning("M", "M", "torque", "Torque on the shaft", extremes=_FLYWHEEL, called="torque"),
     _flywheel("E", "E", "energy", "Excess of the work of M over that of the resistance since angle 0"),
     _flywheel("omega", "ω", "angular_velocity", "Angular velocity of the shaft", "omega"),
+    _flywheel(
+        "alpha",
+        "α",
+        "angular_acceleration",
+        "Angular acceleration of the shaft, just after a jump",
+        "alpha",
+        extremes=_FLYWHEEL,
+        called="angular acceleration of the shaft",
+    ),
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
     *STRENGTH_COLUMNS,
 )

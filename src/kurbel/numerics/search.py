@@ -197,6 +197,25 @@ def _turns(grid: Grid, owner: int, curve: Curve, size: float | None) -> tuple[_B
     return _Brackets(owners, degrees[low], degrees[high], within[low], value[low], value[high]), at_breaks
 
 
+def lasting(curve: Curve, changes: Array, noise: float) -> Array:
+    """Return those of the changes of sign (n,) of a curve between which it leaves a band of noise on either side of 0.
+
+    Of several that follow one another within the band, the middle one stands for a change that lasts beyond it, and
+    none where they lead back to the sign before.
+    """
+    if not noise or not len(changes):
+        return changes
+    # which change each value follows: at a jump the side of the piece decides
+    beside = curve.degrees + 1e-9 * (curve.within - curve.degrees)
+    reach = np.zeros(len(changes))
+    np.maximum.at(reach, np.searchsorted(changes, beside) - 1, np.abs(curve.value))
+    clear = np.flatnonzero(reach > noise)
+    if not len(clear):
+        return changes[:0]
+    groups = np.split(np.roll(changes, -clear[0] - 1), clear[1:] - clear[0])
+    return np.sort([group[len(group) // 2] for group in groups if len(group) % 2])
+
+
 def extremes_of(curve: Curve) -> Extremes:
     """Return the largest and smallest value of a curve."""
     return Extremes(_first_at(curve, 1.0), _first_at(curve, -1.0))

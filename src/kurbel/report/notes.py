@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.machine import Cylinder, Machine
-from kurbel.report.card_ends import card_end_notes
 from kurbel.report.sizes import size_notes, speed_notes
 
 if TYPE_CHECKING:
@@ -31,12 +30,7 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
         for cylinder, where, chamber in chambers
         for text in getattr(chamber, "notes", ())
     ]
-    found += [
-        Note(cylinder.name, text)
-        for cylinder in machine.cylinders
-        for piston in cylinder.pistons
-        for text in card_end_notes(piston)
-    ]
+    found += [note for cylinder in machine.cylinders for note in _of_cards(cylinder)]
     found += [Note(None, text) for text in speed_notes(machine)]
     found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in size_notes(cylinder)]
     if machine.effort or any(map(_acts, machine.cylinders)):
@@ -47,6 +41,13 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
         with np.errstate(all="ignore"):
             found += _on_results(case or Case(machine))
     return tuple(dict.fromkeys(found))
+
+
+def _of_cards(cylinder: Cylinder) -> Iterable[Note]:
+    if any(piston.indicator for piston in cylinder.pistons):
+        from kurbel.report.card_ends import card_end_notes
+
+        yield from (Note(cylinder.name, text) for piston in cylinder.pistons for text in card_end_notes(piston))
 
 
 def _chambers(cylinder: Cylinder) -> Iterable[tuple[str, Any]]:

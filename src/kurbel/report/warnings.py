@@ -24,6 +24,11 @@ def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
             # first, so that a crosshead that locks itself is told with an angle that does not depend on the step
             forces.extremes_of("N")
         yield from _balance_warnings(forces)
+        if forces.reversals_in_noise:
+            yield (
+                f"{forces.reversals_in_noise} changes of the sign of P are within the noise of the trace and are not "
+                "counted as Druckwechsel"
+            )
         yield from _bound_warnings(forces)
 
     return _as_far_as_solved(found, "forces")

@@ -14,13 +14,17 @@ from kurbel.machine import Cylinder, Machine
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid, Pieces, integral
-from kurbel.numerics.search import Curve, Evaluate, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
+from kurbel.numerics.search import Curve, Evaluate, Extremes, Sampled, curves, extremes_of, lasting, sign_changes, zeros
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+
+
+_SURE = 4.0
+"""Standard deviations that the noise of thousands of samples does not reach."""
 
 
 class Where(NamedTuple):
@@ -152,11 +156,28 @@ class CylinderForces:
 
     @cached_property
     def phi_reversal(self) -> tuple[float, ...] | None:
-        """Druckwechsel: crank angles in degrees at which P takes the other sign, through zero or by a jump."""
-        force = self._curves.get("P") if self.drive.has_force else None
-        if force is None:
+        """Druckwechsel: crank angles in degrees at which P takes the other sign, through zero or by a jump.
+
+        Of those that are the noise of a trace alone the middle one stands for all.
+        """
+        if self._reversals is None:
             return None
-        return tuple(sign_changes(self.grid, {"P": force}, self._quantities("P"))["P"].tolist())
+        return tuple(lasting(self._curves["P"], self._reversals, _SURE * self._noise).tolist())
+
+    @property
+    def reversals_in_noise(self) -> int:
+        """How many changes of the sign of P are the noise of a trace alone, and not told."""
+        return 0 if self._reversals is None else len(self._reversals) - len(self.phi_reversal or ())
+
+    @cached_property
+    def _reversals(self) -> Array | None:
+        force = self._curves.get("P") if self.drive.has_force else None
+        return None if force is None else sign_changes(self.grid, {"P": force}, self._quantities("P"))["P"]
+
+    @property
+    def _noise(self) -> float:
+        """Standard deviation in N of the noise that traces bring into P."""
+        return math.hypot(*(gas.noise for gas in self.drive.gas))
 
     @property
     def A_head(self) -> float | None:

@@ -84,6 +84,12 @@ class PistonGas:
         return (way * sum(w for w, _ in found), way * sum(d for _, d in found)) if found else None
 
     @property
+    def noise(self) -> float:
+        """Standard deviation in N of the noise that traces bring into the force."""
+        ends = ((self.head, self.piston.head_area), (self.crank, self.piston.crank_area))
+        return math.hypot(*(getattr(end, "noise", 0.0) * area for end, area in ends))
+
+    @property
     def swept_volume(self) -> float:
         """Volume in m³ swept in the chambers that have pressures."""
         head = self.piston.head_area if self.head else 0.0

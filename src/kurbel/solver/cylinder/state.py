@@ -12,16 +12,16 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
 from kurbel.errors import NoSolutionError
 from kurbel.mechanisms import every_quantity
-from kurbel.mechanisms.coupler import PointMotion, point_motion
 from kurbel.numerics.arithmetic import bearing
 from kurbel.numerics.jet import once_each
+from kurbel.solver.cylinder.rod_point import OfPoint
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.cylinder.drive import Drive
 
 
-class State:
+class State(OfPoint):
     """A cylinder at crank angles (n,); its attributes are named by the ids of the columns, in SI, each of shape (n,).
 
     angle: the crank angles; with jets for sine and cosine every quantity becomes a jet with its slope by φ.
@@ -105,36 +105,9 @@ class State:
 
     @property
     def z(self) -> Any:
-        """What of the stroke is passed, from the inner dead centre."""
-        return self.way / self.drive.mechanism.stroke if self.drive.mechanism.slides else None
-
-    @cached_property
-    def _point(self) -> PointMotion | None:
-        point, mechanism = self.drive.cylinder.point, self.drive.mechanism
-        coupler = mechanism.coupler_at(self.angle) if point else None
-        if point is None or coupler is None:
-            return None
-        return point_motion(mechanism, coupler, self.angle, point.from_crank_pin(mechanism), point.across)
-
-    @property
-    def x_point(self) -> Any:
-        """Place of the point of the rod in m from the shaft axis, along φ = 0."""
-        return self._point and self._point.x
-
-    @property
-    def y_point(self) -> Any:
-        """Its place in m along φ = 90°."""
-        return self._point and self._point.y
-
-    @property
-    def v_point(self) -> Any:
-        """Its speed in m/s."""
-        return self._point and self.omega and self._point.speed * self.omega
-
-    @property
-    def b_point(self) -> Any:
-        """The magnitude of its acceleration in m/s², at uniform rotation."""
-        return self._point and self.omega and self._point.acceleration * (self.omega * self.omega)
+        """What of the stroke, or of the swing, is passed from the inner dead centre; of what turns on, None."""
+        one = self.drive.mechanism
+        return None if one.turns else (one.coordinate(self.angle) - one.start) / one.stroke
 
     @cached_property
     def direction(self) -> Array:

@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
 
 
+_OF_MEDIAN = 1.4826
+"""Standard deviation over the median of the magnitude, of what is normally distributed."""
+_ENOUGH = 72
+"""Samples in a cycle below which differences show its shape instead of the noise."""
+
+
 class Segments(NamedTuple):
     """The straight pieces between samples, each (n,): start and end in degrees, pressures there in Pa."""
 
@@ -58,6 +64,20 @@ class TracePressure:
         since = np.mod(turned - self.starts[segment], self.setting.cycle) + (angle.degrees - meant)
         value = self._segments.p[segment] + self._gradients[segment] * since
         return Jet(value, self._gradients[segment] * (180 / math.pi)) if isinstance(x, Jet) else value
+
+    @cached_property
+    def noise(self) -> float:
+        """Standard deviation in Pa of the noise of the samples; 0 where they do not stand at equal angles.
+
+        From the medians of the second and of the fourth differences, √6 and √70 times as large if noise is all they
+        have; the lesser of both, since of a smooth pressure the fourth ones are less.
+        """
+        if not self.trace.even:
+            return 0.0
+        around = np.append(self._segments.p, self._segments.p[:4])
+        orders = ((2, 6.0), (4, 70.0)) if len(self._segments.p) >= _ENOUGH else ()
+        spreads = [float(np.median(np.abs(np.diff(around, order)))) / math.sqrt(gain) for order, gain in orders]
+        return _OF_MEDIAN * min(spreads, default=0.0)
 
     @cached_property
     def area(self) -> float:

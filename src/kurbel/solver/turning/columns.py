@@ -58,6 +58,11 @@ class TurningColumns:
         return None if self._speed is None else self._speed.omega(self.phi)
 
     @property
+    def alpha(self) -> Array | None:
+        """Angular acceleration in rad/s², dω/dt."""
+        return None if self._speed is None else self._speed.alpha(self.phi)
+
+    @property
     def M_coupling(self) -> Array | None:
         """Torque in the elastic coupling in N m."""
         return None if self._speed is None or isinstance(self._speed, SpeedLine) else self._speed.torque(self.phi)

@@ -167,11 +167,32 @@ class ElasticCoupling:
     def _sampled(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return the torque less its mean, and ω₁ − ω_n, with their slopes by φ, at crank angles of the cycle."""
         state = self.elements.at(self._coefficients, degrees, within)
-        rate = state @ self.matrix.T + np.moveaxis(self.prepared(degrees, within), 0, -1)
+        rate = self._rate(state, degrees, within)
         return {
             "torque": Sampled(state @ self._passing, rate @ self._passing),
             "omega": Sampled(state[..., 1] * self._speeds[1], rate[..., 1] * self._speeds[1]),
         }
+
+    def _rate(self, state: Array, degrees: Array, within: Array) -> Array:
+        return np.asarray(state @ self.matrix.T + np.moveaxis(self.prepared(degrees, within), 0, -1))
+
+    def _alpha(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        """Return dω₁/dt = ω_n dω₁/dφ in rad/s², about the mean speed, with its slope by φ."""
+        rate = self._rate(self.elements.at(self._coefficients, degrees, within), degrees, within)
+        driving = self._excess.effort.torque(degrees, within).slope
+        scale = self._speeds[1] * self.shaft.omega
+        return {"alpha": Sampled(rate[..., 1] * scale, (rate @ self.matrix[1] + driving) * scale)}
+
+    def alpha(self, degrees: Array) -> Array:
+        """Return the angular acceleration of the crank shaft in rad/s², just after a jump."""
+        angles = np.mod(degrees, self.cycle)
+        return self._alpha(angles, angles)["alpha"].value
+
+    @cached_property
+    def alpha_extremes(self) -> Extremes:
+        """Largest and smallest angular acceleration of the crank shaft in rad/s²."""
+        grid = Grid(np.append(self.elements.low, self.cycle))
+        return extremes(grid, self._alpha(grid.degrees, grid.within), self._alpha)["alpha"]
 
     def torque(self, degrees: Array) -> Array:
         """Return the torque in the coupling in N m at crank angles (n,) in degrees."""

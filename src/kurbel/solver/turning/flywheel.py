@@ -264,6 +264,16 @@ class MachineTurning:
         return None if self.speed is None else self.speed.omega_min
 
     @property
+    def alpha_max(self) -> Extreme | None:
+        """Largest angular acceleration in rad/s²."""
+        return None if self.speed is None else self.speed.alpha_extremes.largest
+
+    @property
+    def alpha_min(self) -> Extreme | None:
+        """Smallest angular acceleration in rad/s²."""
+        return None if self.speed is None else self.speed.alpha_extremes.smallest
+
+    @property
     def omega_mean(self) -> float | None:
         """Mean angular velocity over time in rad/s."""
         return None if self.speed is None else self.speed.omega_mean

@@ -110,6 +110,11 @@ class MovingInertia:
         self.line = Piecewise(self.grid, self.values)
 
     @cached_property
+    def bending(self) -> Piecewise:
+        """The polynomials through its slopes by φ."""
+        return Piecewise(self.grid, self.line.at(self.grid.degrees, self.grid.within).slope)
+
+    @cached_property
     def mean(self) -> float:
         """Its mean over the cycle."""
         return self.grid.integral(self.values) / math.radians(float(self.grid.breaks[-1]))

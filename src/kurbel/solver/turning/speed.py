@@ -42,6 +42,10 @@ class Inertia:
         """Return ½ J(φ) ω_n² in J."""
         return self.at(degrees, within) * (self.omega**2 / 2)
 
+    def energy_curvature(self, degrees: Array, within: Array) -> Array:
+        """Return the second derivative of that by φ in J."""
+        return np.asarray(self.moving.bending.at(degrees, within).slope * (self.omega**2 / 2))
+
 
 class SpeedLaw(Protocol):
     """How a load rises with the speed: its torque less that at the nominal speed, over r = (ω/ω_n)² − 1."""
@@ -98,6 +102,10 @@ class SpeedLine(ABC):
         """Return what the load takes beyond its torque at the nominal speed, in N m; ratio: (ω/ω_n)² − 1."""
         return np.zeros_like(ratio)
 
+    def _rise_slope(self, ratio: Array) -> Array:
+        """Return the derivative of that by the ratio."""
+        return np.zeros_like(ratio)
+
     def _ratio(self, degrees: Array, within: Array) -> Sampled:
         """Return (ω/ω_n)² − 1 with its slope by φ."""
         torque = self.excess.line.at(degrees, within).value
@@ -139,6 +147,29 @@ class SpeedLine(ABC):
 
     def _omega_at(self, ratio: Extreme) -> Extreme:
         return Extreme(self.inertia.omega * math.sqrt(1 + ratio.value), ratio.degrees)
+
+    def _alpha(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        """Return dω/dt = ½ ω_n² dr/dφ in rad/s², r = (ω/ω_n)² − 1, with its slope by φ.
+
+        With e = ½ J(φ) ω_n²: e r′ = M − M_load − r e′, and so e r″ = (M − M_load)′ − 2 r′ e′ − r e″.
+        """
+        z, torque, energy = self.z(degrees, within), self.excess.line.at(degrees, within), self.inertia
+        line, bend = energy.energy(degrees, within), energy.energy_curvature(degrees, within)
+        ratio, slope = self._sampled(z, line, torque.value)
+        rising = self._rise_slope(ratio) * slope
+        curvature = (torque.slope - rising - 2 * slope * line.slope - ratio * bend) / line.value
+        half = self.inertia.omega**2 / 2
+        return {"alpha": Sampled(half * slope, half * curvature)}
+
+    def alpha(self, degrees: Array) -> Array:
+        """Return the angular acceleration in rad/s² at crank angles (n,) in degrees, just after a jump."""
+        angles = np.mod(degrees, self.cycle)
+        return self._alpha(angles, angles)["alpha"].value
+
+    @cached_property
+    def alpha_extremes(self) -> Extremes:
+        """Largest and smallest angular acceleration in rad/s²."""
+        return extremes(self.grid, self._alpha(self.grid.degrees, self.grid.within), self._alpha)["alpha"]
 
     @cached_property
     def omega_mean(self) -> float:
@@ -250,6 +281,9 @@ class SpeedDependentLoad(SpeedLine):
 
     def _rise(self, ratio: Array) -> Array:
         return self._law(ratio)[0]
+
+    def _rise_slope(self, ratio: Array) -> Array:
+        return self._law(ratio)[1]
 
     @property
     def multiplier(self) -> float:
