@@ -234,7 +234,7 @@ def test_columns_in_the_order_asked_for() -> None:
 @pytest.mark.parametrize(
     ("column", "message"),
     [
-        ("P", "'P' is no column of kurbel motion (it has phi, psi, x, c, b, "),
+        ("P", "'P' is no column of kurbel motion (this machine has phi, psi, x; other machines also c, b, "),
         ("theta", "'theta' is left out for this machine"),
         ("thetta", "did you mean 'theta'?"),
     ],
