@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from typing import NamedTuple, Union
 
 Step = Union[str, int]
@@ -94,23 +95,36 @@ class MachineFileError(KurbelError):
         place = f"--set {fault.override}" if fault.override else f"{self.file_name}:{fault.line}:{fault.column}"
         return f"{place}: {where}{fault.message}"
 
-    def pretty(self) -> str:
-        """Return every fault with its source line below it and a caret under the place."""
-        return "\n".join(part for fault in self.faults for part in (self.line(fault), *_pointed(fault)))
+    def pretty(self, cells: int = 104, spelt: Callable[[str], str] = str, size: Callable[[str], int] = len) -> str:
+        """Return every fault with its source line below it, cut to this many cells, and a caret under the place.
+
+        spelt: returns a text as the output can show it; size: the cells that such a text takes.
+        """
+
+        def lines() -> Iterator[str]:
+            for fault in self.faults:
+                yield spelt(self.line(fault))
+                yield from _pointed(fault, cells, spelt, size)
+
+        return "\n".join(lines())
 
 
-_SHOWN_WIDTH = 100  # of a source line; a diagram in one long line is cut to what stands round the fault
-
-
-def _pointed(fault: Fault) -> tuple[str, ...]:
-    """Return the source line, cut and cleared of what could steer a terminal, and the caret under the fault."""
-    if not fault.source_line.strip():
-        return ()
-    start = max(0, fault.column - 1 - _SHOWN_WIDTH * 3 // 4) if len(fault.source_line) > _SHOWN_WIDTH else 0
-    piece = fault.source_line[start : start + _SHOWN_WIDTH]
-    clear = "".join(c if c.isprintable() else " " for c in piece)
-    lead, tail = "… " if start else "  ", " …" if start + _SHOWN_WIDTH < len(fault.source_line) else ""
-    return f"  {lead}{clear}{tail}".rstrip(), " " * (4 + fault.column - 1 - start) + "^"
+def _pointed(fault: Fault, cells: int, spelt: Callable[[str], str], size: Callable[[str], int]) -> Iterator[str]:
+    """Yield the source line, cut and cleared of what could steer a terminal, and the caret under the fault."""
+    text, place = fault.source_line, fault.column - 1
+    if not text.strip():
+        return
+    first = max(0, place - cells)
+    shown = [spelt(c if c.isprintable() else " ") for c in text[first : place + cells]]
+    widths, at = [size(one) for one in shown], place - first
+    room = max(cells - 6, 1)  # beside the margin and a sign of the cut, with its blank, on either side
+    whole = len(shown) == len(text) and sum(widths) <= room
+    start = 0 if whole else next(i for i in range(at + 1) if sum(widths[i:at]) <= room * 3 // 4)
+    end = next(i for i in range(len(shown), -1, -1) if sum(widths[start:i]) <= room)
+    cut = spelt("…")[:1]
+    lead, tail = f"{cut} " if first + start else "  ", f" {cut}" if first + end < len(text) else ""
+    yield f"  {lead}{''.join(shown[start:end])}{tail}".rstrip()
+    yield " " * (4 + sum(widths[start:at])) + "^"
 
 
 class UsageError(KurbelError):

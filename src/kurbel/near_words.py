@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+_OTHERWISE = 0.85
 _LONGEST = 40  # characters of a word worth comparing
 
 
@@ -13,7 +14,9 @@ def near(word: str, known: tuple[str, ...]) -> str:
         return ""
     lower = word.lower().replace("-", "_").replace(" ", "_")
     alike = {name.lower().replace("-", "_"): name for name in known}
-    found = get_close_matches(lower, list(alike), n=1, cutoff=0.7)
+    found = get_close_matches(lower, list(alike), n=3, cutoff=0.7)
+    # few slip at the first letter: what begins otherwise must be all the more alike ('direction' is no 'friction')
+    found = [one for one in found if one[:1] == lower[:1] or get_close_matches(lower, [one], cutoff=_OTHERWISE)]
     return alike[found[0]] if found else ""
 
 

@@ -67,3 +67,58 @@ def test_pretty_clears_what_could_steer_a_terminal() -> None:
 
     error = MachineFileError("m.yaml", [Fault((), "wrong", line=1, column=3, source_line="a\x1b[31m b")])
     assert "\x1b" not in error.pretty()
+
+
+@pytest.mark.parametrize("cells", [30, 40, 80, 104])
+@pytest.mark.parametrize("encoding", ["utf-8", "ascii"])
+@pytest.mark.parametrize("before", [0, 1, 7, 40, 90])
+def test_the_caret_stands_below_the_fault_at_every_width(cells: int, encoding: str, before: int) -> None:
+    """Wide letters, letters that become two, and lines wider than the terminal."""
+    from kurbel.errors import Fault
+    from kurbel.render.charset import Charset, width
+
+    for filling, after in (("x", 0), ("φ", 3), ("宽", 200), ("ß", 50)):
+        text = filling * before + "@" + filling * after
+        error = MachineFileError("m", [Fault((), "wrong", line=1, column=before + 1, source_line=text)])
+        _, source, caret = error.pretty(cells, Charset(encoding).text, width).split("\n")
+        assert width(source) <= cells
+        assert width(source[: source.index("@")]) == caret.index("^")
+
+
+def test_a_line_of_a_million_characters_is_cut() -> None:
+    from kurbel.errors import Fault
+
+    text = "x" * 500_000 + "@" + "x" * 500_000
+    error = MachineFileError("m", [Fault((), "wrong", line=1, column=500_001, source_line=text)])
+    _, source, caret = error.pretty().split("\n")
+    assert source[caret.index("^")] == "@"
+
+
+def test_a_terminal_gets_lines_that_fit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from click.testing import CliRunner
+
+    from kurbel.cli import kurbel
+
+    monkeypatch.setenv("COLUMNS", "60")
+    pairs = ", ".join(f"[{i}, 1]" for i in range(360))
+    (tmp_path / "m.yaml").write_text(f"effort: {{unit: N m, points: [{pairs}, [360, x]]}}")
+    told = CliRunner().invoke(kurbel, ["check", str(tmp_path / "m.yaml")]).stderr.splitlines()
+    assert len(told[-2]) <= 60
+    assert told[-2][told[-1].index("^")] == "x"
+
+
+def test_columns_of_this_machine_are_told_first() -> None:
+    from click.testing import CliRunner
+
+    from kurbel.cli import kurbel
+
+    file = str(Path(__file__).parents[2] / "configs" / "scotch-yoke-pump.yaml")
+    told = CliRunner().invoke(kurbel, ["motion", file, "--columns", "theeta"]).stderr
+    assert (
+        "'theeta' is no column of kurbel motion; did you mean 'theta'? (this machine has phi, x, c, b, c_block; "
+        in told
+    )
+    for command in (["motion"], ["stress", "--places"]):
+        file = str(Path(__file__).parents[2] / "configs" / "gas-engine.yaml")
+        refused = CliRunner().invoke(kurbel, [*command, file, "--columns", "nonsense"])
+        assert (refused.exit_code, f"'nonsense' is no column of kurbel {command[0]}" in refused.stderr) == (2, True)

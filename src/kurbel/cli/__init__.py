@@ -12,13 +12,16 @@ import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from kurbel import __version__
 from kurbel.cli.exit_status import BROKEN, DONE, INTERNAL, INTERRUPTED, NO_SOLUTION, WRONG, exit_statuses
 from kurbel.errors import KurbelError, MachineFileError
+
+if TYPE_CHECKING:
+    from kurbel.render.charset import Charset
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -75,7 +78,7 @@ class _Kurbel(click.Group):
         except SystemExit:  # click's answer to a reader of its help that leaves early
             status = DONE
         except MachineFileError as error:
-            status = _failed(error.pretty(), error.exit_status)
+            status = _failed(_pretty(error), error.exit_status)
         except KurbelError as error:
             status = _failed(f"Error: {error}", error.exit_status)
         except (OverflowError, FloatingPointError, RuntimeWarning) as error:
@@ -118,13 +121,25 @@ def _shown(error: click.ClickException) -> str:
     return text.getvalue()
 
 
-def _failed(message: str, status: int) -> int:
-    """Say what went wrong and return the status, which stays the same where standard error is full or closed."""
+def _pretty(error: MachineFileError) -> str:
+    """Return the faults of a machine file, their source lines cut to what fits a terminal."""
+    from shutil import get_terminal_size
+
+    from kurbel.render.charset import width
+
+    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_charset().text, width)
+
+
+def _stderr_charset() -> Charset:
     from kurbel.render.charset import Charset
 
-    charset = Charset(getattr(sys.stderr, "encoding", None) or "utf-8")
+    return Charset(getattr(sys.stderr, "encoding", None) or "utf-8")
+
+
+def _failed(message: str, status: int) -> int:
+    """Say what went wrong and return the status, which stays the same where standard error is full or closed."""
     try:
-        click.echo("\n".join(charset.text(line) for line in message.splitlines()), err=True)
+        click.echo("\n".join(_stderr_charset().text(line) for line in message.splitlines()), err=True)
     except (OSError, ValueError):
         from kurbel.render.output import silence
 

@@ -70,28 +70,6 @@ class Words(_WordsType):
         return tuple(word.strip() for word in words if word.strip())
 
 
-class Columns(Words):
-    """Ids of columns, separated by commas; one that kurbel has nowhere is a usage error."""
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
-        """Return the ids in the order given."""
-        from kurbel.declared.quantities import COLUMNS
-
-        ids = super().convert(value, param, ctx)
-        for id in ids:
-            if id not in COLUMNS:
-                self._refuse_unknown(id, param, ctx)
-        return ids
-
-    def _refuse_unknown(self, id: str, param: click.Parameter | None, ctx: click.Context | None) -> None:
-        from kurbel.mechanisms import every_quantity
-        from kurbel.near_words import did_you_mean
-
-        known = [column.id for column in every_quantity().all_columns if column.commands]
-        if id not in known:
-            self.fail(f"unknown column '{id}'{did_you_mean(id, tuple(known))} (known: {', '.join(known)})", param, ctx)
-
-
 class Output(NamedTuple):
     """Where a report goes and how it looks."""
 
@@ -134,9 +112,7 @@ angle_options = _stacked(
 )
 """`--step` and `--angles`: see `crank_angles`."""
 
-columns_option = click.option(
-    "--columns", type=Columns(), metavar="ID,ID,...", help="Only these columns, in this order."
-)
+columns_option = click.option("--columns", type=Words(), metavar="ID,ID,...", help="Only these columns, in this order.")
 _part_options = _stacked(
     click.option("--cylinder", metavar="NAME", help="Only the results of this cylinder."),
     click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),

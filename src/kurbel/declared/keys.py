@@ -93,6 +93,15 @@ class Form(ABC):
         inner = f"{path}.{name}" if path else name
         yield from self.places(inner, f"under '{inner}'")
 
+    def meant(self, name: str, key: Key) -> dict[str, str]:
+        """Return the words that people try for what a key of this form stands for, each with the key that is meant."""
+        return dict.fromkeys(key.also, name) | {
+            word: inner
+            for record in self.inline()
+            for other, one in record.keys.items()
+            for word, inner in one.form.meant(other, one).items()
+        }
+
     def inline(self) -> Iterable[Any]:
         """Return the records whose keys stand beside a key of this form, in the same mapping."""
         return ()
@@ -115,7 +124,8 @@ class Key(NamedTuple):
     """One key: its form, what it means in one sentence, the textbook symbol, and whether it must stand there.
 
     `absent` says what holds without it. `instead` names another key that says the same thing, so that both together are
-    a contradiction; where that one is required, one of both is. `needs` names a key that must stand beside it.
+    a contradiction; where that one is required, one of both is. `needs` names a key that must stand beside it. `also`:
+    other words that people try for it.
     """
 
     form: Form
@@ -126,6 +136,7 @@ class Key(NamedTuple):
     instead: str = ""
     needs: str = ""
     example: str = ""
+    also: tuple[str, ...] = ()
 
     @property
     def description(self) -> str:

@@ -52,9 +52,12 @@ class Reading:
         self.alike: dict[Path, Path] = {}
         """Of what takes over the values of another mapping: its path and that of the other."""
 
-    def where_it_belongs(self, key: str) -> str:
-        """Return where in a machine file a key may stand, such as "it belongs under 'friction.rings'", or ''."""
-        found = dict.fromkeys(words for words, name in self._places() if name == key)
+    def where_it_belongs(self, key: str, path: Path) -> str:
+        """Return where near a path a key may stand, such as "it belongs under 'friction.rings'", or ''.
+
+        Near are the mappings above it and those right below: a key of that name elsewhere means something else.
+        """
+        found = dict.fromkeys(words for words, name in self._places() if name == key and _near(words, path))
         return "it belongs " + " or ".join(list(found)[:3]) if found else ""
 
     def note(self, fault: Fault) -> Any:
@@ -89,6 +92,14 @@ class Reading:
         for fault in error.faults:
             self.note(fault.below(path))
         return REFUSED
+
+
+def _near(words: str, path: Path) -> bool:
+    """Return whether words for a mapping, such as "under 'friction.rings'", are for one near the mapping at a path."""
+    there = words.split("'")[1].split(".") if words.startswith("under '") else []
+    here = [step for step in path if isinstance(step, str)]
+    here = here[2:] if here[:2] == ["cylinders", "each"] else here[here[:1] == ["cylinders"] :]
+    return here[: len(there)] == there or there[:-1] == here
 
 
 def shown(text: str, most: int = 60) -> str:

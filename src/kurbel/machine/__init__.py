@@ -182,7 +182,8 @@ class Machine(Described):
 
     def __post_init__(self) -> None:
         if not self.cylinders and self.effort is None:
-            refuse(Fault((), "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"))
+            message = "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"
+            refuse(Fault((), f"{message}, or 'effort', a turning-moment diagram known from elsewhere"))
         if self.cylinders and self.effort is not None:
             refuse(Fault(("effort",), "'effort' stands instead of cylinders; leave one of them out"))
         names = [cylinder.name for cylinder in self.cylinders]

@@ -26,6 +26,15 @@ _SLIDING = ("inclination", "masses", "friction", "ram_force")
 """Keys of a cylinder that only something that slides can have, besides those of its pistons."""
 
 
+_OTHER_NAMES = {
+    **dict.fromkeys(("whitworth", "shaper", "quick-return", "crank-shaper", "slotted-link"), "slotted-lever"),
+    **dict.fromkeys(("crank-rocker", "four-bar-linkage", "4-bar"), "four-bar"),
+    **dict.fromkeys(("crank-slider", "crosshead", "trunk-piston"), "slider-crank"),
+    "parallelogram": "parallel-crank",
+}
+"""What people call a mechanism -> the word of the machine file."""
+
+
 @dataclass(frozen=True, eq=False)
 class Cylinder(Described):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
@@ -55,7 +64,7 @@ class Cylinder(Described):
         "name": Key(Text(), "Name of the cylinder", absent="cylinder 1, cylinder 2, …"),
         "like": Key(Text(), "Name of a cylinder above, which this one equals but for what stands here", absent="none"),
         "mechanism": Key(
-            Variant("slider-crank", MECHANISMS),
+            Variant("slider-crank", MECHANISMS, _OTHER_NAMES),
             "Kind of crank mechanism",
             absent="slider-crank",
         ),

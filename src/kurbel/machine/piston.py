@@ -31,7 +31,10 @@ class Piston(Described):
         "head_end_rod": Key(Physical("length", least=0), "Diameter of the rod through the head end", absent="0"),
         "crank_end_rod": Key(Physical("length", least=0), "Diameter of the rod through the crank end", absent="0"),
         "indicator": Key(
-            Record("kurbel.machine.indicator:Indicator"), "Pressures on the two sides", absent="no gas force"
+            Record("kurbel.machine.indicator:Indicator"),
+            "Pressures on the two sides",
+            absent="no gas force",
+            also=("pressure", "card", "trace"),
         ),
     }
 

@@ -9,9 +9,11 @@ import numpy as np
 
 from kurbel.declared.quantities import COMMON, Lists
 from kurbel.declared.quantity import Quantity
+from kurbel.declared.reading import shown
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity, quantities_of
+from kurbel.near_words import did_you_mean
 from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
 
@@ -148,14 +150,21 @@ class Frame(NamedTuple):
 
     def _refuse_absent(self, subjects: Sequence[Subject], parts: Sequence[Part]) -> None:
         """Raise UsageError for a column that was asked for and that no part has."""
-        shown = {column.id for part in parts for column in part.columns}
+        printed = {column.id for part in parts for column in part.columns}
         for name in self.columns or ():
-            if name in shown or all(subject.at is None for subject in subjects):
+            if name in printed:
                 continue
-            known = every_quantity().columns(self.command)
+            there = tuple(dict.fromkeys(id for subject in subjects for id in subject.has(self.command)))
+            known = tuple(every_quantity().columns(self.command))
             if name not in known:
-                raise UsageError(
-                    f"--columns: '{name}' is no column of kurbel {self.command} (it has {', '.join(known)})"
+                others = ", ".join(one for one in known if one not in there)
+                has = (
+                    f"this machine has {', '.join(there)}" if there else "",
+                    others and f"other machines also {others}",
                 )
-            there = dict.fromkeys(id for subject in subjects for id in subject.has(self.command))
-            raise UsageError(f"--columns: '{name}' is left out for this machine, which has {', '.join(there)}")
+                raise UsageError(
+                    f"--columns: '{shown(name)}' is no column of kurbel {self.command}"
+                    f"{did_you_mean(name, there) or did_you_mean(name, known)} ({'; '.join(filter(None, has))})"
+                )
+            if there:
+                raise UsageError(f"--columns: '{name}' is left out for this machine, which has {', '.join(there)}")

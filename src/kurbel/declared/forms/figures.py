@@ -88,7 +88,7 @@ class _Figures(Form):
         """Return the id that a name stands for, and what is wrong with it."""
         found = called(name, known.values())
         if not found:
-            hint = did_you_mean(name, tuple(known)) or f"; known are {', '.join([*known][:6])}, …"
+            hint = did_you_mean(name, tuple(id for id in known if id not in lists)) or f"; known are {', '.join([*known][:6])}, …"
             return "", f"unknown key value '{shown(name)}'{hint}"
         listed = f"'{name}' is a list of values; no {self.what} can be put on it" if found[0] in lists else ""
         return found[0], ambiguity(name, found) or listed

@@ -124,12 +124,14 @@ class Record(Form):
     ) -> Iterator[str]:
         """Note a fault for each unknown key and yield the known ones that were probably meant."""
         elsewhere: dict[str, str] = {}
+        other_words: dict[str, str] = {}
         for name, key in self.keys.items() if unknown else ():
             elsewhere |= key.form.moved(name, mapping)
+            other_words |= key.form.meant(name, key)
         listed = False
         for name in unknown:
-            meant = "" if name in elsewhere else near(name, known)
-            message = elsewhere.get(name) or _unknown_message(reading, name, meant)
+            meant = "" if name in elsewhere else _near(name, known, other_words)
+            message = elsewhere.get(name) or _unknown_message(reading, name, meant, path)
             if not message:
                 message = "unknown key" if listed else f"unknown key; known here are {', '.join(known)}"
                 listed = True
@@ -174,13 +176,19 @@ def _missing(name: str, key: Key, beside: str) -> str:
     return f"'{name}' is missing{' beside it' if beside else ''}: {meaning}; {key.write(name)}"
 
 
-def _unknown_message(reading: Reading, name: str, meant: str) -> str:
+def _near(name: str, known: tuple[str, ...], other_words: dict[str, str]) -> str:
+    """Return the key that was probably meant, by another word for it or by its own name misspelt; or ''."""
+    meant = other_words.get(name, "")
+    return meant if meant in known else near(name, known)
+
+
+def _unknown_message(reading: Reading, name: str, meant: str, path: Path) -> str:
     """Return what was probably meant by an unknown key, or an empty text where nothing is like it."""
     if meant:
         return f"unknown key; did you mean '{meant}'?"
     if name == "<<":
         return "merging is not supported; write the keys themselves; a cylinder may be 'like: NAME' of another"
-    home = reading.where_it_belongs(name)
+    home = reading.where_it_belongs(name, path)
     return f"does not belong here; {home}" if home else ""
 
 
@@ -195,14 +203,17 @@ def _finite(born: Any, values: Tree) -> bool:
 
 
 class Variant(Form):
-    """Keys of the same mapping that depend on the word under this one: those of the mechanism, say."""
+    """Keys of the same mapping that depend on the word under this one: those of the mechanism, say.
 
-    def __init__(self, default: str, cases: dict[str, Record]) -> None:
-        self.default, self.cases = default, cases
+    also: other words that people try, each with the word for it.
+    """
+
+    def __init__(self, default: str, cases: dict[str, Record], also: dict[str, str]) -> None:
+        self.default, self.cases, self.also = default, cases, also
 
     @property
     def _words(self) -> Choice:
-        return Choice(tuple(self.cases))
+        return Choice(tuple(self.cases), self.also)
 
     def expected(self) -> str:
         return self._words.expected()

@@ -207,10 +207,10 @@ class Text(Scalar):
 
 
 class Choice(Scalar):
-    """One of these words."""
+    """One of these words. also: other words that people try, each with the one that is meant."""
 
-    def __init__(self, words: tuple[str, ...]) -> None:
-        self.words = words
+    def __init__(self, words: tuple[str, ...], also: dict[str, str] | None = None) -> None:
+        self.words, self.also = words, also or {}
 
     def suits(self, value: Any) -> bool:
         return not NUMBER.match(str(value))
@@ -220,7 +220,9 @@ class Choice(Scalar):
         return str(value) if isinstance(value, str) and value in self.words else super().take(reading, value, path)
 
     def parse(self, text: str, folder: str) -> str:
-        refused(f"unknown word '{shown(text)}'{did_you_mean(text, self.words) or f'; write {self.expected()}'}")
+        meant = self.also.get(text.strip().lower())
+        hint = f"; write '{meant}'" if meant else did_you_mean(text, self.words) or f"; write {self.expected()}"
+        refused(f"unknown word '{shown(text)}'{hint}")
 
     def expected(self) -> str:
         return " or ".join(f"'{word}'" for word in self.words)

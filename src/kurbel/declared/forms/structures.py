@@ -7,7 +7,7 @@ from typing import Any
 
 from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms.records import Record, no_mapping
-from kurbel.declared.forms.scalars import refused
+from kurbel.declared.forms.scalars import Choice, refused
 from kurbel.declared.keys import Form, Schema
 from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of
 from kurbel.errors import Path
@@ -69,6 +69,9 @@ class OneOf(Form):
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read a value by the first form that has its shape."""
         shape = type(value) if isinstance(value, (dict, list)) else str
+        words = [word for form in self.forms if isinstance(form, Choice) for word in form.words]
+        if found := [name for name in value if name in words] if shape is dict else []:
+            return reading.fault((*path, found[0]), f"takes no value; write '{path[-1]}: {found[0]}'", at_key=True)
         alike = [form for form in self.forms if form.shape is shape]
         if alike:  # of a word and a number, the one that it looks like
             return next((form for form in alike if form.suits(value)), alike[0]).read(reading, value, path)
@@ -107,15 +110,17 @@ class Keyed(Form):
             return REFUSED if self._misspelt(reading, value, path) else self.otherwise.read(reading, value, path)
         for name in value:
             if name != telling:
-                reading.fault((*path, name), f"cannot stand beside '{telling}'{self._home(reading, name)}", at_key=True)
+                reading.fault(
+                    (*path, name), f"cannot stand beside '{telling}'{self._home(reading, name, path)}", at_key=True
+                )
         inner = self.cases[telling].read(reading, value[telling], (*path, telling))
         return inner if len(value) == 1 else REFUSED
 
-    def _home(self, reading: Reading, name: str) -> str:
+    def _home(self, reading: Reading, name: str, path: Path) -> str:
         """Return where a key belongs that stands beside a telling one, or that one of both is too many."""
         if name in self.otherwise.keys or name in self.cases:
             return "; leave one of them out"
-        return f"; {reading.where_it_belongs(name) or 'leave it out'}"
+        return f"; {reading.where_it_belongs(name, path) or 'leave it out'}"
 
     def _misspelt(self, reading: Reading, mapping: Tree, path: Path) -> bool:
         """Note a fault where an unknown key is nearly a telling one, and return whether there was any."""
