@@ -66,3 +66,46 @@ def test_brake_torque() -> None:
     both = refused(ENGINE + GAS + "brake_torque: 10 kN m\nbrake_power: 3 kW\n")
     assert "'brake_power' and 'brake_torque' say the same thing" in both
     assert "'brake_torque' needs 'speed' beside it" in refused("crank: 1 m\nrod: 4 m\nbrake_torque: 10 kN m\n")
+
+
+# flywheel
+
+DIAGRAM = "effort: {unit: N m, points: [[0, 0], [90, 4000], [180, 0], [270, 4000], [360, 0]]}\nspeed: 120 rpm\n"
+
+
+def test_a_flywheel_by_mass_and_radius_of_gyration() -> None:
+    machine = loads(DIAGRAM + "flywheel: {mass: 2 t, radius_of_gyration: 1.2 m}\n")
+    assert machine.flywheel is not None
+    assert machine.flywheel.inertia == pytest.approx(2000 * 1.44, rel=1e-15)
+    for others, says in (
+        ("mass: 2 t", "'mass' needs 'radius_of_gyration' beside it"),
+        ("mass: 2 t, radius_of_gyration: 1 m, inertia: 5 kg m2", "'inertia' and 'mass' say the same thing"),
+        ("mass: 2 t, radius_of_gyration: 1 m, gd2: 5 kg m2", "'gd2' and 'radius_of_gyration' say the same thing"),
+    ):
+        assert says in refused(DIAGRAM + f"flywheel: {{{others}}}\n")
+
+
+RIM = "rim: {mean_diameter: 3 m, density: 7200 kg/m3, allowable_tension: %s}"
+
+
+def test_the_rim_of_the_wanted_flywheel() -> None:
+    """J = ΔE/(δ ω²); a ring of section A weighs ρ A π D and has J = m D²/4; its hoop stress is ρ v², v = ω D/2."""
+    text = DIAGRAM + "flywheel: {fluctuation: 1/50, %s}\n" % (RIM % "6 MPa")
+    turning = solve(loads(text)).flywheel
+    omega = 4 * math.pi
+    # between two crossings at 45 deg and 135 deg stands a triangle of 2000 N m over a quarter turn
+    inertia = 2000 * math.pi / 4 * 50 / omega**2
+    assert turning.rim_section == pytest.approx(inertia / (3 / 2) ** 2 / (7200 * math.pi * 3), rel=1e-12)
+    assert turning.rim_speed == pytest.approx(omega * 1.5, rel=1e-15)
+    assert turning.rim_stress == pytest.approx(7200 * (omega * 1.5) ** 2, rel=1e-14)
+    printed = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text).stdout
+    assert "hoop stress" not in printed.partition("Warnings")[2]
+    weak = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text.replace("6 MPa", "2 MPa")).stdout
+    assert "the rim bears a hoop stress of 2.55" in " ".join(weak.partition("Warnings")[2].split())
+
+
+def test_the_rim_of_a_given_flywheel_of_cast_iron() -> None:
+    text = DIAGRAM.replace("speed: 120 rpm\n", "") + "flywheel: {inertia: 500 kg m2, rim: {mean_diameter: 2 m}}\n"
+    turning = solve(loads(text)).flywheel
+    assert turning.rim_section == pytest.approx(500 / (7250 * 2 * math.pi), rel=1e-14)
+    assert turning.rim_stress is None

@@ -96,6 +96,12 @@ def _warnings(case: Case, turning: MachineTurning) -> Iterable[str]:
     if turning.load_ignored:
         yield "the mean torque is zero, so that a load in proportion to it does not hold the speed; it is left out"
     yield from _coupling_warnings(turning)
+    rim = machine.flywheel.rim if machine.flywheel else None
+    if rim and rim.allowable_tension and turning.rim_stress and turning.rim_stress > rim.allowable_tension:
+        yield (
+            f"the rim bears a hoop stress of {show(turning.rim_stress, 'stress')}, more than the allowable "
+            f"{show(rim.allowable_tension, 'stress')}"
+        )
 
 
 def _wish_warnings(turning: MachineTurning) -> Iterable[str]:
