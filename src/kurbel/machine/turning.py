@@ -109,7 +109,7 @@ class Flywheel(Described):
 
 
 @dataclass(frozen=True, eq=False)
-class Effort(Described):
+class Effort:
     """A turning-moment diagram: torques in N m over crank angles in degrees, from 0 to 360 or 720, ascending.
 
     Two points at one angle are a jump.
@@ -120,11 +120,9 @@ class Effort(Described):
     file: str | None = None
     notes: tuple[str, ...] = ()
 
-    KEYS: ClassVar[Keys] = {name: key._replace(required=True) for name, key in _TORQUE_KEYS.items()}
-
     @classmethod
-    def of_keys(cls, unit: Factor, points: list[Point]) -> Effort:
-        """Return the diagram that these keys of a machine file describe; raises RuleError."""
+    def of_points(cls, unit: Factor, points: list[Point]) -> Effort:
+        """Return the diagram of the points that stand under `points` in a machine file; raises RuleError."""
         refuse(*(angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))))
         up, down = unit
         return cls(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
@@ -186,7 +184,7 @@ class Load(Described):
         points: list[Point] | None = None,
     ) -> Load:
         """Return the load that these keys of a machine file describe; raises RuleError."""
-        diagram = None if unit is None or points is None else Effort.from_keys(unit=unit, points=points)
+        diagram = None if unit is None or points is None else Effort.of_points(unit, points)
         return cls(power_law, slip, diagram)
 
     def __post_init__(self) -> None:

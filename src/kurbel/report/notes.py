@@ -37,6 +37,7 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
         for piston in cylinder.pistons
         for text in card_end_notes(piston)
     ]
+    found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
     found += [Note(None, text) for text in speed_notes(machine)]
     found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in size_notes(cylinder)]
     if machine.brake_power is not None or any(hasattr(chamber, "angle_zero") for _, _, chamber in chambers):
