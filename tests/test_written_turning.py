@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from kurbel import loads, solve
+from kurbel import load, loads, solve
 from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError
 from kurbel.solver.cylinder.forces import CylinderForces
@@ -66,3 +68,139 @@ def test_brake_torque() -> None:
     both = refused(ENGINE + GAS + "brake_torque: 10 kN m\nbrake_power: 3 kW\n")
     assert "'brake_power' and 'brake_torque' say the same thing" in both
     assert "'brake_torque' needs 'speed' beside it" in refused("crank: 1 m\nrod: 4 m\nbrake_torque: 10 kN m\n")
+
+
+# flywheel
+
+DIAGRAM = "effort: {unit: N m, points: [[0, 0], [90, 4000], [180, 0], [270, 4000], [360, 0]]}\nspeed: 120 rpm\n"
+
+
+def test_a_flywheel_by_mass_and_radius_of_gyration() -> None:
+    machine = loads(DIAGRAM + "flywheel: {mass: 2 t, radius_of_gyration: 1.2 m}\n")
+    assert machine.flywheel is not None
+    assert machine.flywheel.inertia == pytest.approx(2000 * 1.44, rel=1e-15)
+    for others, says in (
+        ("mass: 2 t", "'mass' needs 'radius_of_gyration' beside it"),
+        ("mass: 2 t, radius_of_gyration: 1 m, inertia: 5 kg m2", "'inertia' and 'mass' say the same thing"),
+        ("mass: 2 t, radius_of_gyration: 1 m, gd2: 5 kg m2", "'gd2' and 'radius_of_gyration' say the same thing"),
+    ):
+        assert says in refused(DIAGRAM + f"flywheel: {{{others}}}\n")
+
+
+RIM = "rim: {mean_diameter: 3 m, density: 7200 kg/m3, allowable_tension: %s}"
+
+
+def test_the_rim_of_the_wanted_flywheel() -> None:
+    """J = ΔE/(δ ω²); a ring of section A weighs ρ A π D and has J = m D²/4; its hoop stress is ρ v², v = ω D/2."""
+    text = DIAGRAM + "flywheel: {fluctuation: 1/50, %s}\n" % (RIM % "6 MPa")
+    turning = solve(loads(text)).flywheel
+    omega = 4 * math.pi
+    # between two crossings at 45 deg and 135 deg stands a triangle of 2000 N m over a quarter turn
+    inertia = 2000 * math.pi / 4 * 50 / omega**2
+    assert turning.rim_section == pytest.approx(inertia / (3 / 2) ** 2 / (7200 * math.pi * 3), rel=1e-12)
+    assert turning.rim_speed == pytest.approx(omega * 1.5, rel=1e-15)
+    assert turning.rim_stress == pytest.approx(7200 * (omega * 1.5) ** 2, rel=1e-14)
+    printed = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text).stdout
+    assert "hoop stress" not in printed.partition("Warnings")[2]
+    weak = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text.replace("6 MPa", "2 MPa")).stdout
+    assert "the rim bears a hoop stress of 2.55" in " ".join(weak.partition("Warnings")[2].split())
+
+
+def test_the_rim_of_a_given_flywheel_of_cast_iron() -> None:
+    text = DIAGRAM.replace("speed: 120 rpm\n", "") + "flywheel: {inertia: 500 kg m2, rim: {mean_diameter: 2 m}}\n"
+    turning = solve(loads(text)).flywheel
+    assert turning.rim_section == pytest.approx(500 / (7250 * 2 * math.pi), rel=1e-14)
+    assert turning.rim_stress is None
+
+
+# a turning effort known from elsewhere
+
+WHEEL = "speed: 120 rpm\nflywheel: {fluctuation: 1/50}\n"
+
+
+@pytest.mark.parametrize(
+    ("cycle", "order", "cos", "sin"),
+    [("two-stroke", 2, 300, 400), ("two-stroke", 24, 0, -50), ("four-stroke", 0.5, 400, 300), ("two-stroke", 7, 1, 0)],
+)
+def test_an_effort_of_one_harmonic(cycle: str, order: float, cos: float, sin: float) -> None:
+    """M = m + c cos νφ + s sin νφ has the amplitude a = √(c² + s²), and ΔE = 2 a/ν whatever the mean."""
+    text = f"cycle: {cycle}\neffort: {{unit: kN m, mean: 1000, harmonics: [[{order}, {cos}, {sin}]]}}\n{WHEEL}"
+    turning = solve(loads(text)).flywheel
+    amplitude = math.hypot(cos, sin) * 1e3
+    assert turning.M_mean == pytest.approx(1e6, rel=1e-13)
+    assert turning.M_max.value == pytest.approx(1e6 + amplitude, rel=1e-13)
+    assert turning.dE == pytest.approx(2 * amplitude / order, rel=1e-11)
+    assert turning.J_needed == pytest.approx(2 * amplitude / order * 50 / (4 * math.pi) ** 2, rel=1e-11)
+
+
+def test_an_effort_of_several_harmonics_is_their_sum() -> None:
+    terms = [[1, 120, -40], [2, -300, 250], [3.0, 10, 90], [6, 35, 0]]
+    turning = solve(loads(f"effort: {{unit: N m, mean: 500, harmonics: {terms}}}\n{WHEEL}")).flywheel
+    phi = np.array([0.0, 17.0, 200.0, 359.0])
+    wanted = 500 + sum(c * np.cos(n * np.radians(phi)) + s * np.sin(n * np.radians(phi)) for n, c, s in terms)
+    assert np.asarray(turning.at(phi).M) == pytest.approx(wanted, rel=1e-13)
+    # ΔE by the antiderivative on a fine mesh, which misses its extremes by no more than their curvature allows
+    fine = np.radians(np.linspace(0, 360, 400_001))
+    energy = sum(c / n * np.sin(n * fine) - s / n * np.cos(n * fine) for n, c, s in terms)
+    assert turning.dE == pytest.approx(np.ptp(energy), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("effort", "says"),
+    [
+        ("unit: N m, mean: 1, harmonics: [[0.5, 1, 1]]", "order 0.5 does not repeat after a two-stroke cycle"),
+        ("unit: N m, mean: 1, harmonics: [[0, 1, 1]]", "order 0 is no number of periods per turn"),
+        ("unit: N m, harmonics: [[1, 1, 1]]", "'harmonics' needs 'mean' beside it"),
+        ("unit: N m, mean: 1, harmonics: [[1, 1]]", "a triple [order, cos, sin] has three numbers, [1, 1] has 2"),
+        ("unit: N m, mean: 1, harmonics: [[1, 1e18, 1e18]]", "too large"),
+        ("unit: N m", "give one of 'points', 'file' or 'harmonics'"),
+        ("unit: N m, points: [[0, 1], [360, 1]], mean: 2, harmonics: [[1, 1, 1]]", "give one of 'points', 'file'"),
+        ("unit: N m, points: [[0, 1], [360, 1]], skip_rows: 2", "'skip_rows' needs 'file' beside it"),
+        ("unit: N m, points: [[0, 10], [3.14159, 20], [6.28318, 10]]", "this one runs from 0 to 6.28318 deg"),
+    ],
+)
+def test_an_effort_that_cannot_be(effort: str, says: str) -> None:
+    assert says in refused(f"effort: {{{effort}}}\n{WHEEL}")
+
+
+POINTS = [(0, 0.0), (90, 4.5), (180, -1.0), (180, 0.5), (270, 4.0), (360, 0.0)]
+
+
+@pytest.mark.parametrize("first", [0, 90, 180])
+def test_an_effort_from_a_file(tmp_path: Path, first: int) -> None:
+    """As the logger counts, the inner dead centre stands at 30 deg, and the file may begin anywhere in the cycle."""
+    start = next(i for i, (angle, _) in enumerate(POINTS) if angle == first)
+    turned = [*POINTS[start:], *((angle + 360, torque) for angle, torque in POINTS[1 : start + 1])]
+    rows = "\n".join(f"{angle + 30};x;{torque:.1f}".replace(".", ",") for angle, torque in turned)
+    (tmp_path / "effort.csv").write_text(f"Winkel;;kNm\n{rows}\n")
+    layout = "skip_rows: 1, torque_column: 3, delimiter: semicolon, decimal: comma, angle_zero: 30 deg"
+    (tmp_path / "m.yaml").write_text(f"effort: {{unit: kN m, file: effort.csv, {layout}}}\n{WHEEL}")
+    machine = load(tmp_path / "m.yaml")
+    plain = loads(f"effort: {{unit: kN m, points: {[list(point) for point in POINTS]}}}\n{WHEEL}")
+    angles = np.array([0, 45, 179.9, 180, 300])
+    read, written = (np.asarray(solve(one).flywheel.at(angles).M) for one in (machine, plain))
+    assert read == pytest.approx(written, rel=1e-13, abs=1e-9)
+    assert solve(machine).flywheel.dE == pytest.approx(solve(plain).flywheel.dE, rel=1e-13)
+    assert machine.trace_files == (str(tmp_path / "effort.csv"),)
+
+
+def test_an_effort_file_between_samples_and_without_the_last(tmp_path: Path) -> None:
+    """Samples at 5, 15, … of 3 sin φ: at 0 stands the middle of those beside it; a missing last one is the first."""
+    rows = "\n".join(f"{angle},{3 * math.sin(math.radians(angle))!r}" for angle in range(5, 365, 10))
+    (tmp_path / "effort.csv").write_text(rows)
+    (tmp_path / "m.yaml").write_text(f"effort: {{unit: N m, file: effort.csv}}\n{WHEEL}")
+    torque = np.asarray(solve(load(tmp_path / "m.yaml")).flywheel.at(np.array([0.0, 10.0])).M)
+    middle = 1.5 * sum(math.sin(math.radians(a)) for a in (5, 15))
+    assert torque == pytest.approx([0.0, middle], abs=1e-14)
+    told = CliRunner().invoke(kurbel, ["flywheel", str(tmp_path / "m.yaml")]).stdout
+    assert "closes the cycle" in " ".join(told.split())
+
+
+def test_a_file_that_does_not_cover_the_cycle(tmp_path: Path) -> None:
+    (tmp_path / "effort.csv").write_text("0,1\n90,2\n180,1\n200,nan\n")
+    (tmp_path / "m.yaml").write_text(f"effort: {{unit: N m, file: effort.csv}}\n{WHEEL}")
+    with pytest.raises(MachineFileError, match="the torque is nan"):
+        load(tmp_path / "m.yaml")
+    (tmp_path / "effort.csv").write_text("0,1\n90,2\n180,1\n")
+    with pytest.raises(MachineFileError, match="no samples from 180 to 360 deg"):
+        load(tmp_path / "m.yaml")

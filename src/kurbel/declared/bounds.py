@@ -41,6 +41,7 @@ SIZES: dict[str, tuple[float, float]] = {
     "stiffness": (1e-12, 1e18),
     "damping": (1e-15, 1e18),
     "pressure_velocity": (0, 1e18),
+    "density": (1e-9, 1e9),
     "spring": (1e-15, 1e3),
     "ratio": (1e-15, 1e15),
 }

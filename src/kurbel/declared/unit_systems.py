@@ -28,6 +28,7 @@ SI = {
     "stiffness": "N m/rad",
     "damping": "N m s/rad",
     "pressure_velocity": "W/m^2",
+    "density": "kg/m^3",
     "spring": "m/Pa",
     "ratio": "",
 }

@@ -140,6 +140,14 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         | {"N m s/rad": (1, 1), "Nm s/rad": (1, 1), "kN m s/rad": (1e3, 1)}
         | {"N m s": (1, 1), "Nm s": (1, 1), "kN m s": (1e3, 1), "lbf ft s/rad": (_LBF * 3048, 1e4)}
     ),
+    "density": lambda: {
+        "kg/m3": (1, 1),
+        "kg/dm3": (1e3, 1),
+        "g/cm3": (1e3, 1),
+        "t/m3": (1e3, 1),
+        "lb/ft3": (_POUND * 1e12, 3048**3),
+        "lb/in3": (_POUND * 1e12, 254**3),
+    },
     "spring": lambda: (
         _product(
             {"mm": (1, 1e3), "cm": (1, 1e2), "m": (1, 1), "in": (254, 1e4)}, {**_PRESSURE, **_POUNDS_OF_FORCE}, "/"
@@ -164,7 +172,7 @@ def _units_of(kind: str) -> dict[str, Factor]:
 def _normal(unit: str) -> str:
     """Write `kg·m²`, `kg*m^2` and `kg  m2` alike."""
     unit = plain(unit)
-    for sign, ours in (("⁻¹", "-1"), ("²", "2"), ("^", ""), ("·", " "), ("*", " "), ("µ", "u"), ("μ", "u")):
+    for sign, ours in (("⁻¹", "-1"), ("²", "2"), ("³", "3"), ("^", ""), ("·", " "), ("*", " "), ("µ", "u"), ("μ", "u")):
         unit = unit.replace(sign, ours)
     unit = re.sub(r"\binch(es)?\b", "in", re.sub(r"\b(foot|feet)\b", "ft", unit))
     return re.sub(r"\s*/\s*", "/", " ".join(unit.split()))

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from kurbel.declared.quantity import Quantity
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.equal import EqualCylinders
-    from kurbel.machine.turning import Coupling, Effort, Flywheel, Load
+    from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
 
@@ -84,7 +84,7 @@ class Machine(Described):
     brake_power: float | None = None
     flywheel: Flywheel | None = None
     load: Load | None = None
-    effort: Effort | None = None
+    effort: Effort | Harmonics | None = None
     coupling: Coupling | None = None
     crankshaft: Crankshaft | None = None
     limits: tuple[tuple[str, float], ...] = ()
@@ -138,7 +138,7 @@ class Machine(Described):
             absent="constant",
         ),
         "effort": Key(
-            Record("kurbel.machine.turning:Effort"),
+            Record("kurbel.machine_file.effort:Known"),
             "A turning-moment diagram known from elsewhere, instead of cylinders",
             absent="from the cylinders",
         ),
@@ -193,7 +193,7 @@ class Machine(Described):
         faults = [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
-                faults.append(Fault((key, "points"), message))
+                faults.append(Fault((key, getattr(diagram, "key", "points")), message))
         refuse(*faults)
 
     def _cycle_faults(self, index: int) -> list[Fault]:
@@ -228,11 +228,12 @@ class Machine(Described):
 
     @property
     def trace_files(self) -> tuple[str, ...]:
-        """The files that the traces of the machine were read from."""
+        """The files that the traces of the machine, or its effort, were read from."""
         indicators = [
             piston.indicator for cylinder in self.cylinders for piston in cylinder.pistons if piston.indicator
         ]
-        files = (getattr(end, "file", None) for one in indicators for end in (one.head_end, one.crank_end))
+        measured = (*(end for one in indicators for end in (one.head_end, one.crank_end)), self.effort)
+        files = (getattr(one, "file", None) for one in measured)
         return tuple(dict.fromkeys(file for file in files if file))
 
     @property

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from kurbel.declared.bounds import Point, size_faults
-from kurbel.declared.forms import Number, Physical, Points, UnitName
+from kurbel.declared.forms import Number, Physical, Points, Record, UnitName
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, refuse
-from kurbel.machine.angle_points import angle_faults, beyond_cycle
+from kurbel.machine.angle_points import CYCLES, angle_faults, beyond_cycle
 
 _TORQUE_KEYS: Keys = {
     "unit": Key(UnitName("torque"), "Unit of the torques", needs="points"),
@@ -20,12 +21,49 @@ _TORQUE_KEYS: Keys = {
 }
 
 
+CAST_IRON = 7250.0
+"""Density in kg/m³ of what rims are cast of."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rim(Described):
+    """The rim of a flywheel: mean diameter in m, density in kg/m³, and the tension in Pa that it may bear or None."""
+
+    mean_diameter: float
+    density: float = CAST_IRON
+    allowable_tension: float | None = None
+
+    KEYS: ClassVar[Keys] = {
+        "mean_diameter": Key(Physical("length", above=0), "Mean diameter of the rim", "D", required=True),
+        "density": Key(Physical("density", above=0), "Density of its material", "ρ", absent="7250 kg/m³, cast iron"),
+        "allowable_tension": Key(
+            Physical("stress", above=0), "Tension that the rim may bear; a warning tells when it has more", "k_z"
+        ),
+    }
+
+    def section(self, inertia: float) -> float:
+        """Return the area A in m² of a thin rim with J = ρ A π D (D/2)², arms and hub left out; inertia in kg m²."""
+        return 4 * inertia / (math.pi * self.density * self.mean_diameter**3)
+
+    def speed(self, omega: float) -> float:
+        """Return the speed v in m/s of the middle of the rim at an angular velocity in rad/s."""
+        return omega * self.mean_diameter / 2
+
+    def stress(self, omega: float) -> float:
+        """Return the hoop stress ρ v² in Pa of a rim that turns freely, at an angular velocity in rad/s."""
+        return self.density * self.speed(omega) ** 2
+
+
 @dataclass(frozen=True, eq=False)
 class Flywheel(Described):
-    """A flywheel: its moment of inertia J in kg m², and the wanted coefficient of fluctuation δ; either may be None."""
+    """A flywheel: its moment of inertia J in kg m², the wanted coefficient of fluctuation δ, and the rim to be built.
+
+    Any of them may be None, but not both of the first two.
+    """
 
     inertia: float | None = None
     fluctuation: float | None = None
+    rim: Rim | None = None
 
     KEYS: ClassVar[Keys] = {
         "inertia": Key(Physical("inertia", least=0), "Moment of inertia; or give `gd2`", "J"),
@@ -35,25 +73,43 @@ class Flywheel(Described):
             "GD²",
             instead="inertia",
         ),
+        "mass": Key(
+            Physical("mass", least=0),
+            "Mass, with the radius of gyration another form of the moment of inertia m k²",
+            "m",
+            instead="inertia",
+            needs="radius_of_gyration",
+        ),
+        "radius_of_gyration": Key(Physical("length", above=0), "Radius of gyration", "k", instead="gd2", needs="mass"),
         "fluctuation": Key(
             Number(above=0, below=2), "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean", "δ"
+        ),
+        "rim": Key(
+            Record("kurbel.machine.turning:Rim"), "A rim that has the whole moment of inertia", absent="no section"
         ),
     }
 
     @classmethod
     def of_keys(
-        cls, inertia: float | None = None, gd2: float | None = None, fluctuation: float | None = None
+        cls,
+        inertia: float | None = None,
+        gd2: float | None = None,
+        mass: float | None = None,
+        radius_of_gyration: float | None = None,
+        **others: Any,
     ) -> Flywheel:
-        """Return the flywheel with J = inertia or GD²/4."""
-        return cls(gd2 / 4 if gd2 is not None else inertia, fluctuation)
+        """Return the flywheel with J = inertia, GD²/4 or m k²."""
+        if mass is not None and radius_of_gyration is not None:
+            return cls(mass * radius_of_gyration**2, **others)
+        return cls(gd2 / 4 if gd2 is not None else inertia, **others)
 
     def __post_init__(self) -> None:
         if self.inertia is None and self.fluctuation is None:
-            refuse(Fault((), "a flywheel needs 'inertia', 'gd2' or the wanted 'fluctuation'"))
+            refuse(Fault((), "a flywheel needs 'inertia', 'gd2', 'mass' or the wanted 'fluctuation'"))
 
 
 @dataclass(frozen=True, eq=False)
-class Effort(Described):
+class Effort:
     """A turning-moment diagram: torques in N m over crank angles in degrees, from 0 to 360 or 720, ascending.
 
     Two points at one angle are a jump.
@@ -61,12 +117,12 @@ class Effort(Described):
 
     angles: tuple[float, ...]
     torques: tuple[float, ...]
-
-    KEYS: ClassVar[Keys] = {name: key._replace(required=True) for name, key in _TORQUE_KEYS.items()}
+    file: str | None = None
+    notes: tuple[str, ...] = ()
 
     @classmethod
-    def of_keys(cls, unit: Factor, points: list[Point]) -> Effort:
-        """Return the diagram that these keys of a machine file describe; raises RuleError."""
+    def of_points(cls, unit: Factor, points: list[Point]) -> Effort:
+        """Return the diagram of the points that stand under `points` in a machine file; raises RuleError."""
         refuse(*(angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))))
         up, down = unit
         return cls(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
@@ -74,6 +130,31 @@ class Effort(Described):
     def cycle_fault(self, cycle: str) -> str:
         """Return what does not fit the cycle of the machine, or an empty text."""
         return beyond_cycle(self.angles[-1], cycle)
+
+    @property
+    def key(self) -> str:
+        """The key that the torques stand under."""
+        return "file" if self.file else "points"
+
+
+@dataclass(frozen=True, eq=False)
+class Harmonics:
+    """A turning effort by harmonics, M = mean + Σ c cos νφ + s sin νφ: in N m, ν per turn of the shaft.
+
+    terms: (ν, c, s) each.
+    """
+
+    mean: float
+    terms: tuple[tuple[float, float, float], ...]
+
+    key: ClassVar[str] = "harmonics"
+
+    def cycle_fault(self, cycle: str) -> str:
+        """Return what does not fit the cycle of the machine, or an empty text."""
+        for order, _, _ in self.terms:
+            if (order * CYCLES[cycle]) % 1:
+                return f"order {order:g} does not repeat after a {cycle} cycle; orders count periods per turn"
+        return ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +184,7 @@ class Load(Described):
         points: list[Point] | None = None,
     ) -> Load:
         """Return the load that these keys of a machine file describe; raises RuleError."""
-        diagram = None if unit is None or points is None else Effort.from_keys(unit=unit, points=points)
+        diagram = None if unit is None or points is None else Effort.of_points(unit, points)
         return cls(power_law, slip, diagram)
 
     def __post_init__(self) -> None:

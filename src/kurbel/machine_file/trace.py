@@ -19,6 +19,22 @@ DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
 _DECIMALS = {"point": ".", "comma": ","}
 
 
+def layout_keys(what: str) -> Keys:
+    """Return the keys that say how a file of columns, angles and what was measured, is laid out."""
+    return {
+        "angle_column": Key(Count(), "Column of the angles, counted from 1", absent="1"),
+        f"{what}_column": Key(Count(), f"Column of the {what}s, counted from 1", absent="2"),
+        "skip_rows": Key(Count(least=0), "Number of lines above the first figures", absent="0"),
+        "delimiter": Key(
+            Choice((*DELIMITERS, *DELIMITERS.values())), "What stands between two columns", absent="comma"
+        ),
+        "decimal": Key(Choice(tuple(_DECIMALS)), "Decimal point or decimal comma", absent="point"),
+        "angle_zero": Key(
+            Physical("angle"), "Angle of the firing or inner dead centre as the file counts", absent="0 deg"
+        ),
+    }
+
+
 class Measured(Described):
     """What becomes a `Trace` once its samples are read and closed to a whole cycle."""
 
@@ -31,16 +47,7 @@ class Measured(Described):
         ),
         "points": Key(Points("deg", "pressure"), "Pressure over the crank angle; or give `file`", instead="file"),
         "unit": Key(UnitName("pressure"), "Unit of the pressures", required=True),
-        "angle_column": Key(Count(), "Column of the angles, counted from 1", absent="1"),
-        "pressure_column": Key(Count(), "Column of the pressures, counted from 1", absent="2"),
-        "skip_rows": Key(Count(least=0), "Number of lines above the first figures", absent="0"),
-        "delimiter": Key(
-            Choice((*DELIMITERS, *DELIMITERS.values())), "What stands between two columns", absent="comma"
-        ),
-        "decimal": Key(Choice(tuple(_DECIMALS)), "Decimal point or decimal comma", absent="point"),
-        "angle_zero": Key(
-            Physical("angle"), "Angle of the firing or inner dead centre as the trace counts", absent="0 deg"
-        ),
+        **layout_keys("pressure"),
     }
 
     @classmethod
@@ -59,33 +66,36 @@ class Measured(Described):
             refuse(*(Fault((key,), f"'{key}' describes a file; leave it out beside 'points'") for key in layout))
             samples = _from_points(points or [], unit)
         else:
-            samples = _from_file(file, unit, **layout)  # type: ignore[arg-type]
-        return Trace(samples.angles, samples.pressures, angle_zero, file, samples.notes)
+            samples = samples_of(file, unit, "pressure", **layout)  # type: ignore[arg-type]
+        return Trace(samples.angles, samples.values, angle_zero, file, samples.notes)
 
 
-def _from_file(
+def samples_of(
     file: str,
     unit: Factor,
+    what: str,
     angle_column: int = 1,
-    pressure_column: int = 2,
     skip_rows: int = 0,
     delimiter: str = "comma",
     decimal: str = "point",
+    **column: int,
 ) -> Samples:
+    """Return one cycle of what was measured, in the base of its unit, from a file; raises RuleError."""
     between, point = DELIMITERS.get(delimiter, delimiter), _DECIMALS[decimal]
-    refuse(*_column_faults(angle_column, pressure_column, between, point))
+    value_column = column.get(f"{what}_column", 2)
+    refuse(*_column_faults(angle_column, value_column, what, between, point))
     from kurbel.machine_file.columns import Columns, read_columns
     from kurbel.machine_file.whole_cycle import whole_cycle
 
-    layout = Columns(angle_column, pressure_column, skip_rows, between, point)
+    layout = Columns(angle_column, value_column, skip_rows, between, point)
     angles, values, line = read_columns(file, layout)
-    return whole_cycle(angles, values * unit[0] / unit[1], lambda index: Fault(("file",), line(index)))
+    return whole_cycle(angles, values * unit[0] / unit[1], lambda index: Fault(("file",), line(index)), what)
 
 
-def _column_faults(angle: int, pressure: int, between: str, point: str) -> list[Fault]:
+def _column_faults(angle: int, value: int, what: str, between: str, point: str) -> list[Fault]:
     faults = []
-    if angle == pressure:
-        faults.append(Fault(("pressure_column",), f"column {pressure} is that of the angles"))
+    if angle == value:
+        faults.append(Fault((f"{what}_column",), f"column {value} is that of the angles"))
     if between == point:
         message = "a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'"
         faults.append(Fault(("decimal",), message))

@@ -19,26 +19,27 @@ Named = Callable[[int], Fault]
 
 
 class Samples(NamedTuple):
-    """One cycle of a trace: angles (n,) in degrees, rising over a period, pressures (n,) in Pa, what was tidied up."""
+    """One cycle of a trace: angles (n,) in degrees, rising over a period, values (n,), what was tidied up."""
 
     angles: Array
-    pressures: Array
+    values: Array
     notes: tuple[str, ...] = ()
 
 
-def whole_cycle(angles: Array, pressures: Array, named: Named) -> Samples:
+def whole_cycle(angles: Array, values: Array, named: Named, kind: str = "pressure") -> Samples:
     """Return the samples closed to a whole cycle; raises RuleError for what cannot be one.
 
-    angles (n,) in degrees, pressures (n,) in Pa; named: the place of a sample as a fault that lacks a message.
+    angles (n,) in degrees, values (n,) in the base of their kind; named: the place of a sample as a fault that lacks a
+    message.
     """
     first = _wrap(angles)
-    angles, pressures = np.roll(angles, -first), np.roll(pressures, -first)
+    angles, values = np.roll(angles, -first), np.roll(values, -first)
     place = _rolled(named, first, len(angles))
-    fault = _number_fault(angles, pressures, place) or _order_fault(angles, place)
+    fault = _number_fault(angles, values, place, kind) or _order_fault(angles, place)
     if fault:
         raise RuleError(fault)
     turned = (f"the angle begins anew at {angles[0]:.10g} deg; the samples from there on come first",) if first else ()
-    angles, pressures, twins = _without_twins(angles, pressures)
+    angles, values, twins = _without_twins(angles, values)
     notes = (*turned, *twins)
     span = float(angles[-1] - angles[0])
     period = next((p for p in PERIODS if span <= p * (1 + 1e-9)), 0.0)
@@ -46,7 +47,7 @@ def whole_cycle(angles: Array, pressures: Array, named: Named) -> Samples:
         raise RuleError(
             _say(place(len(angles) - 1), f"the samples run over {span:g} deg; cut one cycle of 720 deg out")
         )
-    return _closed(angles, pressures, period, notes, place)
+    return _closed(angles, values, period, notes, place)
 
 
 def _wrap(angles: Array) -> int:
@@ -65,16 +66,16 @@ def _say(place: Fault, message: str) -> Fault:
     return place._replace(message=f"{place.message}: {message}" if place.message else message)
 
 
-def _number_fault(angles: Array, pressures: Array, named: Named) -> Fault | None:
-    for what, values in (("angle", angles), ("pressure", pressures)):
-        bad = np.flatnonzero(~np.isfinite(values))
+def _number_fault(angles: Array, values: Array, named: Named, kind: str) -> Fault | None:
+    for what, given in (("angle", angles), (kind, values)):
+        bad = np.flatnonzero(~np.isfinite(given))
         if len(bad):
             more = f" ({len(bad)} such samples)" if len(bad) > 1 else ""
-            return _say(named(int(bad[0])), f"the {what} is {values[bad[0]]}, not a number{more}; leave such rows out")
-        top = int(np.abs(values).argmax())
-        wrong = out_of_size(abs(float(values[top])), what)
+            return _say(named(int(bad[0])), f"the {what} is {given[bad[0]]}, not a number{more}; leave such rows out")
+        top = int(np.abs(given).argmax())
+        wrong = out_of_size(abs(float(given[top])), what)
         if "large" in wrong:
-            return _say(named(top), f"the {what} {values[top]:g} {wrong}")
+            return _say(named(top), f"the {what} {given[top]:g} {wrong}")
     return None
 
 
@@ -94,15 +95,15 @@ def _order_fault(angles: Array, named: Named) -> Fault | None:
     return None
 
 
-def _without_twins(angles: Array, pressures: Array) -> tuple[Array, Array, tuple[str, ...]]:
-    twins = (np.diff(angles) == 0) & (np.diff(pressures) == 0)
+def _without_twins(angles: Array, values: Array) -> tuple[Array, Array, tuple[str, ...]]:
+    twins = (np.diff(angles) == 0) & (np.diff(values) == 0)
     if not twins.any():
-        return angles, pressures, ()
+        return angles, values, ()
     kept = np.concatenate(([True], ~twins))
-    return angles[kept], pressures[kept], (f"{int(twins.sum())} samples given twice count once",)
+    return angles[kept], values[kept], (f"{int(twins.sum())} samples given twice count once",)
 
 
-def _closed(angles: Array, pressures: Array, period: float, notes: tuple[str, ...], named: Named) -> Samples:
+def _closed(angles: Array, values: Array, period: float, notes: tuple[str, ...], named: Named) -> Samples:
     """Close the cycle with the first sample where only the last one is missing."""
     end = float(angles[0]) + period
     missing = end - float(angles[-1])
@@ -110,11 +111,11 @@ def _closed(angles: Array, pressures: Array, period: float, notes: tuple[str, ..
         raise RuleError(_say(named(len(angles) - 1), _hole(float(angles[-1]), end)))
     if missing > 1e-9 * period:
         notes += (f"the closing sample at {end:.10g} deg is missing; that at {angles[0]:.10g} deg closes the cycle",)
-        angles, pressures = np.append(angles, end), np.append(pressures, pressures[0])
+        angles, values = np.append(angles, end), np.append(values, values[0])
     else:
         angles = np.append(angles[:-1], end)
     _refuse_large_holes(angles, named)
-    return Samples(angles, pressures, (*notes, *_hole_notes(angles)))
+    return Samples(angles, values, (*notes, *_hole_notes(angles)))
 
 
 def _hole(begin: float, end: float) -> str:

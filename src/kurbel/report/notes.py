@@ -31,6 +31,7 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
         for text in getattr(chamber, "notes", ())
     ]
     found += [note for cylinder in machine.cylinders for note in _of_cards(cylinder)]
+    found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
     found += [Note(None, text) for text in speed_notes(machine)]
     found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in size_notes(cylinder)]
     if machine.effort or any(map(_acts, machine.cylinders)):

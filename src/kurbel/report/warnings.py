@@ -113,6 +113,7 @@ def _of_turning(turning: MachineTurning) -> Iterable[str]:
     if turning.load_ignored:
         yield "the mean torque is zero, so that a load in proportion to it does not hold the speed; it is left out"
     yield from _coupling_warnings(turning)
+    yield from _rim_warnings(turning)
 
 
 def _wish_warnings(turning: MachineTurning) -> Iterable[str]:
@@ -124,6 +125,15 @@ def _wish_warnings(turning: MachineTurning) -> Iterable[str]:
         f"with J = ΔE/(δ ω²) = {show(turning.J_needed, 'inertia')} of the books the speed line has δ = "
         f"{turning.delta_needed:.4g}{better}"
     )
+
+
+def _rim_warnings(turning: MachineTurning) -> Iterable[str]:
+    rim = turning.machine.flywheel.rim if turning.machine.flywheel else None
+    if rim and rim.allowable_tension and turning.rim_stress and turning.rim_stress > rim.allowable_tension:
+        yield (
+            f"the rim bears a hoop stress of {show(turning.rim_stress, 'stress')}, more than the allowable "
+            f"{show(rim.allowable_tension, 'stress')}"
+        )
 
 
 def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:

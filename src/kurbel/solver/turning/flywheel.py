@@ -21,6 +21,7 @@ from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.machine.turning import Rim
     from kurbel.solver.turning.coupling import ElasticCoupling
 
 _MISSED = 1e-3
@@ -162,6 +163,26 @@ class MachineTurning:
     @property
     def _given(self) -> float | None:
         return self.machine.flywheel.inertia if self.machine.flywheel else None
+
+    @property
+    def _rim(self) -> Rim | None:
+        return self.machine.flywheel.rim if self.machine.flywheel else None
+
+    @property
+    def rim_section(self) -> float | None:
+        """Section of the rim in m² that has the wanted moment of inertia, or else the given one."""
+        wanted = self.J if self.J_needed is None else self.J_needed
+        return None if self._rim is None or wanted is None else self._rim.section(wanted)
+
+    @property
+    def rim_speed(self) -> float | None:
+        """Speed of the middle of the rim in m/s."""
+        return self._rim.speed(self.omega) if self._rim and self.omega else None
+
+    @property
+    def rim_stress(self) -> float | None:
+        """Hoop stress ρ v² of the rim in Pa."""
+        return self._rim.stress(self.omega) if self._rim and self.omega else None
 
     @property
     def is_the_needed(self) -> bool:

@@ -18,7 +18,7 @@ from kurbel.numerics.piecewise import Piecewise
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.turning.effort import CylinderEffort, inertia_torque, reduced_inertia
 from kurbel.solver.turning.excess import Excess
-from kurbel.solver.turning.torques import Diagram, Sum, Torque
+from kurbel.solver.turning.torques import Diagram, Sum, Torque, known_torque
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -49,7 +49,7 @@ class MachineEffort:
     def _indicated(self) -> Sum:
         """The torque without the losses of the machine."""
         if self.machine.effort:
-            return Sum((1.0, Diagram(self.machine.effort, self.cycle)))
+            return Sum((1.0, known_torque(self.machine.effort, self.cycle)))
         return Sum(*((1.0, CylinderEffort(forces, self.cycle, lambda state: state.M)) for forces in self._driving))
 
     @cached_property

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from kurbel.machine.turning import Effort
+from kurbel.machine.turning import Effort, Harmonics
 from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
 
@@ -59,6 +60,26 @@ class Uniform:
         return Jet(np.full_like(degrees, self.value), np.zeros_like(degrees))
 
 
+class HarmonicTorque:
+    """A torque by harmonics, over a cycle in degrees."""
+
+    def __init__(self, given: Harmonics, cycle: float) -> None:
+        self._mean = given.mean
+        self._orders, self._cos, self._sin = np.array(given.terms).T
+        # the nodes of one piece resolve a quarter of the shortest period
+        pieces = math.ceil(cycle / 90 * max(1.0, float(self._orders.max())))
+        self.cuts = Cuts(np.linspace(0.0, cycle, pieces + 1))
+
+    def torque(self, degrees: Array, within: Array) -> Jet:
+        """Return the torque with its slope; see `Torque`."""
+        value, slope = np.full_like(degrees, self._mean), np.zeros_like(degrees)
+        for order, cos, sin in zip(self._orders, self._cos, self._sin):
+            turned = np.radians(np.mod(order * degrees, 360.0))
+            value += cos * np.cos(turned) + sin * np.sin(turned)
+            slope += order * (sin * np.cos(turned) - cos * np.sin(turned))
+        return Jet(value, slope)
+
+
 class Diagram:
     """A turning-moment diagram by points, straight between them, that repeats from its last angle on."""
 
@@ -78,3 +99,8 @@ class Diagram:
         piece = np.searchsorted(self._starts, within - turn, side="right") - 1
         rise = self._rises[piece]
         return Jet(self._torques[piece] + rise * (degrees - turn - self._starts[piece]), np.degrees(rise))
+
+
+def known_torque(effort: Effort | Harmonics, cycle: float) -> Torque:
+    """Return the torque of an effort that is known from elsewhere, over a cycle in degrees."""
+    return HarmonicTorque(effort, cycle) if isinstance(effort, Harmonics) else Diagram(effort, cycle)

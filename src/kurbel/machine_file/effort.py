@@ -1,0 +1,92 @@
+"""The keys of a turning effort known from elsewhere: points, a file of columns, or harmonics."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from kurbel.declared.bounds import Point, size_faults
+from kurbel.declared.forms import FilePath, Number, Points, UnitName
+from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.units import Factor
+from kurbel.errors import Fault, refuse
+from kurbel.machine.turning import Effort, Harmonics
+from kurbel.machine_file.trace import layout_keys, samples_of
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+    from kurbel.machine_file.whole_cycle import Samples
+
+_HIGHEST = 1000
+"""Periods per turn of a harmonic; each is followed, so that more of them take long."""
+
+
+class Known(Described):
+    """What becomes an `Effort`, or `Harmonics`."""
+
+    KEYS: ClassVar[Keys] = {
+        "unit": Key(UnitName("torque"), "Unit of the torques", required=True),
+        "points": Key(
+            Points("deg", "torque"),
+            "Torque over the crank angle; two points at one angle are a jump; or give `file` or `harmonics`",
+            "M",
+            instead="file",
+        ),
+        "file": Key(FilePath(), "File with a column of angles in degrees and one of torques", example="effort.csv"),
+        **{name: key._replace(needs="file") for name, key in layout_keys("torque").items()},
+        "mean": Key(Number(), "Mean torque beside the harmonics, in the unit", "M_m", needs="harmonics"),
+        "harmonics": Key(
+            Points("order", "cos", "sin", least=1),
+            "Harmonics of the torque: periods per turn, and the factors of cos νφ and sin νφ",
+            needs="mean",
+        ),
+    }
+
+    @classmethod
+    def of_keys(
+        cls,
+        unit: Factor,
+        points: list[Point] | None = None,
+        file: str | None = None,
+        harmonics: list[tuple[float, float, float]] | None = None,
+        mean: float = 0.0,
+        **layout: Any,
+    ) -> Effort | Harmonics:
+        """Return the effort that these keys describe, its file read; raises RuleError."""
+        if sum(one is not None for one in (points, file, harmonics)) != 1:
+            refuse(Fault((), "give one of 'points', 'file' or 'harmonics'"))
+        if harmonics is not None:
+            return _by_harmonics(unit, mean, harmonics)
+        return Effort.of_points(unit, points or []) if file is None else _from_file(unit, file, **layout)
+
+
+def _by_harmonics(unit: Factor, mean: float, harmonics: list[tuple[float, float, float]]) -> Harmonics:
+    up, down = unit
+    for index, (order, _, _) in enumerate(harmonics):
+        if not 0 < order <= _HIGHEST:
+            message = f"order {order:g} is no number of periods per turn; it must be more than 0, at most {_HIGHEST}"
+            refuse(Fault(("harmonics", index, 0), message))
+    sizes = [(0.0, mean), *((order, abs(c) + abs(s)) for order, c, s in harmonics)]
+    refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque", ())))
+    return Harmonics(mean * up / down, tuple((n, c * up / down, s * up / down) for n, c, s in harmonics))
+
+
+def _from_file(unit: Factor, file: str, angle_zero: float = 0.0, **layout: Any) -> Effort:
+    samples = samples_of(file, unit, "torque", **layout)
+    angles, torques = _from_zero(samples, angle_zero)
+    return Effort(tuple(angles.tolist()), tuple(torques.tolist()), file, samples.notes)
+
+
+def _from_zero(samples: Samples, angle_zero: float) -> tuple[Array, Array]:
+    """Return the angles (n,) in degrees from 0 to the end of the cycle, and the torques (n,), straight in between."""
+    import numpy as np
+
+    period = float(round(samples.angles[-1] - samples.angles[0]))
+    begun = samples.angles - angle_zero
+    begun = begun - period * np.ceil(begun[0] / period)  # begins in (−period, 0]
+    angles, torques = np.concatenate([begun, begun + period]), np.tile(samples.values, 2)
+    first, last = np.searchsorted(angles, 0.0, side="right"), np.searchsorted(angles, period, side="left")
+    between = np.interp(0.0, angles, torques)
+    at_zero = torques[first - 1] if angles[first - 1] == 0 else between
+    at_end = torques[last] if angles[last] == period else between
+    inside = slice(first, last)
+    return np.concatenate([[0.0], angles[inside], [period]]), np.concatenate([[at_zero], torques[inside], [at_end]])
