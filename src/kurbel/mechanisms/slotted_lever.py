@@ -211,7 +211,7 @@ class SlottedLever(Mechanism):
 
     @property
     def stroke(self) -> float:
-        """s = 2 R_l r/e (2 R_l for the rotating lever) with a fork head or a swinging lever; without a ram that of θ."""
+        """s = 2 R_l r/e (2 R_l for the rotating lever) with a fork head or a swinging lever; of θ without a ram."""
         if not self.slides:
             return math.tau if self.swing is None else math.radians(self.swing)
         if not self.rotates:

@@ -10,6 +10,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import UsageError
 from kurbel.machine.cylinder import may_lock
 from kurbel.report.frame import Answer, Frame, Subject, of_state
+from kurbel.report.guide import guide_notes
 from kurbel.report.left_out import left_out
 from kurbel.report.motion import mechanism_notes
 from kurbel.report.notes import Note, machine_notes, of_cylinder
@@ -24,7 +25,9 @@ def forces_report(case: Case, angles: Sequence[float], columns: Sequence[str] | 
     if not machine.cylinders:
         raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
     frame = Frame("forces", angles, columns, system)
-    return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=mechanism_notes(machine))
+    return frame.report(
+        machine, "Kräfte im Kurbeltriebe", subjects(case), notes=(*mechanism_notes(machine), *guide_notes(case))
+    )
 
 
 def subjects(case: Case) -> Iterable[Subject]:
