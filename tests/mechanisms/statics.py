@@ -71,11 +71,18 @@ def scotch_yoke(machine: ScotchYoke, turn: Any, load: Any) -> Expected:
 
 
 def slotted_lever(machine: SlottedLever, turn: Any, load: Any) -> Expected:
-    """The lever's pivot stands left of the shaft, and the ram moves upward on a line square to both."""
+    """The lever's pivot stands left of the shaft, and the ram moves upward on a line square to both.
+
+    Without a ram the load is a moment on the lever.
+    """
     pin = machine.crank * turn
     reach = abs(pin + machine.frame)
     lever = (pin + machine.frame) / reach
     ahead = 1j * lever
+    turning = along(1j * pin, ahead) / reach
+    moved = {"theta": np.degrees(np.angle(lever)), "theta_dot": turning, "c_block": along(1j * pin, lever)}
+    if machine.lever is None:
+        return {**moved, "T": on_pin(turn, load / reach * ahead)["T"]}
     end = machine.lever * lever
     ram, push = end.imag, 1j * load
     if not math.isinf(machine.link):
@@ -86,9 +93,7 @@ def slotted_lever(machine: SlottedLever, turn: Any, load: Any) -> Expected:
         link = (height + 1j * ram - end) / machine.link
         push = load / link.imag * link
     force = machine.lever * along(push, ahead) / reach
-    turning = along(1j * pin, ahead) / reach
-    swing = {"theta": np.degrees(np.angle(lever)), "theta_dot": turning}
-    return {**on_pin(turn, force * ahead), **swing, "x": ram, "F_pin": force, "c_block": along(1j * pin, lever)}
+    return {**on_pin(turn, force * ahead), **moved, "x": ram, "F_pin": force}
 
 
 def four_bar(machine: FourBar, turn: Any, load: Any) -> Expected:

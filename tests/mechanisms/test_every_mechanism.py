@@ -47,6 +47,8 @@ MACHINES = {
     "Whitworth": SlottedLever(0.15, 0.1, 0.2),
     "Whitworth with link": SlottedLever(0.15, 0.1, 0.2, link=0.6),
     "Whitworth, ram beside": SlottedLever(0.15, 0.1, 0.2, link=0.6, ram_height=-0.07),
+    "slotted lever alone": SlottedLever(0.3, 0.8),
+    "Whitworth lever alone": SlottedLever(0.15, 0.1),
     "four-bar": FourBar(0.04, 0.15, 0.08, 0.15),
     "four-bar, nearly flat": FourBar(0.1, 0.3, 0.25, 0.4499),
     "four-bar, long rocker": FourBar(0.1, 0.5, 9.0, 9.0),

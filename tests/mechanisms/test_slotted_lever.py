@@ -12,8 +12,11 @@ from hypothesis import strategies as st
 from precise import exact_angle
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.errors import RuleError
+from kurbel.errors import KurbelError, RuleError
+from kurbel.machine_file import loads
 from kurbel.mechanisms.slotted_lever import SlottedLever
+from kurbel.report.motion import motion_report
+from kurbel.solver.case import Case
 
 TURN = CrankAngle.of(np.linspace(0, 360, 73))
 
@@ -145,3 +148,32 @@ def test_levers_that_do_not_run(lengths, message):
     with pytest.raises(RuleError) as raised:
         SlottedLever(**{"crank": 0.3, "frame": 0.8, "lever": 1.3, **lengths})
     assert str(raised.value).startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("crank", "frame", "ratio", "swing"),
+    [(120, 240, 2.0, 60.0), (75, 50, 2.735, None)],
+)
+def test_angles_and_times_need_no_lever(crank, frame, ratio, swing):
+    """R. S. Khurmi & J. K. Gupta, Theory of Machines, ex. 5.2 (30° to either side, ratio 2) and 5.4 (Whitworth, 2.735).
+
+    The two strokes part the turn at cos β = r/e, or e/r (R p. 617); no ram, so no x, c, b and stroke.
+    """
+    case = Case(loads(f"speed: 60 rpm\nmechanism: slotted-lever\ncrank: {crank} mm\nframe: {frame} mm"))
+    report = motion_report(case, (0.0, 90.0), None, "si")
+    told = {one.id: one.value for one in report.parts[0].key_values}
+    # the book rounds the angle of the return stroke to 96.4°
+    assert told["time_ratio"] == pytest.approx(ratio, abs=2e-3)
+    half = math.degrees(math.acos(min(crank, frame) / max(crank, frame)))
+    assert told["phi_return"] == pytest.approx(2 * half, rel=1e-14)
+    assert told.get("swing") == (swing and pytest.approx(swing, rel=1e-14))
+    assert not {"stroke", "c_m", "c_work_max", "b_max"} & set(told)
+    assert not {"x", "c", "b"} & {column.id for column in report.parts[0].columns}
+    assert any("Whitworth" in note for note in report.notes) == (swing is None)
+
+
+def test_a_link_needs_a_lever():
+    with pytest.raises(KurbelError, match="lever"):
+        loads("mechanism: slotted-lever\ncrank: 75 mm\nframe: 50 mm\nlink: 300 mm")
+    with pytest.raises(RuleError, match="lever"):
+        SlottedLever(0.075, 0.05, link=0.3)

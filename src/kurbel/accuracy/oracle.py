@@ -173,7 +173,7 @@ class CylinderOracle:
         self.mass = _mass(cylinder) if self.omega is not None else Decimal(0)
         self.turning_inertia = _turning_inertia(cylinder)
         self._has_guide = mechanism.name != "scotch-yoke"
-        self.weight, self.guide_weight = _weights(cylinder)
+        self.weight, self.guide_weight = _weights(machine, cylinder)
         friction = cylinder.friction
         self.friction = Decimal(friction.crosshead or 0) if friction and self._has_guide else Decimal(0)
         self.rings = _steady_friction(cylinder)
@@ -298,10 +298,11 @@ def _turning_inertia(cylinder: Cylinder) -> Decimal:
     return Decimal(rod.mass) * (1 - Decimal(rod.share)) * Decimal(cylinder.mechanism.crank) ** 2 if rod else Decimal(0)
 
 
-def _weights(cylinder: Cylinder) -> tuple[Decimal, Decimal]:
-    if cylinder.inclination is None or cylinder.masses is None:
+def _weights(machine: Machine, cylinder: Cylinder) -> tuple[Decimal, Decimal]:
+    lean = machine.lean_of(cylinder)
+    if lean is None or cylinder.masses is None:
         return Decimal(0), Decimal(0)
-    sin, cos = sin_cos(Decimal(cylinder.inclination))
+    sin, cos = sin_cos(Decimal(lean))
     weight = _mass(cylinder) * GRAVITY
     return weight * sin, weight * cos
 

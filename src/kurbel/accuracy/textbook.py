@@ -72,7 +72,7 @@ class TextbookCylinder:
         rod = masses.connecting_rod if masses else None
         mass = masses.parts + (rod.mass * rod.share if rod else 0.0) if masses else 0.0
         self._inertia = mass * (2 * math.pi * machine.speed) ** 2 if machine.speed else 0.0
-        incline = math.radians(cylinder.inclination or 0.0)
+        incline = math.radians(machine.lean_of(cylinder) or 0.0)
         has_weight = masses is not None and cylinder.inclination is not None
         self._along = mass * _GRAVITY * math.sin(incline) if has_weight else 0.0
         self._across = mass * _GRAVITY * math.cos(incline) if has_weight else 0.0

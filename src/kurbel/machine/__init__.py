@@ -72,7 +72,8 @@ class Machine(Described):
     speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
     pressure in Pa; efficiency η multiplies the turning effort of the whole machine, or divides it where the machine is
     driven; brake_power: measured, in W; limits: key-value id -> bound in SI; expect: key-value id -> the smallest and
-    the largest value in SI that are met.
+    the largest value in SI that are met; rotation: `over` or `under`, the sense in which it turns, None where it is
+    not told.
     """
 
     cylinders: tuple[Cylinder, ...]
@@ -89,6 +90,7 @@ class Machine(Described):
     crankshaft: Crankshaft | None = None
     limits: tuple[tuple[str, float], ...] = ()
     expect: tuple[tuple[str, Expected], ...] = ()
+    rotation: str | None = None
 
     KEYS: ClassVar[Keys] = {
         "kurbel": Key(Count(least=FORMAT, most=FORMAT), "Number of the file format", absent="1"),
@@ -100,6 +102,12 @@ class Machine(Described):
             absent="no velocities, accelerations or inertia in physical units",
         ),
         "cycle": Key(Choice(tuple(CYCLES)), "Working cycle: 360° or 720°", absent="two-stroke"),
+        "rotation": Key(
+            Choice(("over", "under")),
+            "Sense in which a lying machine turns: over, the crank pin rising from the inner dead centre, so that an "
+            "engine presses its crosshead down, or under (R p. 602)",
+            absent="over, and nothing is said of the guide",
+        ),
         "efficiency": Key(
             Number(above=0, most=1),
             "Mechanical efficiency of the whole machine: its turning effort is multiplied by it (R p. 611), or divided "
@@ -235,6 +243,11 @@ class Machine(Described):
         measured = (*(end for one in indicators for end in (one.head_end, one.crank_end)), self.effort)
         files = (getattr(one, "file", None) for one in measured)
         return tuple(dict.fromkeys(file for file in files if file))
+
+    def lean_of(self, cylinder: Cylinder) -> float | None:
+        """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""
+        inclination = cylinder.inclination
+        return inclination if inclination is None or self.rotation != "under" else 180.0 - inclination
 
     @property
     def strength_obstacle(self) -> str:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Key, Keys, check
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import KeyOffer, Offer, own_force, own_motion
+from kurbel.numerics.arithmetic import where
 from kurbel.numerics.extreme import Extreme
 
 PIN_KEYS: Keys = {
@@ -74,3 +76,8 @@ def pin_pressure(bound: float | None = None) -> KeyOffer:
     text = "Largest pressure of the sliding block on the crank pin"
     quantity = Quantity("pin_pressure", "p_z", "pressure", text, commands=("forces",), after="T_min")
     return KeyOffer(quantity, _pressure, bound)
+
+
+def sum_along(base: float, arm: float, gap: float, angle: CrankAngle) -> Any:
+    """Return base + arm cos φ; where that is a difference, from gap = base − arm, as they were given."""
+    return where(angle.cos >= -0.5, base + arm * angle.cos, gap + arm * angle.vercosine)

@@ -12,10 +12,10 @@ from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
-from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area
+from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area, sum_along
 from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
 from kurbel.mechanisms.swing import SWING_OFFERS, SWING_VALUES, Swing
-from kurbel.numerics.arithmetic import bearing, sqrt, where
+from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
 
 
@@ -31,7 +31,8 @@ class _Lever(NamedTuple):
 class SlottedLever(Mechanism):
     """A crank pin that slides in a slotted lever, whose end drives a ram square to the line of the two pivots.
 
-    crank: r; frame: e, distance of the lever's pivot D from the shaft M; lever: R_l = DE; in m.
+    crank: r; frame: e, distance of the lever's pivot D from the shaft M; lever: R_l = DE; in m. Without `lever`
+    the output is its tilt θ, and there is no ram; working and return stroke are those that a fork head would have.
     tan θ = r sin φ/(e + r cos φ), φ from the position where the pin is farthest from D, the ram moving forward there.
     For e > r the lever swings; for e < r it turns fully, which is Whitworth's quick return.
     link: m, `math.inf` for the fork head (x = R_l sin θ); otherwise the connecting link from E to the ram, which runs
@@ -42,7 +43,7 @@ class SlottedLever(Mechanism):
 
     crank: float
     frame: float
-    lever: float
+    lever: float | None = None
     link: float = math.inf
     ram_height: float | None = None
     pin_diameter: float | None = None
@@ -55,7 +56,12 @@ class SlottedLever(Mechanism):
     KEYS: ClassVar[Keys] = {
         "crank": Key(Physical("length", above=0), "Crank radius", "r", required=True),
         "frame": Key(Physical("length", above=0), "Distance of the lever's pivot from the shaft", "e", required=True),
-        "lever": Key(Physical("length", above=0), "Length of the lever, pivot to end", "R_l", required=True),
+        "lever": Key(
+            Physical("length", above=0),
+            "Length of the lever, pivot to end",
+            "R_l",
+            absent="angles and times only: no ram",
+        ),
         "link": Key(
             Physical("length", above=0, words=(("infinite", math.inf),)),
             "Length of the connecting link from the lever's end to the ram",
@@ -72,7 +78,9 @@ class SlottedLever(Mechanism):
     }
 
     def __post_init__(self) -> None:
-        check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
+        check_lengths(crank=self.crank, frame=self.frame, **({"lever": self._end} if self.slides else {}))
+        if not (self.slides or self._forked):
+            raise RuleError(Fault(("link",), "has no lever's end to hang on; give 'lever' with it"))
         projected_area(self.pin_diameter, self.pin_length)
         if self.crank == self.frame:
             same = show(self.crank, "length")
@@ -89,19 +97,35 @@ class SlottedLever(Mechanism):
                 raise RuleError(Fault(("link",), f"{show(self.link, 'length')} {fault}"))
 
     def _full_turn_fault(self) -> str:
-        if math.fsum((self.link, -self.lever, -abs(self._height))) > 0:
+        if math.fsum((self.link, -self._end, -abs(self._height))) > 0:
             return ""
-        arms = f"{show(self.lever, 'length')} + {show(abs(self._height), 'length')}"
+        arms = f"{show(self._end, 'length')} + {show(abs(self._height), 'length')}"
         return f"does not reach: as the lever turns fully it must be longer than lever and ram_height together ({arms})"
 
     def _swing_fault(self) -> str:
-        farthest = max(abs(self._height - self.lever), abs(self._height - self.lever * self._kappa[1]))
+        farthest = max(abs(self._height - self._end), abs(self._height - self._end * self._kappa[1]))
         if self.link <= farthest:
             height = show(self._height, "length")
             return f"does not reach the ram at {height}; it must be longer than {show(farthest, 'length')}"
         if min(self._ram.lead(sin, cos) for sin, cos in self._limits) <= 0:
             return "gets into line with the lever within its swing; give a longer link or another ram_height"
         return ""
+
+    @property
+    def slides(self) -> bool:
+        """Whether there is a ram, since the length of the lever is given."""
+        return self.lever is not None
+
+    @property
+    def turns(self) -> bool:
+        """Whether the output is the tilt of a lever that turns fully."""
+        return self.rotates and not self.slides
+
+    @property
+    def _end(self) -> float:
+        """R_l in m, where there is a ram."""
+        assert self.lever is not None
+        return self.lever
 
     @property
     def rotates(self) -> bool:
@@ -126,7 +150,7 @@ class SlottedLever(Mechanism):
 
     @property
     def _ram(self) -> ForkHead | ConnectingLink:
-        return ForkHead() if self._forked else ConnectingLink(self.link / self.lever, self._height / self.lever)
+        return ForkHead() if self._forked else ConnectingLink(self.link / self._end, self._height / self._end)
 
     @property
     def _limits(self) -> tuple[Direction, Direction]:
@@ -138,7 +162,7 @@ class SlottedLever(Mechanism):
     def _height(self) -> float:
         if self.ram_height is not None:
             return self.ram_height
-        return 0.0 if self.rotates else self.lever * (1 + self._kappa[1]) / 2
+        return 0.0 if self.rotates or not self.slides else self._end * (1 + self._kappa[1]) / 2
 
     def dead_centres(self) -> tuple[float, float]:
         """Return the ends of the working stroke, ∓(180° − β) with cos β = r/e (e/r for the rotating lever), R p. 617.
@@ -160,12 +184,11 @@ class SlottedLever(Mechanism):
     def _lever_at(self, angle: CrankAngle) -> _Lever:
         crank, frame, gap = self._shares
         reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
-        return _Lever(crank * angle.sin / reach, _sum_along(frame, crank, gap, angle) / reach, reach)
+        return _Lever(crank * angle.sin / reach, sum_along(frame, crank, gap, angle) / reach, reach)
 
     def direction(self, angle: CrankAngle) -> tuple[Any, Any]:
         """Return (sin θ, cos θ) of the lever's tilt from the line of the pivots."""
-        lever = self._lever_at(angle)
-        return lever.sin, lever.cos
+        return self._lever_at(angle)[:2]
 
     def swing_at(self, angle: CrankAngle) -> Swing:
         """Return θ, θ′ = r(r + e cos φ)/ρ² and θ″ = −r e (e² − r²) sin φ/ρ⁴, with ρ the pin's distance from the pivot.
@@ -184,20 +207,22 @@ class SlottedLever(Mechanism):
         crank, frame, gap = self._shares
         square = lever.reach * lever.reach
         bend = -crank * frame * (gap * (crank + frame)) * angle.sin / (square * square)
-        return crank * _sum_along(crank, frame, -gap, angle) / square, bend
+        return crank * sum_along(crank, frame, -gap, angle) / square, bend
 
     @property
     def stroke(self) -> float:
-        """s = 2 R_l r/e (2 R_l for the rotating lever), with a fork head, and with a link on the swinging lever."""
+        """s = 2 R_l r/e (2 R_l for the rotating lever) with a fork head or a swinging lever; of θ without a ram."""
+        if not self.slides:
+            return math.tau if self.swing is None else math.radians(self.swing)
         if not self.rotates:
-            return 2 * self.lever * self._kappa[0]
+            return 2 * self._end * self._kappa[0]
         inner, outer = (self._ram.place(sin, cos) for sin, cos in self._limits)
-        return self.lever * float(outer - inner)
+        return self._end * float(outer - inner)
 
     @property
     def start(self) -> float:
-        """−s/2: x counts from the middle of the stroke."""
-        return -self.stroke / 2
+        """−s/2: x, and θ of what swings, count from the middle of the stroke; where it turns fully from φ = 0."""
+        return 0.0 if self.turns else -self.stroke / 2
 
     @property
     def swing(self) -> float | None:
@@ -205,10 +230,12 @@ class SlottedLever(Mechanism):
         return None if self.rotates else 2 * bearing(*self._kappa)
 
     def coordinate(self, angle: CrankAngle) -> Any:
-        """Return x of the ram in m from the middle of its stroke: R_l sin θ for the fork head."""
+        """Return x of the ram in m from the middle of its stroke: R_l sin θ for the fork head; θ without a ram."""
+        if not self.slides:
+            return self.swing_at(angle).degrees * (math.pi / 180)
         lever = self._lever_at(angle)
         place = self._ram.place(lever.sin, lever.cos)
-        return self.lever * (place if self._forked else place - self._middle)
+        return self._end * (place if self._forked else place - self._middle)
 
     @property
     def _middle(self) -> float:
@@ -218,41 +245,51 @@ class SlottedLever(Mechanism):
     def slope(self, angle: CrankAngle) -> Any:
         """Return dx/dφ = R_l θ′ cos(θ + γ)/cos γ in m; for the fork head R_l r (r + e cos φ)(e + r cos φ)/ρ³."""
         lever = self._lever_at(angle)
-        return self.lever * (self._turning(angle, lever)[0] * self._ram.lead(lever.sin, lever.cos))
+        if not self.slides:
+            return self._turning(angle, lever)[0]
+        return self._end * (self._turning(angle, lever)[0] * self._ram.lead(lever.sin, lever.cos))
 
     def curvature(self, angle: CrankAngle) -> Any:
         """Return d²x/dφ² in m; for the fork head with u = er(1 + cos φ), g = (e − r)²
 
         −R_l r sin φ [g(g + 3er) + u(g + u)]/ρ⁵, whose terms are all positive.
         """
+        if not self.slides:
+            return self._turning(angle, self._lever_at(angle))[1]
         if not self._forked:
             return self._curvature_with_link(angle)
         crank, frame, gap = self._shares
         reach, beyond = self._lever_at(angle).reach, crank * frame * angle.vercosine
         inside = gap * gap * (gap * gap + 3 * crank * frame) + beyond * (gap * gap + beyond)
         square = reach * reach
-        return -self.lever * crank * angle.sin * (inside / (square * square * reach))
+        return -self._end * crank * angle.sin * (inside / (square * square * reach))
 
     def _curvature_with_link(self, angle: CrankAngle) -> Any:
         """d²x/dφ² = R_l [θ″ cos(θ + γ)/cos γ − θ′² (sin θ + cos θ tan γ + (R_l/l) sin²θ/cos³γ)]."""
         lever, ram = self._lever_at(angle), self._ram
         slope, curvature = self._turning(angle, lever)
         bent = slope * slope * ram.bend(lever.sin, lever.cos)
-        return self.lever * (curvature * ram.lead(lever.sin, lever.cos) - bent)
+        return self._end * (curvature * ram.lead(lever.sin, lever.cos) - bent)
 
     def pin_force_factor(self, angle: CrankAngle) -> Any:
         """Return the force on the crank pin, square to the lever, over the force P on the ram: (dx/dθ)/ρ."""
+        if not self.slides:
+            return None
         lever = self._lever_at(angle)
-        return self.lever / max(self.crank, self.frame) * self._ram.lead(lever.sin, lever.cos) / lever.reach
+        return self._end / max(self.crank, self.frame) * self._ram.lead(lever.sin, lever.cos) / lever.reach
 
     def radial(self, angle: CrankAngle) -> Any:
         """Return D/P = −(force on the pin over P) (e sin φ)/ρ: the part of that force toward the shaft."""
+        if not self.slides:
+            return None
         lever, frame = self._lever_at(angle), self._shares[1]
         return -self.pin_force_factor(angle) * (frame * angle.sin / lever.reach)
 
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
         """Name the forces of a link, the lever, and the pin where its size is not given."""
+        if not self.slides:
+            return ("ram", "no lever given"), ("inertia of the lever", "kurbel takes masses on the ram only")
         link = () if self._forked else (("S, N", "the forces of the link on the ram are not computed"),)
         lever = ("inertia of the lever", "kurbel takes masses on the ram only")
         return (*link, lever) if self.pin_diameter is not None else (*link, lever, NO_PIN)
@@ -271,12 +308,19 @@ class SlottedLever(Mechanism):
         import numpy as np
 
         kappa, half = self._kappa[0], self.stroke / 2
+        if not self.slides:
+            return self._turned_to(np.degrees(self.start + displacement), outstroke)
         if self._forked:
             sin, cos = (displacement - half) / half, np.sqrt(displacement * (self.stroke - displacement)) / half
             main, shift = bearing(sin, cos), bearing(kappa * sin, self._cos_shift(sin, cos))
             return main + shift if outstroke else 180.0 - main + shift
-        theta = self._ram.tilt_at(self._middle + (displacement - half) / self.lever, outstroke or not self.rotates)
-        tilt = CrankAngle.of(theta)
+        theta = self._ram.tilt_at(self._middle + (displacement - half) / self._end, outstroke or not self.rotates)
+        return self._turned_to(theta, outstroke)
+
+    def _turned_to(self, theta: Any, outstroke: bool) -> Any:
+        import numpy as np
+
+        kappa, tilt = self._kappa[0], CrankAngle.of(theta)
         if self.rotates:
             return theta + bearing(kappa * tilt.sin, self._cos_shift(tilt.sin, tilt.cos))
         alpha = bearing(tilt.sin, np.sqrt(np.maximum((kappa - tilt.sin) * (kappa + tilt.sin), 0.0)))
@@ -290,18 +334,16 @@ class SlottedLever(Mechanism):
 
     def velocity_extremes(self) -> tuple[Extreme, ...]:
         """Return dx/dφ at 0°, R_l r/(e + r), R 304, and at 180°, −R_l r/|e − r|, R 305; fork head only."""
-        if not self._forked:
+        if not self._forked or not self.slides:
             return ()
         crank, frame, gap = self._shares
-        return Extreme(self.lever * crank / (crank + frame), 0.0), Extreme(-self.lever * crank / abs(gap), 180.0)
+        return Extreme(self._end * crank / (crank + frame), 0.0), Extreme(-self._end * crank / abs(gap), 180.0)
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Say that the lever turns fully, where it does."""
         whitworth = "The frame is shorter than the crank: the lever turns fully (Whitworth quick return)."
-        return (whitworth,) if self.rotates else ()
-
-
-def _sum_along(base: float, arm: float, gap: float, angle: CrankAngle) -> Any:
-    """Return base + arm cos φ; where that is a difference, from gap = base − arm, as they were given."""
-    return where(angle.cos >= -0.5, base + arm * angle.cos, gap + arm * angle.vercosine)
+        times = (
+            "Without a lever's length the strokes are those of a ram square to the line of the pivots, on a fork head."
+        )
+        return (whitworth,) * self.rotates + (times,) * self.turns

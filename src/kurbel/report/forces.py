@@ -9,6 +9,7 @@ from typing import Any
 from kurbel.errors import UsageError
 from kurbel.machine.cylinder import may_lock
 from kurbel.report.frame import Answer, Frame, Subject, of_state
+from kurbel.report.guide import guide_notes
 from kurbel.report.left_out import left_out
 from kurbel.report.motion import mechanism_notes
 from kurbel.report.notes import Note, machine_notes, of_cylinder
@@ -30,7 +31,7 @@ def forces_report(
     if not machine.cylinders:
         raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
     frame = Frame("forces", rows_of(case, angles, 360.0 * machine.revolutions), columns, system, also)
-    notes = (*mechanism_notes(machine), *_rod_notes(case))
+    notes = (*mechanism_notes(machine), *guide_notes(case), *_rod_notes(case))
     return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=notes)
 
 

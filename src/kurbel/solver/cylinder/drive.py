@@ -67,8 +67,13 @@ class Drive:
 
     @property
     def _incline(self) -> CrankAngle | None:
-        inclination = self.cylinder.inclination
+        inclination = self.machine.lean_of(self.cylinder)
         return None if inclination is None else CrankAngle.of(inclination)
+
+    @property
+    def down(self) -> float | None:
+        """cos of the inclination as the throw sees it: where it is positive, N > 0 rests on the lower guide."""
+        return None if self._incline is None else float(self._incline.cos)
 
     @property
     def has_inertia(self) -> bool:

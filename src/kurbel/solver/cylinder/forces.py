@@ -179,6 +179,20 @@ class CylinderForces:
         """Standard deviation in N of the noise that traces bring into P."""
         return math.hypot(*(gas.noise for gas in self.drive.gas))
 
+    @cached_property
+    def lifted(self) -> tuple[tuple[float, float], ...]:
+        """Stretches of crank angle in degrees on which N presses on the upper guide, R p. 602.
+
+        Empty, too, where there is no guide, no N, or no inclination that says which guide is the lower one.
+        """
+        down, side = self.drive.down, self._curves.get("N") if self.drive.has_force else None
+        if side is None or not down or not (self.drive.mechanism.guided and self.drive.mechanism.has_rod):
+            return ()
+        turns = sign_changes(self.grid, {"N": side}, self._quantities("N"))["N"].tolist() or [0.0]
+        stretches = list(zip(turns, [*turns[1:], turns[0] + self.drive.cycle]))
+        pressing = np.asarray(self.at([(start + end) / 2 for start, end in stretches]).N) * down
+        return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
+
     @property
     def A_head(self) -> float | None:
         """Area in m² of the cylinder's own piston at the head end."""

@@ -64,7 +64,7 @@ class CrankshaftStrength:
         return self.shaft.flywheel_mass * GRAVITY
 
     def _body(self, pin: Vector, angle: CrankAngle) -> FreeBody:
-        inclination = self.forces.drive.cylinder.inclination
+        inclination = self.machine.lean_of(self.forces.drive.cylinder)
         turned = Vector(0.0, 0.0)
         if self.weight is not None and inclination is not None:
             turned = weight_in_throw(self.weight, angle, inclination)

@@ -1,0 +1,82 @@
+"""Sense of rotation: which guide carries the crosshead of a lying machine (R p. 602), and what the throw feels."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kurbel.machine_file import loads
+from kurbel.report.forces import forces_report
+from kurbel.solver.case import Case
+
+ENGINE = """
+crank: 300 mm
+rod: 1500 mm
+bore: 400 mm
+speed: 60 rpm
+inclination: 0 deg
+masses: {piston: 100 kg}
+indicator: {head_end: {constant: {expansion: EXPANSION, compression: COMPRESSION}}}
+"""
+WEIGHT = 100 * 9.80665
+
+
+def case(rotation: str = "", out: str = "3 bar", back: str = "0 bar", **changed: str) -> Case:
+    text = ENGINE.replace("EXPANSION", out).replace("COMPRESSION", back)
+    for old, new in changed.items():
+        text = "\n".join(f"{old}: {new}" if line.startswith(f"{old}:") else line for line in text.splitlines())
+    return Case(loads(f"{text}\nrotation: {rotation}" if rotation else text))
+
+
+def note(solved: Case) -> str:
+    (found,) = forces_report(solved, (0.0,), None, "si").notes
+    return found
+
+
+def test_over_is_what_is_taken_without_it() -> None:
+    plain, over = (case(rotation).cylinders[0].at(np.arange(0.0, 360.0, 5.0)) for rotation in ("", "over"))
+    assert (plain.N == over.N).all()
+    assert forces_report(case(), (0.0,), None, "si").notes == ()
+
+
+@pytest.mark.parametrize("inclination", [0.0, 30.0, 90.0])
+def test_under_is_the_mirror_image(inclination: float) -> None:
+    """The weight leaves the side on which an engine presses: N less twice its share; P, T and M stay."""
+    phi = np.arange(0.0, 360.0, 5.0)
+    over, under = (
+        case(rotation, inclination=f"{inclination} deg").cylinders[0].at(phi) for rotation in ("over", "under")
+    )
+    share = WEIGHT * np.cos(np.radians(inclination))
+    assert pytest.approx(np.full(72, 2 * share), abs=1e-9) == over.N - under.N
+    for column in ("P", "T", "M", "S"):
+        assert getattr(under, column) == pytest.approx(getattr(over, column), rel=1e-13, abs=1e-9), column
+
+
+def test_engines_turn_over_and_driven_machines_under() -> None:
+    """R p. 602: so that the lower guide, on which the crosshead rests by its weight, takes the pressure."""
+    slow = {"speed": "1 rpm"}
+    assert note(case("over", **slow)) == ("Turning over, the crosshead rests on the lower guide all round (R p. 602).")
+    assert case("over", **slow).cylinders[0].lifted == ()
+    lifts = note(case("under", **slow))
+    assert "turning over it would rest on the lower guide all round (R p. 602)" in lifts
+    assert lifts.startswith("Turning under, the crosshead lifts off the lower guide from ")
+    # a pump pushes on the way in: against the motion
+    pump = {"out": "0 bar", "back": "3 bar", "speed": "1 rpm"}
+    assert "rests on the lower guide all round" in note(case("under", **pump))
+    assert "turning under it would rest on the lower guide all round" in note(case("over", **pump))
+
+
+def test_where_it_lifts() -> None:
+    """Without inertia N = P tan ψ − G: it lifts where tan ψ = G/P, from there to its mirror image about 90°."""
+    solved = case("under", speed="0 rpm")
+    load = 3e5 * np.pi / 4 * 0.4**2
+    psi = np.arctan(WEIGHT / load)
+    start = np.degrees(np.arcsin(np.sin(psi) * 5))
+    # on the return stroke the pressure is zero and the weight alone stands on the guide
+    ((found, end),) = solved.cylinders[0].lifted
+    assert (found, end) == pytest.approx((start, 180 - start), abs=1e-9)
+
+
+def test_standing_and_guideless_machines_have_no_lower_guide() -> None:
+    assert forces_report(case("under", inclination="90 deg"), (0.0,), None, "si").notes == ()
+    assert case("under", inclination="90 deg").cylinders[0].lifted == ()
