@@ -11,6 +11,7 @@ import click
 from kurbel.render import FORMATS, LAYOUTS, Look
 
 if TYPE_CHECKING:
+    from kurbel.declared.quantity import Quantity
     from kurbel.machine import Machine
     from kurbel.report.tables import Report
     from kurbel.solver.case import Case
@@ -71,25 +72,31 @@ class Words(_WordsType):
 
 
 class Columns(Words):
-    """Ids of columns, separated by commas; one that kurbel has nowhere is a usage error."""
+    """Columns by id or printed symbol, separated by commas; one that kurbel has nowhere is a usage error."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
         """Return the ids in the order given."""
         from kurbel.declared.quantities import COLUMNS
 
-        ids = super().convert(value, param, ctx)
-        for id in ids:
-            if id not in COLUMNS:
-                self._refuse_unknown(id, param, ctx)
-        return ids
-
-    def _refuse_unknown(self, id: str, param: click.Parameter | None, ctx: click.Context | None) -> None:
+        words = super().convert(value, param, ctx)
+        if all(word in COLUMNS for word in words):
+            return words
+        from kurbel.declared.quantity import called, joined
         from kurbel.mechanisms import every_quantity
+
+        known = [column for column in every_quantity().all_columns if column.commands]
+        return tuple(self._only(name, called(name, known), known, param, ctx) for name in joined(words, known))
+
+    def _only(self, name: str, found: tuple[str, ...], known: list[Quantity], *place: Any) -> str:
+        from kurbel.declared.quantity import ambiguity
         from kurbel.near_words import did_you_mean
 
-        known = [column.id for column in every_quantity().all_columns if column.commands]
-        if id not in known:
-            self.fail(f"unknown column '{id}'{did_you_mean(id, tuple(known))} (known: {', '.join(known)})", param, ctx)
+        ids = tuple(column.id for column in known)
+        if not found:
+            self.fail(f"unknown column '{name}'{did_you_mean(name, ids)} (known: {', '.join(ids)})", *place)
+        if wrong := ambiguity(name, found):
+            self.fail(wrong, *place)
+        return found[0]
 
 
 class Output(NamedTuple):
@@ -128,7 +135,7 @@ angle_options = _stacked(
 """`--step` and `--angles`: see `crank_angles`."""
 
 columns_option = click.option(
-    "--columns", type=Columns(), metavar="ID,ID,...", help="Only these columns, in this order."
+    "--columns", type=Columns(), metavar="ID,ID,...", help="Only these columns, by id or symbol, in this order."
 )
 units_option = click.option(
     "--units",
@@ -140,7 +147,13 @@ _look_options = _stacked(
     click.option(
         "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
     ),
-    click.option("--format", "-f", "format", type=click.Choice(FORMATS), default="table", help="table if not given."),
+    click.option(
+        "--format",
+        "-f",
+        "format",
+        type=click.Choice(FORMATS),
+        help="By the suffix of --output, or table, if not given.",
+    ),
     click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."),
     click.option(
         "--decimal",
@@ -157,22 +170,37 @@ _look_options = _stacked(
 )
 
 
+_SUFFIXES = {".csv": "csv", ".json": "json", ".md": "markdown", ".markdown": "markdown"}
+
+
+def format_of(asked: str | None, file_name: str | None) -> str:
+    """Return the format that is asked for, or that of the suffix of the file; UsageError where the two contradict."""
+    dot = (file_name or "").rfind(".")
+    of_suffix = _SUFFIXES.get(file_name[dot:].lower()) if file_name else None
+    if asked and of_suffix and asked != of_suffix:
+        raise click.UsageError(
+            f"--format {asked} contradicts the name {file_name}, which says {of_suffix}; change one of them."
+        )
+    return asked or of_suffix or "table"
+
+
 def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options of what it prints, which reach it as one `output: Output`."""
 
     @wraps(command)
     def with_output(
         layout: str,
-        format: str,
+        format: str | None,
         file_name: str | None,
         decimal: str,
         digits: int | None,
         width: int | None,
         **others: Any,
     ) -> Any:
-        if decimal == "comma" and format == "json":
+        written = format_of(format, file_name)
+        if decimal == "comma" and written == "json":
             raise click.UsageError("--decimal comma: JSON has the decimal point only.")
-        return command(output=Output(Look(format, layout, decimal == "comma", digits, width), file_name), **others)
+        return command(output=Output(Look(written, layout, decimal == "comma", digits, width), file_name), **others)
 
     return _look_options(with_output)
 

@@ -6,7 +6,7 @@ Records check their own rules and raise RuleError. They hold numbers only; what 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from kurbel.declared.forms.figures import Expected
     from kurbel.declared.quantity import Quantity
     from kurbel.machine.crankshaft import Crankshaft
+    from kurbel.machine.origin import Origin
     from kurbel.machine.turning import Coupling, Effort, Flywheel, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
@@ -73,6 +74,7 @@ class Machine(Described):
     crankshaft: Crankshaft | None = None
     limits: tuple[tuple[str, float], ...] = ()
     expect: tuple[tuple[str, Expected], ...] = ()
+    origin: Origin | None = field(default=None, repr=False)
 
     KEYS: ClassVar[Keys] = {
         "kurbel": Key(Count(least=FORMAT, most=FORMAT), "Number of the file format", absent="1"),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import Any
 
 from kurbel.declared.forms import Record
 from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, glued_hint, kind_of
 from kurbel.errors import Fault
 from kurbel.machine import Machine
+from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.source import Source
@@ -46,7 +48,7 @@ def read_machine(origin: Source) -> Machine:
     if reading.faults:
         raise origin.error(*reading.faults[:known], *_located(origin.text, reading.faults[known:]))
     assert isinstance(machine, Machine)
-    return machine
+    return replace(machine, origin=Origin(origin.name, origin.content))
 
 
 def _machine(reading: Reading, tree: Any, stem: str) -> Any:

@@ -12,6 +12,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity, quantities_of
+from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
 
@@ -107,7 +108,8 @@ class Frame(NamedTuple):
             self._refuse_absent(every, parts)
             last = parts.pop() if whole else None
             name = machine.name
-            return Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=tuple(notes))
+            report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=tuple(notes))
+            return report._replace(provenance=provenance(machine))
 
     def _part(self, subject: Subject) -> Part:
         return Part(
