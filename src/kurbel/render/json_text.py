@@ -38,7 +38,10 @@ def head(command: str) -> dict[str, Any]:
 
 def provenance(given: Provenance | None) -> dict[str, Any]:
     """Return what results were made from and with."""
-    return given._asdict() | {"inputs": [one._asdict() for one in given.inputs]} if given else {}
+    if given is None:
+        return {}
+    versions = {"kurbel": __version__, **given.versions}
+    return {"inputs": [i._asdict() for i in given.inputs], "overrides": list(given.overrides), "versions": versions}
 
 
 def _report(report: Report, digits: int | None) -> dict[str, Any]:

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import suppress
 
-from kurbel import __version__
 from kurbel.machine import Machine
 from kurbel.report.tables import Input, Later, Provenance
 
@@ -14,9 +13,8 @@ from kurbel.report.tables import Input, Later, Provenance
 def provenance(machine: Machine) -> Provenance:
     """Return what results of a machine are made from; nothing is hashed before it is read."""
     overrides = machine.origin.overrides if machine.origin else ()
-    versions = {"kurbel": __version__}
-    if "numpy" in sys.modules:  # else nothing is computed with it
-        versions["numpy"] = sys.modules["numpy"].__version__
+    numpy = sys.modules.get("numpy")  # else nothing is computed with it
+    versions = {"numpy": numpy.__version__} if numpy else {}
     return Provenance(Later(lambda: _inputs(machine)), overrides, versions)
 
 

@@ -111,7 +111,7 @@ class Input(NamedTuple):
 
 
 class Provenance(NamedTuple):
-    """What results were made from: files, what was set over the machine file, and the versions of the programs."""
+    """What results were made from: files, what was set over the machine file, and the versions of the libraries."""
 
     inputs: Collection[Input]
     overrides: tuple[str, ...]
