@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import subprocess
 import sys
@@ -64,3 +65,73 @@ def test_results_repeat_every_turn() -> None:
     degrees = np.arange(0.0, 360.0, 7.5)
     for name in ("x", "P", "T", "N"):
         assert (getattr(forces.at(degrees), name) == getattr(forces.at(degrees + 3600), name)).all()
+
+
+# results by name
+
+PLAIN = "{speed: 60 rpm, crank: 400 mm, rod: 2 m, masses: {piston: 100 kg}%s}"
+PRESSURE = ", bore: 450 mm, indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}"
+
+
+def test_key_values_by_id_or_symbol() -> None:
+    case = kurbel.solve(kurbel.loads(PLAIN % PRESSURE))
+    (cylinder,) = case.cylinders
+    low, high = sorted(cylinder.extremes_of("T") or (), key=lambda one: one.value)
+    assert case["T_max"][:3] == cylinder["T_max"][:3] == (high.value, "N", high.degrees)
+    assert cylinder["T_min"].value == low.value
+    area = case["A_H"]
+    assert area.value == pytest.approx(math.pi * 0.45**2 / 4, rel=1e-15)
+    assert (area.unit, area.degrees, area.quantity.id) == ("m^2", None, "A_head")
+    assert case["phi_b=0"].value == cylinder.motion.phi_b_zero
+    assert case["M_max"].value == pytest.approx(0.4 * high.value, rel=1e-12)
+
+
+def test_a_cylinder_has_its_extremes_as_the_flywheel_has() -> None:
+    case = kurbel.solve(kurbel.loads(PLAIN % PRESSURE))
+    (cylinder,) = case.cylinders
+    assert cylinder.T_max.value == pytest.approx(case.flywheel.T_max.value, rel=1e-12)  # type: ignore[union-attr]
+    assert cylinder.c_max == cylinder.motion.c_max
+    assert kurbel.solve(kurbel.loads("{crank: 1 m, rod: 2 m}")).cylinders[0].T_max is None
+    with pytest.raises(AttributeError, match="no key value is called T_mx"):
+        _ = cylinder.T_mx
+    assert copy.copy(cylinder).T_max == cylinder.T_max
+
+
+@pytest.mark.parametrize(
+    ("name", "told"), [("T_mx", "no key value 'T_mx'; did you mean 'T_max'"), ("e_K", "this machine has no loss_cross")]
+)
+def test_a_name_that_is_not_there_is_told(name: str, told: str) -> None:
+    (cylinder,) = kurbel.solve(kurbel.loads(PLAIN % PRESSURE)).cylinders
+    with pytest.raises(kurbel.KurbelError, match=told):
+        _ = cylinder[name]
+
+
+def test_of_several_cylinders_each_has_its_own() -> None:
+    case = kurbel.solve(kurbel.load(CONFIGS / "waterworks-two-cranks.yaml"))
+    assert case["T_max"].value == case.flywheel.T_max.value  # type: ignore[union-attr]
+    with pytest.raises(kurbel.KurbelError, match="each cylinder has its own P_max"):
+        _ = case["P_max"]
+    assert case.cylinders[1]["P_max"].value > 0
+
+
+def test_all_columns_as_a_dict_of_arrays() -> None:
+    case = kurbel.solve(kurbel.load(CONFIGS / "gas-engine.yaml"))
+    angles = np.arange(0.0, 720.0, 30.0)
+    for results in (case.cylinders[0], case.flywheel, case.strength):
+        columns = results.columns(angles)
+        assert {column.shape for column in columns.values()} == {(24,)}
+        assert np.array_equal(columns["phi"], angles)
+        assert np.array_equal(columns["T"], results.at(angles).T)
+    assert "theta" not in case.cylinders[0].columns([0])
+
+
+def test_notebooks_show_tables_that_are_escaped() -> None:
+    text = "{name: '<b>A&B</b>', " + (PLAIN % PRESSURE)[1:]
+    case = kurbel.solve(kurbel.loads(text))
+    page = case._repr_html_()
+    assert "<h3>&lt;b&gt;A&amp;B&lt;/b&gt;</h3>" in page
+    assert "<b>" not in page
+    assert "<td>c_max</td><td>2.563</td><td>m/s</td>" in page  # 2π · 0.4 · 1.0198331
+    assert "<td>&lt; 1e-14</td>" in page
+    locked = kurbel.loads((PLAIN % PRESSURE)[:-1] + ", friction: {crosshead: 20}}")
+    assert "<p>" in kurbel.solve(locked).cylinders[0]._repr_html_()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -167,6 +168,74 @@ def test_an_expectation_of_what_is_not_there_is_a_fault() -> None:
     assert "unknown key value 'c_mx'; did you mean 'c_max'?" in said
     status, _, said = run(ENGINE + "expect: {T_max: 1 N ± 1 %}\n", "check")
     assert (status, "expect.T_max: this machine has no T_max" in said) == (2, True)
+
+
+# findings for programs
+
+FINDING = ["file", "line", "column", "key", "message", "severity"]
+
+
+def found_as_json(text: str, *arguments: str) -> tuple[int, dict[str, Any]]:
+    status, listed, said = run(text, "check", "-f", "json", *arguments)
+    assert said == ""
+    parsed: dict[str, Any] = json.loads(listed)
+    assert all(list(one) == FINDING for one in parsed["findings"])
+    return status, parsed
+
+
+def test_findings_of_a_check_have_their_place() -> None:
+    text = ENGINE + "limits:\n  c_max: 1 m/s\n  delta: 0.01\n  s: 900 mm\nexpect:\n  φ_o: 180 deg ± 1 deg\n"
+    status, parsed = found_as_json(text)
+    places = {one["key"]: (one["line"], one["column"], one["severity"]) for one in parsed["findings"] if one["key"]}
+    assert status == 2  # δ cannot be judged
+    assert parsed["machine"] == "machine"
+    assert places == {
+        "limits.c_max": (6, 3, "error"),
+        "limits.s": (8, 3, "info"),
+        "expect.φ_o": (10, 3, "info"),
+        "limits.delta": (7, 3, "error"),
+    }
+    (left_out,) = (one for one in parsed["findings"] if "no bore" in one["message"] or "no indicator" in one["message"])
+    assert (left_out["key"], left_out["severity"]) == (None, "info")
+    assert found_as_json(ENGINE + "limits: {c_max: 1 m/s}\n")[0] == 1
+    assert found_as_json(ENGINE)[0] == 0
+
+
+def test_a_warning_has_the_place_of_its_cylinder() -> None:
+    one = "  - {name: %s, crank: 400 mm, rod: 2 m, bore: 450 mm, %s}\n"
+    text = "speed: 60 rpm\ncylinders:\n" + one % ("left", GAUGE.strip()) + one % ("right", GAUGE.strip())
+    warnings = [one for one in found_as_json(text)[1]["findings"] if "absolute?" in one["message"]]
+    assert [(one["key"], one["line"], one["severity"]) for one in warnings] == [
+        ("cylinders[0]", 3, "warning"),
+        ("cylinders[1]", 4, "warning"),
+    ]
+
+
+def test_faults_of_the_file_are_findings_too(tmp_path: Path) -> None:
+    status, parsed = found_as_json("speed: 60\ncrank: 400 mm\nrd: 2 m\n")
+    assert (status, parsed["machine"]) == (2, None)
+    assert [tuple(one[key] for key in FINDING if key != "message") for one in parsed["findings"]] == [
+        ("<stdin>", 1, 8, "speed", "error"),
+        ("<stdin>", 3, 1, "rd", "error"),
+    ]
+    assert parsed["findings"][1]["message"] == "unknown key; did you mean 'rod'?"
+    (tmp_path / "m.yaml").write_text("crank: [")
+    for name, line in (("m.yaml", 1), ("none.yaml", None)):
+        result = CliRunner().invoke(kurbel, ["check", str(tmp_path / name), "-o", str(tmp_path / "out.json")])
+        (finding,) = json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))["findings"]
+        assert (result.exit_code, finding["line"], finding["severity"]) == (2, line, "error")
+
+
+def test_a_check_goes_to_a_file_but_never_over_its_own(tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(ENGINE)
+    (tmp_path / "link.json").symlink_to(tmp_path / "m.yaml")
+    for name in ("m.yaml", "link.json"):
+        result = CliRunner().invoke(kurbel, ["check", str(tmp_path / "m.yaml"), "-o", str(tmp_path / name)])
+        assert (result.exit_code, (tmp_path / "m.yaml").read_text()) == (2, ENGINE)
+    assert CliRunner().invoke(kurbel, ["check", str(tmp_path / "m.yaml"), "-o", str(tmp_path / "m.txt")]).stdout == ""
+    assert "a valid machine" in (tmp_path / "m.txt").read_text(encoding="utf-8")
+    result = CliRunner().invoke(kurbel, ["check", str(tmp_path / "m.yaml"), "-o", str(tmp_path / "m.csv")])
+    assert (result.exit_code, "writes table or json" in result.stderr) == (2, True)
 
 
 # notes

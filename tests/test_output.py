@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import subprocess
 import sys
@@ -9,6 +11,7 @@ import tracemalloc
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -132,6 +135,68 @@ def test_output_to_what_is_no_file(tmp_path: Path) -> None:
         assert run("table", "-f", "csv", "-o", str(tmp_path / "fifo")).returncode == 0
         assert reader.stdout is not None
         assert reader.stdout.read() == printed
+
+
+@pytest.mark.parametrize(
+    ("name", "begin"), [("o.csv", "phi_deg"), ("o.JSON", "{"), ("o.md", "# "), ("o.txt", "m. Bew"), ("o", "m. Bew")]
+)
+def test_the_suffix_says_the_format(name: str, begin: str, tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(MACHINE)
+    for arguments in (["motion", str(tmp_path / "m.yaml")], ["table"]):
+        result = CliRunner().invoke(kurbel, [*arguments, "-o", str(tmp_path / name)])
+        assert (result.exit_code, result.output) == (0, "")
+        if arguments[0] == "motion":
+            assert (tmp_path / name).read_text(encoding="utf-8").lstrip("#*").startswith(begin.lstrip("# "))
+
+
+def test_csv_by_suffix_has_si_as_csv_by_format(tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(MACHINE)
+    CliRunner().invoke(kurbel, ["motion", str(tmp_path / "m.yaml"), "-o", str(tmp_path / "o.csv")])
+    printed = CliRunner().invoke(kurbel, ["motion", str(tmp_path / "m.yaml"), "-f", "csv"]).stdout
+    assert (tmp_path / "o.csv").read_text() == printed
+
+
+def test_a_format_that_contradicts_the_suffix_is_refused(tmp_path: Path) -> None:
+    result = CliRunner().invoke(kurbel, ["table", "-f", "csv", "-o", str(tmp_path / "o.json")])
+    assert (result.exit_code, list(tmp_path.iterdir())) == (2, [])
+    assert "--format csv contradicts the name" in result.stderr
+    for name in ("o.txt", "o.csv"):
+        assert CliRunner().invoke(kurbel, ["table", "-f", "csv", "-o", str(tmp_path / name)]).exit_code == 0
+
+
+# provenance
+
+
+def test_json_says_what_it_was_made_from(tmp_path: Path) -> None:
+    trace = "".join(f"{angle},{1 + angle / 720}\n" for angle in range(0, 361, 10))
+    (tmp_path / "p.csv").write_text(trace)
+    text = MACHINE + "indicator: {head_end: {trace: {file: p.csv, unit: bar}}}\n"
+    (tmp_path / "m.yaml").write_text(text)
+    inputs = [
+        {"file": str(tmp_path / name), "sha256": hashlib.sha256(content.encode()).hexdigest()}
+        for name, content in (("m.yaml", text), ("p.csv", trace))
+    ]
+    for command in ("motion", "forces", "check"):
+        result = CliRunner().invoke(kurbel, [command, str(tmp_path / "m.yaml"), "-f", "json"])
+        parsed = json.loads(result.stdout)
+        assert parsed["inputs"] == inputs
+        assert parsed["overrides"] == []
+        assert parsed["versions"] == {"kurbel": parsed["kurbel"], "numpy": np.__version__}
+    parsed = json.loads(CliRunner().invoke(kurbel, ["motion", "-", "-f", "json"], input=MACHINE).stdout)
+    assert parsed["inputs"] == [{"file": "<stdin>", "sha256": hashlib.sha256(MACHINE.encode()).hexdigest()}]
+
+
+def test_nothing_is_hashed_where_nobody_reads_it(tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(MACHINE)
+    code = (
+        "import sys; from kurbel.cli import kurbel\n"
+        "try: kurbel.main(sys.argv[1:])\n"
+        "except SystemExit: print('hashlib' in sys.modules, file=sys.stderr)"
+    )
+    for format, hashed in (("csv", b"False\n"), ("json", b"True\n")):
+        arguments = [sys.executable, "-S", "-c", code, "motion", str(tmp_path / "m.yaml"), "-f", format]
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+        assert subprocess.run(arguments, capture_output=True, check=False, env=environment).stderr == hashed
 
 
 # statuses

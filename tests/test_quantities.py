@@ -9,10 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from kurbel import loads
+from kurbel.cli import kurbel
 from kurbel.declared.quantities import COMMON
-from kurbel.declared.quantity import Quantity, by_id, placed
-from kurbel.errors import UsageError
+from kurbel.declared.quantity import Quantity, ambiguity, by_id, called, placed
+from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.masses import Masses
 from kurbel.mechanisms import MECHANISMS, Mechanism, every_quantity
@@ -140,3 +143,46 @@ def test_no_other_mechanism_is_imported() -> None:
     others = {record.target.partition(":")[0] for word, record in MECHANISMS.items() if word != "slider-crank"}
     assert "kurbel.mechanisms.slider_crank" in imported
     assert not imported & others
+
+
+# printed symbols as names
+
+ENGINE = "{speed: 60 rpm, crank: 400 mm, rod: 2 m, bore: 450 mm, indicator: {head_end: {constant: %s}}, %s}"
+PRESSURE = "{expansion: 5 bar, compression: 1 bar}"
+
+
+def test_columns_take_printed_symbols() -> None:
+    for names in ("phi,psi,p_head,P_inertia", "φ,ψ,p_H,P_b", "phi,psi,p_H,P_b"):
+        arguments = ["forces", "-", "-f", "csv", "--angles", "30", "--columns", names]
+        printed = CliRunner().invoke(kurbel, arguments, input=ENGINE % (PRESSURE, "masses: {piston: 5 kg}"))
+        assert printed.stdout.splitlines()[0] == "phi_deg,psi_deg,p_head_Pa,P_inertia_N"
+    assert (
+        CliRunner()
+        .invoke(kurbel, ["table", "--rows", "ψ,x/R,S/P,c", "-f", "csv"])
+        .stdout.startswith("rod_ratio,phi_deg,psi_deg,displacement_factor,rod_force_factor,velocity_factor")
+    )
+
+
+def test_symbols_with_commas_are_names_too() -> None:
+    text = (CONFIGS / "gas-engine.yaml").read_text(encoding="utf-8")
+    arguments = ["stress", "-", "-f", "csv", "--angles", "0", "--columns", "σ_v,w,A,T,σ_w,A"]
+    head = CliRunner().invoke(kurbel, arguments, input=text).stdout.splitlines()[0]
+    assert head == "phi_deg,mises_web_A_Pa,T_N,sigma_web_A_Pa"
+
+
+def test_figures_take_printed_symbols_and_each_quantity_once() -> None:
+    figures = "limits: {A_H: 1 m2, T_max: 1 MN, dA/A: 1e-9}, expect: {φ_o: 180 deg ± 1 deg, phi_i: 0 deg ± 1 deg}"
+    machine = loads(ENGINE % (PRESSURE, figures))
+    assert [id for id, _ in machine.limits] == ["A_head", "T_max", "energy_residual"]
+    assert [id for id, _ in machine.expect] == ["phi_odc", "phi_idc"]
+    with pytest.raises(KurbelError, match=r"limits.ΔA/A: 'ΔA/A' is the symbol of energy_residual, which is given"):
+        loads(ENGINE % (PRESSURE, "limits: {dA/A: 1e-9, ΔA/A: 1e-9}"))
+    with pytest.raises(KurbelError, match="'φ_b=0' is a list of values; no bound can be put on it"):
+        loads(ENGINE % (PRESSURE, "limits: {φ_b=0: 90 deg}"))
+
+
+def test_a_symbol_of_two_quantities_is_told() -> None:
+    twins = [Quantity(id, "F_x", "force", "Force") for id in ("F_free", "F_bearing")]
+    found = called("F_x", twins)
+    assert ambiguity("F_x", found) == "'F_x' is the symbol of F_free and of F_bearing; write which"
+    assert called("F_free", [*twins, Quantity("G", "F_free", "force", "Force")]) == ("F_free",)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import doctest
 import os
 import re
 import shutil
@@ -75,6 +76,13 @@ def test_commands_of_the_readme(command: str, printed: str, workshop: Path, kept
     now = text.replace(f"{command}\n{printed}```", f"{command}\n{real}```")
     if now != kept(README, now):
         assert real == printed
+
+
+def test_python_of_the_readme(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    found = doctest.testfile(str(README), module_relative=False, encoding="utf-8")
+    assert found.attempted > 3
+    assert found.failed == 0
 
 
 def test_the_readme_has_commands() -> None:

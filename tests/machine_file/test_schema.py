@@ -87,3 +87,20 @@ def test_every_key_has_a_sentence() -> None:
     for schema in [json_schema(), *json_schema()["definitions"].values()]:
         for name, inner in schema.get("properties", {}).items():
             assert inner["description"], name
+
+
+def test_a_wrong_unit_is_explained_in_words() -> None:
+    length = json_schema()["definitions"]["quantity_length"]
+    assert length["errorMessage"] == "write a number with its unit, such as '450 mm'"
+    assert length["patternErrorMessage"].startswith("write a number with its unit, such as '450 mm'; units: ")
+    for unit in unit_names("length"):
+        assert unit in length["patternErrorMessage"]
+        assert unit in length["description"]
+
+
+def test_figures_may_be_named_by_their_symbols(validator: Any) -> None:
+    machine = {"crank": "400 mm", "rod": "2 m"}
+    good = {"b_max": "13.16 m/s2 ± 0.5 %", "φ_o": ["179 deg", "181 deg"], "dA/A": "0 +- 1e-9"}
+    assert validator.is_valid(machine | {"limits": {"A_H": "1 m2", "ΔA/A": 1e-9}, "expect": good})
+    for bad in ({"b_max": "13.16 m/s2"}, {"bmax": "1 m/s2 ± 1 %"}, {"φ_b=0": "1 deg ± 1 deg"}, {"b_max": ["1 m/s2"]}):
+        assert not validator.is_valid(machine | {"expect": bad})

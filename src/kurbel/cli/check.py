@@ -5,25 +5,64 @@ from __future__ import annotations
 import click
 
 from kurbel.cli.exit_status import BROKEN, DONE, NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import machine_file
+from kurbel.cli.output_options import format_of, loaded, machine_file
 
 
 @click.command(short_help="Read and check a machine file and its limits.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
 @machine_file
-def check(file: str, overrides: tuple[str, ...]) -> int:
+@click.option(
+    "--format",
+    "-f",
+    "format",
+    type=click.Choice(["table", "json"]),
+    help="json: every finding with its place. By the suffix of --output, or table, if not given.",
+)
+@click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
+def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: str | None) -> int:
     """Read the machine in FILE and say what will be computed, what is left out and why.
 
-    Where the file gives 'limits', compare the key values with them.
+    Where the file gives 'limits', hold the key values to them; where it gives 'expect', compare them with the figures
+    there. As json every fault, limit, figure and warning has file, line, column, key, message and severity.
     """
-    from kurbel.machine_file import load
-    from kurbel.render import Look
-    from kurbel.render.listing import listing
-    from kurbel.render.output import stdout_charset, stdout_width, write_stdout
     from kurbel.report.check import checked
 
-    result = checked(load(file, overrides))
-    write_stdout((listing(result, Look(encoding=stdout_charset().encoding, width=stdout_width())),))
+    written = format_of(format, file_name)
+    if written == "json":
+        return _as_json(file, overrides, file_name)
+    if written != "table":
+        raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
+    from kurbel.render import Look
+    from kurbel.render.listing import listing
+    from kurbel.render.output import stdout_look, write_out
+
+    result = checked(loaded(file, overrides, file_name))
+    look = Look() if file_name else stdout_look()
+    write_out((listing(result, look),), file_name)
     if result.errors:  # all of them, as one of the gravest kind
         gravest = min(result.errors, key=lambda error: error.exit_status)
         raise type(gravest)("\n".join(map(str, result.errors)))
     return BROKEN if result.broken else DONE
+
+
+def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> int:
+    """Write all findings, those of a file that cannot be read, too, and return the status."""
+    from kurbel.errors import KurbelError
+    from kurbel.machine_file.positions import located_in
+    from kurbel.render import Look
+    from kurbel.render.findings_json import findings_json
+    from kurbel.render.output import refuse_overwriting, stdout_look, write_out
+    from kurbel.report.check import checked
+    from kurbel.report.findings import faults_found, findings
+
+    refuse_overwriting(file_name, (file,))
+    try:
+        machine = loaded(file, overrides)
+    except KurbelError as error:
+        found, status = faults_found(file, error), error.exit_status
+    else:
+        refuse_overwriting(file_name, machine.trace_files)
+        result = checked(machine)
+        found = findings(machine, result, located_in)
+        status = min((error.exit_status for error in result.errors), default=BROKEN if result.broken else DONE)
+    write_out(findings_json(found, Look() if file_name else stdout_look()), file_name)
+    return status

@@ -11,6 +11,7 @@ import click
 from kurbel.render import FORMATS, LAYOUTS, Look
 
 if TYPE_CHECKING:
+    from kurbel.declared.quantity import Quantity
     from kurbel.machine import Machine
     from kurbel.report.tables import Report
     from kurbel.solver.case import Case
@@ -70,6 +71,30 @@ class Words(_WordsType):
         return tuple(word.strip() for word in words if word.strip())
 
 
+class Columns(Words):
+    """Columns by id or printed symbol, separated by commas."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
+        """Return the ids in the order given."""
+        from kurbel.declared.quantities import COLUMNS
+
+        words = super().convert(value, param, ctx)
+        if all(word in COLUMNS for word in words):
+            return words
+        from kurbel.declared.quantity import called, joined
+        from kurbel.mechanisms import every_quantity
+
+        known = [column for column in every_quantity().all_columns if column.commands]
+        return tuple(self._only(name, called(name, known), known, param, ctx) for name in joined(words, known))
+
+    def _only(self, name: str, found: tuple[str, ...], known: list[Quantity], *place: Any) -> str:
+        from kurbel.declared.quantity import ambiguity
+
+        if wrong := ambiguity(name, found):
+            self.fail(wrong, *place)
+        return found[0] if found else name  # the report knows what this machine has
+
+
 class Output(NamedTuple):
     """Where a report goes and how it looks."""
 
@@ -112,7 +137,9 @@ angle_options = _stacked(
 )
 """`--step` and `--angles`: see `crank_angles`."""
 
-columns_option = click.option("--columns", type=Words(), metavar="ID,ID,...", help="Only these columns, in this order.")
+columns_option = click.option(
+    "--columns", type=Columns(), metavar="ID,ID,...", help="Only these columns, by id or symbol, in this order."
+)
 _part_options = _stacked(
     click.option("--cylinder", metavar="NAME", help="Only the results of this cylinder."),
     click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
@@ -127,7 +154,13 @@ _look_options = _stacked(
     click.option(
         "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
     ),
-    click.option("--format", "-f", "format", type=click.Choice(FORMATS), default="table", help="table if not given."),
+    click.option(
+        "--format",
+        "-f",
+        "format",
+        type=click.Choice(FORMATS),
+        help="By the suffix of --output, or table, if not given.",
+    ),
     click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."),
     click.option(
         "--decimal",
@@ -144,22 +177,37 @@ _look_options = _stacked(
 )
 
 
+_SUFFIXES = {".csv": "csv", ".json": "json", ".md": "markdown", ".markdown": "markdown"}
+
+
+def format_of(asked: str | None, file_name: str | None) -> str:
+    """Return the format that is asked for, or that of the suffix of the file; UsageError where the two contradict."""
+    dot = (file_name or "").rfind(".")
+    of_suffix = _SUFFIXES.get(file_name[dot:].lower()) if file_name else None
+    if asked and of_suffix and asked != of_suffix:
+        raise click.UsageError(
+            f"--format {asked} contradicts the name {file_name}, which says {of_suffix}; change one of them."
+        )
+    return asked or of_suffix or "table"
+
+
 def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options of what it prints, which reach it as one `output: Output`."""
 
     @wraps(command)
     def with_output(
         layout: str,
-        format: str,
+        format: str | None,
         file_name: str | None,
         decimal: str,
         digits: int | None,
         width: int | None,
         **others: Any,
     ) -> Any:
-        if decimal == "comma" and format == "json":
+        written = format_of(format, file_name)
+        if decimal == "comma" and written == "json":
             raise click.UsageError("--decimal comma: JSON has the decimal point only.")
-        return command(output=Output(Look(format, layout, decimal == "comma", digits, width), file_name), **others)
+        return command(output=Output(Look(written, layout, decimal == "comma", digits, width), file_name), **others)
 
     return _look_options(with_output)
 

@@ -116,3 +116,17 @@ def called(name: str, quantities: Iterable[Quantity]) -> tuple[str, ...]:
 def ambiguity(name: str, found: tuple[str, ...]) -> str:
     """Return what is to be said of a symbol that several quantities have; '' where it is one."""
     return f"'{name}' is the symbol of {' and of '.join(found)}; write which" if len(found) > 1 else ""
+
+
+def joined(words: Iterable[str], quantities: Iterable[Quantity]) -> Iterator[str]:
+    """Yield names that were split at their commas as they were before: `σ_w` and `A` are one where `σ_w,A` is known.
+
+    >>> list(joined(["T", "F_z", "max"], [Quantity("F_pin", "F_z,max", "force", "Force on the pin")]))
+    ['T', 'F_z,max']
+    """
+    rest, known = list(words), tuple(quantities)
+    while rest:
+        names = (",".join(rest[:count]) for count in range(min(len(rest), 4), 1, -1))
+        name = next((name for name in names if called(name, known)), rest[0])
+        del rest[: name.count(",") + 1]
+        yield name

@@ -7,7 +7,7 @@ Records check their own rules and raise RuleError. They hold numbers only; what 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from kurbel.declared.quantity import Quantity
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.equal import EqualCylinders
+    from kurbel.machine.origin import Origin
     from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
@@ -91,6 +92,7 @@ class Machine(Described):
     limits: tuple[tuple[str, float], ...] = ()
     expect: tuple[tuple[str, Expected], ...] = ()
     rotation: str | None = None
+    origin: Origin | None = field(default=None, repr=False)
 
     KEYS: ClassVar[Keys] = {
         "kurbel": Key(Count(least=FORMAT, most=FORMAT), "Number of the file format", absent="1"),

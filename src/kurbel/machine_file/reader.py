@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.forms import Record
 from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, glued_hint, kind_of
 from kurbel.errors import Fault
 from kurbel.machine import Machine
+from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.source import Source
@@ -47,12 +49,13 @@ def read_machine(origin: Source, overrides: Iterable[str] = ()) -> Machine:
     reading = Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
     tree = parse(origin.text, reading)
     known = len(reading.faults)  # YAML has told their places
-    set_over = _set_over(tree, tuple(overrides))
+    given = tuple(overrides)
+    set_over = _set_over(tree, given)
     machine = REFUSED if tree is REFUSED else _machine(reading, tree, origin.stem)
     if reading.faults:
         raise origin.error(*reading.faults[:known], *_located(origin.text, reading.faults[known:], set_over))
     assert isinstance(machine, Machine)
-    return machine
+    return replace(machine, origin=Origin(origin.name, origin.content, given))
 
 
 def _set_over(tree: Any, overrides: Sequence[str]) -> list[Override]:

@@ -18,11 +18,12 @@ _UNPRINTABLE = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\ud
 
 
 class Source(NamedTuple):
-    """A machine file as text: the name that messages show, and the folder that paths in it are relative to."""
+    """A machine file as text: the name that messages show, the folder that paths in it are relative to, its bytes."""
 
     name: str
     text: str
     folder: str = ""
+    content: bytes = b""
 
     @property
     def stem(self) -> str:
@@ -90,7 +91,7 @@ def decode(name: str, content: bytes, folder: str = "") -> Source:
     if content[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in content[:2]:
         raise Source(name, "").error(Fault((), "the file is UTF-16; save it as UTF-8").at(0, 0))
     try:
-        source = Source(name, _SPACE.sub(" ", content.decode("utf-8-sig")), folder)
+        source = Source(name, _SPACE.sub(" ", content.decode("utf-8-sig")), folder, content)
     except UnicodeDecodeError as error:
         raise _encoding_error(name, content, error.start) from None
     found = _UNPRINTABLE.search(source.text)

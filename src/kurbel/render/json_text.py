@@ -13,7 +13,7 @@ from kurbel.render.numbers import rounded, whole_if_integral
 
 if TYPE_CHECKING:
     from kurbel.render import Look
-    from kurbel.report.tables import Column, KeyValue, Part, Report, Value
+    from kurbel.report.tables import Column, KeyValue, Part, Provenance, Report, Value
 
 FORMAT = 1
 """Number of the output format; it changes when a script that reads it would break."""
@@ -23,14 +23,31 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
     """Return one JSON object in pieces, each column on a line of its own. Raises UsageError for a decimal comma."""
     if look.comma:
         raise UsageError("--decimal comma: JSON has the decimal point only; use it with table, csv or markdown")
-    content = _report(report, look.digits)
+    return json_lines(_report(report, look.digits), look)
+
+
+def json_lines(content: dict[str, Any], look: Look) -> Iterator[str]:
+    """Return an object in pieces."""
     return chain(_pieces(content, "", ascii_only=not look.charset.has("φ")), "\n")
 
 
+def head(command: str) -> dict[str, Any]:
+    """Return what every object begins with."""
+    return {"kurbel": __version__, "format": FORMAT, "command": command}
+
+
+def provenance(given: Provenance | None) -> dict[str, Any]:
+    """Return what results were made from and with."""
+    if given is None:
+        return {}
+    versions = {"kurbel": __version__, **given.versions}
+    return {"inputs": [i._asdict() for i in given.inputs], "overrides": list(given.overrides), "versions": versions}
+
+
 def _report(report: Report, digits: int | None) -> dict[str, Any]:
-    content: dict[str, Any] = {"kurbel": __version__, "format": FORMAT, "command": report.command}
+    content = head(report.command)
     if report.machine is not None:
-        content["machine"] = report.machine
+        content |= {"machine": report.machine, **provenance(report.provenance)}
     if report.head:
         content["head"] = list(report.head)
     if report.parts:

@@ -70,6 +70,19 @@ def stdout_charset() -> Charset:
     return Charset(getattr(_stdout(), "encoding", None) or "utf-8")
 
 
+def stdout_look() -> Look:
+    """Return how text looks that standard output can show."""
+    return Look(encoding=stdout_charset().encoding, width=stdout_width())
+
+
+def write_out(texts: Iterable[str], file_name: str | None) -> None:
+    """Write to a file as UTF-8, or to standard output in the encoding of that; raises UsageError as both do."""
+    if file_name is not None and file_name != "-":
+        write_file(file_name, texts)
+    else:
+        write_stdout(texts)
+
+
 def write_stdout(texts: Iterable[str], encoding: str | None = None) -> None:
     """Write to standard output, as bytes so that line ends stay `\n`; a reader that leaves early is no fault.
 

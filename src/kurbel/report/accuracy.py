@@ -15,6 +15,7 @@ from kurbel.accuracy.scenes import Loads, Scene, built_in
 from kurbel.accuracy.timing import Patience
 from kurbel.accuracy.trials import Lacking, Row, dominating, examined
 from kurbel.machine import Machine
+from kurbel.report.provenance import provenance
 from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report, Value
 from kurbel.solver.case import Case
 
@@ -46,7 +47,8 @@ def accuracy_report(machine: Machine | None, quick: bool, loads: Loads) -> Repor
     named = None if machine is None else machine.name
     head = (environment(), "Times are of this machine and this run; compare them only with one another.")
     title = f"{name}. Genauigkeit und Rechenzeit"
-    return Report(title, "accuracy", named, "scenes", parts, notes=(*_NOTES, *_edge(found)), head=head)
+    report = Report(title, "accuracy", named, "scenes", parts, notes=(*_NOTES, *_edge(found)), head=head)
+    return report if machine is None else report._replace(provenance=provenance(machine))
 
 
 def _measured(scene: Scene, quick: bool) -> Measured:

@@ -54,10 +54,17 @@ def judged(machine: Machine) -> Iterator[Judged]:
     asked = (*(name for name, _ in (*machine.limits, *machine.expect)), *opposites)
     values = limited_values(machine, dict.fromkeys(asked))
     for name, bound in machine.limits:
-        yield from _all_of(("limits", name), declared[name], bound, values[name])
-        yield from _beyond_by_sign(machine, name, bound, values, declared)
+        found = tuple(_all_of(_path("limits", name, bound), declared[name], bound, values[name]))
+        yield from found
+        if all(isinstance(one, Entry) and one.severity == "info" for one in found):
+            yield from _beyond_by_sign(machine, name, bound, values, declared)
     for name, figure in machine.expect:
-        yield from _all_of(("expect", name), declared[name], figure, values[name])
+        yield from _all_of(_path("expect", name, figure), declared[name], figure, values[name])
+
+
+def _path(key: str, id: str, figure: float | Expected) -> Path:
+    """Return where a figure stands in the file, under the name that is written there."""
+    return (key, getattr(figure, "name", "") or id)
 
 
 def _all_of(path: Path, quantity: Quantity, figure: float | Expected, found: Values) -> Iterator[Judged]:
@@ -128,7 +135,7 @@ def _beyond_by_sign(
         if -value * upward > abs(bound) * (1 + _ROUNDING):
             size = _shown(value, declared[other].kind, getattr(bound, "unit", ""))
             text = f"{other} = {size} is beyond it with the other sign; {way}  ({where})"
-            yield Entry(name, text, "warning", ("limits", name))
+            yield Entry(name, text, "warning", _path("limits", name, bound))
 
 
 def _shown(value: float, kind: str, unit: str) -> str:

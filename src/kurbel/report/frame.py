@@ -14,8 +14,10 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity, quantities_of
 from kurbel.near_words import did_you_mean
+from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
+from kurbel.solver.figures import answered
 
 if TYPE_CHECKING:
     from kurbel.mechanisms import Mechanism
@@ -58,24 +60,13 @@ class Subject(NamedTuple):
 
     def answer(self, quantity: Quantity) -> Any:
         """Return what the results have for a key value, in SI; None where they have none."""
-        for one in self.results:
-            if quantity.asks and hasattr(type(one), quantity.asks[0]):
-                return _asked(one, *quantity.asks)
-            if hasattr(type(one), quantity.id):
-                return getattr(one, quantity.id)
-        return None
+        return answered(self.results, quantity)
 
     def has(self, command: str) -> list[str]:
         """Return the ids of the columns of a command that it has."""
         answer = self.at(np.zeros(1)) if self.at else None
         columns = self.lists.columns(command).values() if answer else ()
         return [one.id for one in columns if answer and (one.id == "phi" or answer(one) is not None)]
-
-
-def _asked(results: Any, name: str, argument: str = "", part: str = "") -> Any:
-    found = getattr(results, name)
-    found = found(argument) if argument else found
-    return getattr(found, part) if part and found is not None else found
 
 
 def of_state(state: Any) -> Answer:
@@ -111,7 +102,8 @@ class Frame(NamedTuple):
             self._refuse_absent(every, parts)
             last = parts.pop() if whole else None
             name = machine.name
-            return Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=tuple(notes))
+            report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=tuple(notes))
+            return report._replace(provenance=provenance(machine))
 
     def _part(self, subject: Subject) -> Part:
         return Part(

@@ -106,13 +106,28 @@ class Part(NamedTuple):
     place_tables: tuple[PlaceTable, ...] = ()
 
 
+class Input(NamedTuple):
+    """A file that was read, and the SHA-256 of its bytes; None where it is gone since."""
+
+    file: str
+    sha256: str | None
+
+
+class Provenance(NamedTuple):
+    """What results were made from: files, what was set over the machine file, and the versions of the libraries."""
+
+    inputs: Collection[Input]
+    overrides: tuple[str, ...]
+    versions: dict[str, str]
+
+
 class Report(NamedTuple):
     """One answer of one command.
 
     title: head line over the printed table, with its German title; command and machine as in JSON (`machine` is None
     for `kurbel table`); group: `cylinders`, `ratios` or `scenes`, the JSON key of `parts`; whole: the results of the
     whole machine, if any; mirrored: what changes under a second head line of the angles 360° − φ (empty: no such line);
-    notes: sentences below the table; head: sentences right below the title.
+    notes: sentences below the table; head: sentences right below the title; provenance: None where no file was read.
     """
 
     title: str
@@ -124,6 +139,7 @@ class Report(NamedTuple):
     mirrored: str = ""
     notes: tuple[str, ...] = ()
     head: tuple[str, ...] = ()
+    provenance: Provenance | None = None
 
     @property
     def all_parts(self) -> tuple[Part, ...]:

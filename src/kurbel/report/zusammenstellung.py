@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantities import COLUMNS, FACTORS
-from kurbel.declared.quantity import Quantity
+from kurbel.declared.quantity import Quantity, called
 from kurbel.errors import UsageError
 from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.near_words import did_you_mean
@@ -107,8 +107,8 @@ def zusammenstellung(
 def _row_id(row: str) -> str:
     if row in ROWS:
         return ROWS[row]
-    if row in ROWS.values():
-        return row
+    if len(found := called(row, FACTORS.values())) == 1:
+        return found[0]
     known = tuple(ROWS)
     raise UsageError(f"--rows: no row '{row}'{did_you_mean(row, (*known, *ROWS.values()))} (known: {', '.join(known)})")
 

@@ -5,8 +5,13 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kurbel.declared.quantities import COMMON
+from kurbel.declared.quantity import called
+from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.mechanisms import quantities_of
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.figures import Figure, Results
 
 if TYPE_CHECKING:
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
@@ -25,6 +30,29 @@ class Case:
 
     def __init__(self, machine: Machine) -> None:
         self.machine = machine
+
+    def __getitem__(self, name: str) -> Figure:
+        """Return a key value by its id or printed symbol, of the only cylinder, or of the whole machine.
+
+        Of several cylinders each has its own: `case.cylinders[0]["P_max"]`. Raises UsageError where there is none.
+        """
+        known = quantities_of(self.machine.cylinders[0].mechanism) if self.machine.cylinders else COMMON
+        commands = {word for id in called(name, known.all_key_values) for word in known.commands_of(id)}
+        if "forces" in commands and len(self.cylinders) == 1:
+            return self.cylinders[0][name]
+        if "forces" in commands and not commands & {"flywheel", "stress"}:
+            raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
+        return (self.strength if "stress" in commands else self.flywheel)[name]
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        machine = self.machine
+        parts: list[tuple[str, Results]] = [(one.drive.name, one) for one in self.cylinders]
+        if len(parts) != 1 or machine.flywheel:
+            parts.append(("whole machine", self.flywheel))
+        tables = (f"<h4>{escape(name)}</h4>{one._repr_html_()}" for name, one in parts)
+        return f"<h3>{escape(machine.name)}</h3>{''.join(tables)}"
 
     @cached_property
     def cylinders(self) -> tuple[CylinderForces, ...]:

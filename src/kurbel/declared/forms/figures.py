@@ -24,24 +24,34 @@ Known = Callable[[], tuple[dict[str, "Quantity"], Collection[str]]]
 
 
 class Bound(float):
-    """A bound in the base of its kind, which keeps the unit that it was written in."""
+    """A bound in the base of its kind, which keeps the unit, and the name of its key value, as they were written."""
 
-    __slots__ = ("unit",)
+    __slots__ = ("name", "unit")
     unit: str
+    name: str
 
-    def __new__(cls, value: float, unit: str = "") -> Bound:
+    def __new__(cls, value: float, unit: str = "", name: str = "") -> Bound:
         bound = super().__new__(cls, value)
-        bound.unit = unit
+        bound.unit, bound.name = unit, name
         return bound
+
+    def named(self, name: str) -> Bound:
+        """Return it with the name that it stands under."""
+        return Bound(self, self.unit, name)
 
 
 class Expected(NamedTuple):
-    """The smallest and the largest value that meet an expectation, in the base; its unit and its text as written."""
+    """The smallest and the largest value that meet an expectation, in the base; unit, text and name as written."""
 
     low: float
     high: float
     unit: str = ""
     text: str = ""
+    name: str = ""
+
+    def named(self, name: str) -> Expected:
+        """Return it with the name that it stands under."""
+        return self._replace(name=name)
 
 
 class _Figures(Form):
@@ -81,14 +91,18 @@ class _Figures(Form):
             if wrong:
                 reading.fault((*path, name), wrong, at_key=True)
             else:
-                found[id] = self.figure(known[id]).read(reading, figure, (*path, name))
+                read = self.figure(known[id]).read(reading, figure, (*path, name))
+                found[id] = read if read is REFUSED else read.named(name)
         return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
 
     def _meant(self, name: str, known: dict[str, Quantity], lists: Collection[str]) -> tuple[str, str]:
         """Return the id that a name stands for, and what is wrong with it."""
         found = called(name, known.values())
         if not found:
-            hint = did_you_mean(name, tuple(id for id in known if id not in lists)) or f"; known are {', '.join([*known][:6])}, …"
+            hint = (
+                did_you_mean(name, tuple(id for id in known if id not in lists))
+                or f"; known are {', '.join([*known][:6])}, …"
+            )
             return "", f"unknown key value '{shown(name)}'{hint}"
         listed = f"'{name}' is a list of values; no {self.what} can be put on it" if found[0] in lists else ""
         return found[0], ambiguity(name, found) or listed

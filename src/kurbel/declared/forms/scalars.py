@@ -135,11 +135,14 @@ class Physical(_Bounded):
         return f"`{self.example()}`" + "".join(f", or `{word}`" for word, _ in self.words)
 
     def schema(self, definitions: Schema) -> Schema:
-        name = f"quantity_{self.kind}"
+        name, units = f"quantity_{self.kind}", ", ".join(unit_names(self.kind))
         definitions[name] = {
             "type": "string",
             "pattern": f"^\\s*{NUMBER.pattern}\\s*{_units(self.kind)}\\s*$",
-            "description": f"in size {range_of(self.kind)}",
+            "description": f"{self.expected()}; in size {range_of(self.kind)}; units: {units}",
+            # draft-07 has no words for a fault; editors (YAML and JSON language servers, ajv) take them from these
+            "errorMessage": f"write {self.expected()}",
+            "patternErrorMessage": f"write {self.expected()}; units: {units}",
             "examples": [self.example()],
         }
         return self._schema(reference(name))

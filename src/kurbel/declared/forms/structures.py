@@ -125,7 +125,7 @@ class Keyed(Form):
     def _misspelt(self, reading: Reading, mapping: Tree, path: Path) -> bool:
         """Note a fault where an unknown key is nearly a telling one, and return whether there was any."""
         known = tuple(self.otherwise.keys)
-        strange = [name for name in mapping if name not in known and not reading.where_it_belongs(name)]
+        strange = [name for name in mapping if name not in known and not reading.where_it_belongs(name, path)]
         found = {name: near(name, tuple(self.cases)) for name in strange if not near(name, known)}
         for name, meant in found.items():
             if meant:

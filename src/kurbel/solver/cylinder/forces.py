@@ -18,9 +18,11 @@ from kurbel.numerics.search import Curve, Evaluate, Extremes, Sampled, curves, e
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.state import State
+from kurbel.solver.figures import Results, answered
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.declared.quantities import Lists
 
 
 _SURE = 4.0
@@ -34,7 +36,7 @@ class Where(NamedTuple):
     span: tuple[float, float]
 
 
-class CylinderForces:
+class CylinderForces(Results):
     """What `kurbel forces` answers for one cylinder. Attributes are named by the ids of the key values, in SI.
 
     A key value that the machine does not have is None. `at(degrees)` gives the columns.
@@ -43,6 +45,25 @@ class CylinderForces:
     def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
         self.drive = Drive(machine, cylinder)
         self.motion = Motion(cylinder.mechanism, machine.speed)
+
+    command = "forces"
+
+    @property
+    def lists(self) -> Lists:
+        """The quantities that a machine with this mechanism may have."""
+        return quantities_of(self.drive.mechanism)
+
+    @property
+    def answering(self) -> tuple[Any, ...]:
+        """What answers key values, the first that knows one."""
+        return (self, self.motion)
+
+    def __getattr__(self, id: str) -> Any:
+        """Return a key value that is no attribute here: extremes, and what the motion or the mechanism has."""
+        quantity = self.lists.key_values("forces").get(id) if "drive" in self.__dict__ else None
+        if quantity is None:
+            raise AttributeError(f"no key value is called {id}")
+        return answered(self.answering, quantity)
 
     def at(self, degrees: Any) -> State:
         """Return every quantity at crank angles (n,) in degrees: `forces.at([0, 10]).T` in N, …

@@ -18,6 +18,7 @@ from kurbel.numerics.grid import Grid, Pieces, integral
 from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.state import State
+from kurbel.solver.figures import Results
 from kurbel.solver.strength.columns import StrengthColumns, strength_columns
 from kurbel.solver.strength.places import Place, Stresses, places
 from kurbel.solver.strength.sections import norm
@@ -39,11 +40,13 @@ class Strained(NamedTuple):
     von_mises: float
 
 
-class CrankshaftStrength:
+class CrankshaftStrength(Results):
     """What `kurbel stress` answers: statics and stresses of the only crank throw of a machine.
 
     Raises UsageError where the machine has no crankshaft, more than one cylinder, or no pressure that loads it.
     """
+
+    command = "stress"
 
     def __init__(self, machine: Machine, cylinders: tuple[CylinderForces, ...]) -> None:
         obstacle = machine.strength_obstacle

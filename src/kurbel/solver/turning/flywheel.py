@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError
@@ -14,6 +14,7 @@ from kurbel.numerics.collocation import Standstill, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import rising_root
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.figures import Results
 from kurbel.solver.turning.columns import TurningColumns
 from kurbel.solver.turning.machine_effort import MachineEffort, dead_centre_force
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedLine, floquet
@@ -28,7 +29,7 @@ _MISSED = 1e-3
 """By what δ may miss the wanted one, relatively, before it is told."""
 
 
-class MachineTurning:
+class MachineTurning(Results):
     """The key values of the whole machine over its common cycle; `at(degrees)` gives the columns.
 
     Attributes are named by the ids of the key values, in SI; one that the machine does not have is None. Forces T are
@@ -42,6 +43,13 @@ class MachineTurning:
         self.omega = self.turned.omega
         self.crank = machine.cylinders[0].mechanism.crank if machine.cylinders else None
         self._lines = SpeedLines(self.turned, self.omega) if self.omega else None
+
+    command = "flywheel"
+
+    @property
+    def answering(self) -> tuple[Any, ...]:
+        """What answers key values, the first that knows one."""
+        return (self, *((self.elastic,) if self.elastic else ()))
 
     def at(self, degrees: Array) -> TurningColumns:
         """Return every column at crank angles (n,) of crank 1 in degrees, just after a jump where there is one."""

@@ -1,0 +1,113 @@
+"""Results by name: key values by id or printed symbol, all columns at once, and what a notebook shows of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from kurbel.declared.quantities import COMMON, Lists
+from kurbel.declared.quantity import NOISE_POWER, Quantity, ambiguity, called
+from kurbel.declared.unit_systems import SI, convert, shown_unit
+from kurbel.errors import KurbelError, UsageError
+from kurbel.near_words import did_you_mean
+from kurbel.numerics.extreme import Extreme
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
+
+class Figure(NamedTuple):
+    """A key value: a number, or a tuple of them, in its SI unit, and the angle in degrees of an extreme, else None."""
+
+    value: Any
+    unit: str
+    degrees: float | None
+    quantity: Quantity
+
+
+class Results:
+    """What has key values and columns of a command; attributes of those ids, or what a quantity asks, answer them."""
+
+    command: ClassVar[str]
+
+    @property
+    def lists(self) -> Lists:
+        """The quantities that there may be."""
+        return COMMON
+
+    @property
+    def answering(self) -> tuple[Any, ...]:
+        """What answers key values, the first that knows one."""
+        return (self,)
+
+    def __getitem__(self, name: str) -> Figure:
+        """Return a key value by its id or printed symbol; raises UsageError where there is none."""
+        known = self.lists.key_values(self.command)
+        found = called(name, known.values())
+        if not found or ambiguity(name, found):
+            raise UsageError(ambiguity(name, found) or f"no key value '{name}'{did_you_mean(name, tuple(known))}")
+        value = answered(self.answering, known[found[0]])
+        if value is None:
+            raise UsageError(f"this machine has no {found[0]}: {known[found[0]].text}")
+        return _figure(known[found[0]], value)
+
+    def figures(self) -> Iterator[Figure]:
+        """Yield every key value that there is, in the order in which it is printed."""
+        for quantity in self.lists.key_values(self.command).values():
+            value = answered(self.answering, quantity)
+            if value is not None:
+                yield _figure(quantity, value)
+
+    def columns(self, degrees: Any) -> dict[str, Array]:
+        """Return every column (n,) that there is, in SI by its id, at crank angles (n,) in degrees."""
+        angles = np.atleast_1d(np.asarray(degrees, dtype=float))
+        state: Any = self.at(angles)  # type: ignore[attr-defined]
+        found = {id: getattr(state, id, None) for id in self.lists.columns(self.command) if id != "phi"}
+        return {"phi": angles, **{id: np.asarray(one, float) for id, one in found.items() if one is not None}}
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        try:
+            with np.errstate(all="ignore"):
+                rows = "".join(map(_row, self.figures()))
+        except KurbelError as error:
+            return f"<p>{escape(str(error))}</p>"
+        return f"<table>{rows}</table>"
+
+
+def answered(results: tuple[Any, ...], quantity: Quantity) -> Any:
+    """Return what the results have for a key value, in SI; None where they have none."""
+    for one in results:
+        if quantity.asks and hasattr(type(one), quantity.asks[0]):
+            return _asked(one, *quantity.asks)
+        if hasattr(type(one), quantity.id):
+            return getattr(one, quantity.id)
+    return None
+
+
+def _asked(results: Any, name: str, argument: str = "", part: str = "") -> Any:
+    found = getattr(results, name)
+    found = found(argument) if argument else found
+    return getattr(found, part) if part and found is not None else found
+
+
+def _figure(quantity: Quantity, value: Any) -> Figure:
+    number, degrees = value if isinstance(value, Extreme) else (value, None)
+    return Figure(number, SI[quantity.kind], degrees, quantity)
+
+
+def _row(figure: Figure) -> str:
+    from html import escape
+
+    quantity = figure.quantity
+    each = figure.value if isinstance(figure.value, tuple) else (figure.value,)
+    unit = shown_unit(quantity.kind, "metric", max(map(abs, each), default=0.0))
+    numbers = ", ".join(f"{convert(one, quantity.kind, unit):.4g}" for one in each)
+    if any(map(quantity.is_noise, each)):
+        numbers = f"< 1e{NOISE_POWER}"
+    at = "" if figure.degrees is None else f"at {figure.degrees:.2f}°"
+    cells = (quantity.symbol, numbers, unit, at, quantity.text)
+    return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"
