@@ -175,7 +175,7 @@ def test_an_absent_column_is_told_with_those_that_are_there() -> None:
     )
     assert result.exit_code == 2
     assert (
-        "'N' is left out for this machine, which has phi, x, theta, P_ram, P, F_pin, D, T, M"
+        "'N' is left out for this machine, which has phi, z, x, theta, P_ram, P, F_pin, D, T, M"
         in result.stderr.replace("\n", " ")
     )
 

@@ -36,23 +36,24 @@ MACHINES = {
 SLIDES = {"x", "c", "b"}
 SWINGS = {"theta", "theta_dot", "theta_ddot"}
 STROKES = {"stroke", "phi_idc", "phi_odc", "v", "c_m", "c_max", "b_max", "b_min", "phi_b_zero"}
+RETURN = {"c_work_max", "c_return_max", "c_work_m", "c_return_m"}
 UNEQUAL = {"phi_work", "phi_return", "time_ratio"}
 SWING = {"swing", "theta_min", "theta_max"}
 TURNING = {"theta_dot_max", "theta_dot_min", "theta_ddot_max", "theta_ddot_min"}
 FITTING: dict[str, tuple[set[str], set[str]]] = {
     "slider-crank": ({"psi", *SLIDES}, STROKES),
     "infinite rod": ({"psi", *SLIDES}, STROKES),
-    "offset": ({"psi", *SLIDES}, {*STROKES, *UNEQUAL, "c_min"}),
+    "offset": ({"psi", *SLIDES}, {*STROKES, *UNEQUAL, "c_work_m", "c_return_m", "c_min"}),
     "scotch-yoke": ({*SLIDES, "c_block"}, STROKES),
     "slotted-lever": (
         {*SLIDES, *SWINGS, "c_block"},
-        {*STROKES, *UNEQUAL, *SWING, *TURNING, "c_work_max", "c_return_max"},
+        {*STROKES, *UNEQUAL, *SWING, *TURNING, *RETURN},
     ),
     "shaper with link": (
         {*SLIDES, *SWINGS, "c_block"},
-        {*STROKES, *UNEQUAL, *SWING, *TURNING, "c_work_max", "c_return_max"},
+        {*STROKES, *UNEQUAL, *SWING, *TURNING, *RETURN},
     ),
-    "Whitworth": ({*SLIDES, *SWINGS, "c_block"}, {*STROKES, *UNEQUAL, *TURNING, "c_work_max", "c_return_max"}),
+    "Whitworth": ({*SLIDES, *SWINGS, "c_block"}, {*STROKES, *UNEQUAL, *TURNING, *RETURN}),
     "four-bar": (
         SWINGS,
         {*UNEQUAL, *SWING, *TURNING, "phi_idc", "phi_odc", "v", "transmission_min", "transmission_max"},
@@ -116,7 +117,7 @@ def test_without_a_speed_what_can_be_said_is_said(name: str) -> None:
     columns, key_values = only_part(parsed)
     timeless = {"psi", "x", "theta", "x_coupler", "y_coupler"}
     assert set(columns) == {"phi", *FITTING[name][0] & timeless}
-    moving = {"v", "c_m", "c_max", "c_min", "c_work_max", "c_return_max", "b_max", "b_min", "b_coupler", *TURNING}
+    moving = {"v", "c_m", "c_max", "c_min", *RETURN, "b_max", "b_min", "b_coupler", *TURNING}
     assert set(key_values) == FITTING[name][1] - moving
     assert parsed["cylinders"][0]["left_out"] == [{"what": "velocity, acceleration", "why": "no speed given"}]
 
@@ -234,7 +235,7 @@ def test_columns_in_the_order_asked_for() -> None:
 @pytest.mark.parametrize(
     ("column", "message"),
     [
-        ("P", "'P' is no column of kurbel motion (it has phi, psi, x, c, b, "),
+        ("P", "'P' is no column of kurbel motion (it has phi, z, psi, x, "),
         ("theta", "'theta' is left out for this machine"),
         ("thetta", "did you mean 'theta'?"),
     ],
