@@ -52,6 +52,6 @@ def point_motion(mechanism: Mechanism, coupler: Coupler, angle: CrankAngle, alon
 
 
 def turning_column(id: str, symbol: str, plain: str, kind: str, text: str, after: str) -> Quantity:
-    """Declare a column that tells how the rod turns: in `kurbel motion`, and in `kurbel forces` on request."""
+    """Declare a column that tells how the rod turns, on request."""
     both = ("motion", "forces")
-    return Quantity(id, symbol, kind, text, plain, both, after=after, on_request=("forces",))
+    return Quantity(id, symbol, kind, text, plain, both, after=after, on_request=both)
