@@ -9,7 +9,7 @@ from kurbel.cli.output_options import Output, loaded, output_options, set_option
 
 
 @click.command(short_help="Error against run time; stiff and extreme cases.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
-@click.argument("file", metavar="[FILE]", required=False)
+@click.argument("file", metavar="[FILE]", required=False, type=click.Path(allow_dash=True))
 @set_option
 @click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")
 @click.option("--extremes", is_flag=True, help="Put stiff and extreme machines to kurbel instead.")

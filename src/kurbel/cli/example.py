@@ -6,6 +6,7 @@ import os
 
 import click
 
+from kurbel.cli.completion import complete_example
 from kurbel.cli.exit_status import exit_statuses
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -15,7 +16,7 @@ _SUFFIX = ".yaml"
 
 
 @click.command(short_help="List the shipped machines, or print one.", epilog=exit_statuses())
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=complete_example)
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
 def example(name: str | None, file_name: str | None) -> None:
     """List the machines that come with kurbel, or print the file of the machine NAME.
@@ -41,7 +42,8 @@ def _folder() -> str:
     return next(filter(os.path.isdir, _PLACES))
 
 
-def _names() -> tuple[str, ...]:
+def shipped_names() -> tuple[str, ...]:
+    """Return the names of the machines that come with kurbel."""
     return tuple(sorted(file[: -len(_SUFFIX)] for file in os.listdir(_folder()) if file.endswith(_SUFFIX)))
 
 
@@ -49,7 +51,7 @@ def _known(name: str) -> str:
     from kurbel.errors import UsageError
     from kurbel.near_words import did_you_mean
 
-    bare, names = name.removesuffix(_SUFFIX), _names()
+    bare, names = name.removesuffix(_SUFFIX), shipped_names()
     if bare not in names:
         raise UsageError(f"no example '{name}'{did_you_mean(bare, names)} (known: {', '.join(names)})")
     return bare
@@ -62,6 +64,6 @@ def _read(name: str) -> str:
 
 def _listing() -> list[tuple[str, str]]:
     """Return the name of each machine, filled up to the longest, and the first comment line of its file."""
-    names = _names()
+    names = shipped_names()
     longest = max(map(len, names))
     return [(f"{name:<{longest}}  ", _read(name).partition("\n")[0].lstrip("# ")) for name in names]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 
+from kurbel.cli.completion import complete_columns, complete_cylinder, complete_override
 from kurbel.render import FORMATS, LAYOUTS, Look
 
 if TYPE_CHECKING:
@@ -122,9 +123,10 @@ set_option = click.option(
     "overrides",
     multiple=True,
     metavar="KEY=VALUE",
+    shell_complete=complete_override,
     help="This value instead of that of FILE, such as cylinders.0.bore='450 mm'; may be repeated.",
 )
-machine_file = _stacked(click.argument("file", metavar="FILE"), set_option)
+machine_file = _stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_option)
 """The machine file, or - for standard input, and values over those in it."""
 
 angle_options = _stacked(
@@ -138,10 +140,16 @@ angle_options = _stacked(
 """`--step` and `--angles`: see `crank_angles`."""
 
 columns_option = click.option(
-    "--columns", type=Columns(), metavar="ID,ID,...", help="Only these columns, by id or symbol, in this order."
+    "--columns",
+    type=Columns(),
+    metavar="ID,ID,...",
+    help="Only these columns, by id or symbol, in this order.",
+    shell_complete=complete_columns,
 )
 _part_options = _stacked(
-    click.option("--cylinder", metavar="NAME", help="Only the results of this cylinder."),
+    click.option(
+        "--cylinder", metavar="NAME", help="Only the results of this cylinder.", shell_complete=complete_cylinder
+    ),
     click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
 )
 units_option = click.option(

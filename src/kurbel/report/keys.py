@@ -1,0 +1,100 @@
+"""The keys of the machine file, from their declarations: a line each, or one in full."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from kurbel.declared.forms import Record
+from kurbel.declared.keys import Form, Key, required
+from kurbel.declared.reading import shown
+from kurbel.errors import UsageError
+from kurbel.near_words import did_you_mean
+
+_ROOT = Record("kurbel.machine:Machine")
+
+
+class Place(NamedTuple):
+    """A key where it stands: dotted path, declaration, whether it must be given, and with which word beside it."""
+
+    path: str
+    key: Key
+    needed: bool
+    beside: str = ""
+
+    @property
+    def line(self) -> str:
+        """What is written, what it means, and what holds without it."""
+        return f"{self._form}: {self.key.description}" + ("; must be given" if self.needed else "")
+
+    @property
+    def _form(self) -> str:
+        return self.key.form.written().replace("`", "").replace("\t", "\\t")
+
+    @property
+    def full(self) -> Iterator[tuple[str, str]]:
+        """Yield heads with what is said of the key below them."""
+        key = self.key
+        if self.beside:
+            yield "beside", self.beside
+        yield "meaning", key.text.replace("`", "")
+        if key.symbol:
+            yield "symbol", key.symbol
+        yield "form", self._form
+        yield "absent", "must be given" if self.needed else key.absent or "left out"
+        for word, other in (("or give", key.instead), ("needs", key.needs)):
+            if other:
+                yield word, other
+        example = key.example or key.form.example()
+        if example != "…":
+            yield "example", f"{self.path.rpartition('.')[2]}: {example}"
+        if below := list(_of_form(key.form, self.path)):
+            yield "below it", ", ".join(dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in below))
+
+
+def every_place() -> dict[str, list[Place]]:
+    """Return every key of a machine file by its dotted path, once for each mechanism that has it.
+
+    Those of a cylinder stand at the top.
+    """
+    places: dict[str, list[Place]] = {}
+    for one in _of_record(_ROOT, ""):
+        places.setdefault(one.path, []).append(one)
+    return places
+
+
+def places_at(path: str) -> list[Place]:
+    """Return the key at a dotted path, as messages and `--set` write it; raises UsageError where there is none."""
+    places = every_place()
+    steps = [step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()]
+    if len(steps) > 1 and steps[0] == "cylinders":
+        inner = steps[2:] if steps[1] == "each" else steps[1:]
+        steps = inner if inner and ".".join(inner) in places else steps
+    found = places.get(".".join(steps)) or places.get(".".join(steps[1:]) if steps[0] == "tandem" else "")
+    if found:
+        return found
+    ends = [name for name in places if name.rpartition(".")[2] == steps[-1]]
+    hint = f"; it stands at {', '.join(ends)}" if ends else did_you_mean(path, tuple(places))
+    raise UsageError(f"no key '{shown(path)}'{hint}; 'kurbel keys' lists them")
+
+
+def _of_record(record: Record, path: str, beside: str = "") -> Iterator[Place]:
+    needed = required(record.keys)
+    for name, key in record.keys.items():
+        if not key.form.shared:
+            here = f"{path}.{name}" if path else name
+            yield Place(here, key, name in needed, beside)
+            yield from _of_form(key.form, here)
+        for word, inner in key.form.records(name) if key.form.inline() else ():
+            yield from _of_record(inner, path, "" if key.form.shared else word)
+
+
+def _of_form(form: Form, path: str) -> Iterator[Place]:
+    """Yield the keys below a key of this form."""
+    if isinstance(form, Record):
+        if not form.inline_too:
+            yield from _of_record(form, path)
+        return
+    if not form.inline():
+        for name, inner in form.parts():
+            yield from _of_form(inner, f"{path}.{name}" if name else path)

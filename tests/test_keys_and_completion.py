@@ -1,0 +1,115 @@
+"""`kurbel keys`, and what TAB completes."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from kurbel.cli import kurbel
+from kurbel.report.keys import every_place
+
+CONFIGS = Path(__file__).parent.parent / "configs"
+
+
+def told(*arguments: str) -> str:
+    result = CliRunner().invoke(kurbel, ["keys", *arguments])
+    assert result.exit_code == 0, result.stderr
+    return result.stdout
+
+
+def completed(words: str) -> list[str]:
+    """What bash is offered for a line that ends in an unfinished word."""
+    environment = {
+        "_KURBEL_COMPLETE": "bash_complete",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(len(words.split(" ")) - 1),
+    }
+    output = CliRunner().invoke(kurbel, [], env=environment, prog_name="kurbel").stdout
+    return [line.partition(",")[2] for line in output.splitlines() if line]
+
+
+def test_every_key_of_the_shipped_machines_is_listed() -> None:
+    listed = {line.split()[0].rpartition(".")[2] for line in told().splitlines()}
+    words = "\n".join(path.read_text("utf-8") for path in CONFIGS.glob("*.yaml"))
+    used = set(re.findall(r"^ *-? *([a-z_]+):", words, re.MULTILINE)) - {"constant", "trace", "otto", "steam"}
+    bounds = {"c_max", "delta"}
+    telling = {"diesel", "compressor"}
+    assert used - listed - bounds - telling - key_values() == set()
+
+
+def key_values() -> set[str]:
+    from kurbel.mechanisms import every_quantity
+
+    return {one.id for one in every_quantity().all_key_values}
+
+
+def test_one_key_in_full() -> None:
+    assert told("masses.connecting_rod.share").splitlines() == [
+        "meaning  Reciprocating share of the mass",
+        "form     a number",
+        "absent   1/2",
+        "example  share: 0.1",
+    ]
+    assert "must be given" in told("crankshaft.a")
+
+
+def test_a_key_that_several_mechanisms_have_is_told_for_each() -> None:
+    text = told("frame")
+    assert [line.split(": ")[1] for line in text.splitlines() if line.startswith("beside")] == [
+        "slotted-lever",
+        "four-bar",
+        "parallel-crank",
+    ]
+
+
+@pytest.mark.parametrize(
+    "path", ["cylinders.0.bore", "cylinders[0].bore", "cylinders.each.bore", "tandem.0.bore", "bore"]
+)
+def test_a_path_may_be_that_of_a_message(path: str) -> None:
+    assert "Diameter of the cylinder" in told(path)
+
+
+def test_a_key_that_is_not_there() -> None:
+    result = CliRunner().invoke(kurbel, ["keys", "share"])
+    assert (result.exit_code, "it stands at masses.connecting_rod.share" in result.stderr) == (2, True)
+    assert "did you mean 'bore'" in CliRunner().invoke(kurbel, ["keys", "boore"]).stderr
+
+
+@pytest.mark.parametrize("path", sorted(every_place()))
+def test_every_key_says_what_it_means(path: str) -> None:
+    lines = [dict(one.full) for one in every_place()[path]]
+    assert all(one["meaning"] and one["form"] and one["absent"] for one in lines)
+
+
+@pytest.mark.parametrize(
+    ("words", "some"),
+    [
+        ("kurbel fly", ["flywheel"]),
+        ("kurbel example wat", ["waterworks", "waterworks-two-cranks"]),
+        ("kurbel keys masses.connecting_rod.s", ["masses.connecting_rod.share"]),
+        ("kurbel motion engine.yaml --columns x,theta_d", ["x,theta_dot", "x,theta_ddot"]),
+        ("kurbel forces engine.yaml --set bo", ["bore="]),
+        ("kurbel forces engine.yaml --set bore=4", []),
+        ("kurbel forces engine.yaml --cylinder ", []),
+    ],
+)
+def test_what_a_shell_completes(words: str, some: list[str]) -> None:
+    assert completed(words) == some
+
+
+def test_cylinders_are_completed_from_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(CONFIGS)
+    found = completed("kurbel forces four-cylinder-generator.yaml --cylinder ")
+    assert found == [f"cylinder {i}" for i in (1, 2, 3, 4)]
+
+
+def test_files_are_left_to_the_shell() -> None:
+    environment = {
+        "_KURBEL_COMPLETE": "bash_complete",
+        "COMP_WORDS": "kurbel motion eng",
+        "COMP_CWORD": "2",
+    }
+    assert CliRunner().invoke(kurbel, [], env=environment, prog_name="kurbel").stdout.startswith("file,")
