@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.machine import Cylinder, Machine
-from kurbel.report.card_ends import card_end_notes
 from kurbel.report.sizes import size_notes, speed_notes
 
 if TYPE_CHECKING:
@@ -31,12 +30,7 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
         for cylinder, where, chamber in chambers
         for text in getattr(chamber, "notes", ())
     ]
-    found += [
-        Note(cylinder.name, text)
-        for cylinder in machine.cylinders
-        for piston in cylinder.pistons
-        for text in card_end_notes(piston)
-    ]
+    found += _on_card_ends(machine) if chambers else ()
     found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
     found += [Note(None, text) for text in speed_notes(machine)]
     found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in size_notes(cylinder)]
@@ -50,6 +44,14 @@ def _chambers(cylinder: Cylinder) -> Iterable[tuple[str, Any]]:
         if piston.indicator:
             yield f"{piston.name}, head end", piston.indicator.head_end
             yield f"{piston.name}, crank end", piston.indicator.crank_end
+
+
+def _on_card_ends(machine: Machine) -> Iterable[Note]:
+    from kurbel.report.card_ends import card_end_notes
+
+    for cylinder in machine.cylinders:
+        for piston in cylinder.pistons:
+            yield from (Note(cylinder.name, text) for text in card_end_notes(piston))
 
 
 def _on_measurements(machine: Machine, case: Case | None) -> Iterable[Note]:
