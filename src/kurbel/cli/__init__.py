@@ -23,7 +23,19 @@ from kurbel.errors import KurbelError, MachineFileError
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-COMMANDS = ("table", "motion", "forces", "flywheel", "stress", "accuracy", "check", "example", "units", "schema")
+COMMANDS = (
+    "table",
+    "motion",
+    "forces",
+    "flywheel",
+    "stress",
+    "accuracy",
+    "friction",
+    "check",
+    "example",
+    "units",
+    "schema",
+)
 """In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""
 
 _DEBUG = "KURBEL_DEBUG"
