@@ -28,15 +28,30 @@ class Rings(Described):
 
 
 @dataclass(frozen=True, eq=False)
+class Guide(Described):
+    """The shoe with which a crosshead presses on its guide: length along the stroke and width in m."""
+
+    length: float
+    width: float
+
+    KEYS: ClassVar[Keys] = {
+        "length": Key(Physical("length", above=0), "Length of the shoe along the stroke", required=True),
+        "width": Key(Physical("length", above=0), "Width of the shoe", required=True),
+    }
+
+
+@dataclass(frozen=True, eq=False)
 class Friction(Described):
-    """Coefficient f of the crosshead, None where it is left out, and the piston rings."""
+    """Coefficient f of the crosshead, None where it is left out, the piston rings, and the shoe on the guide."""
 
     crosshead: float | None = None
     rings: Rings | None = None
+    guide: Guide | None = None
 
     KEYS: ClassVar[Keys] = {
         "crosshead": Key(Number(least=0), "Coefficient of friction of the crosshead on its guide", "f"),
         "rings": Key(Record("kurbel.machine.friction:Rings"), "Piston rings"),
+        "guide": Key(Record("kurbel.machine.friction:Guide"), "Shoe of the crosshead", needs="crosshead"),
     }
 
     def __post_init__(self) -> None:
