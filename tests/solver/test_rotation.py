@@ -80,3 +80,17 @@ def test_where_it_lifts() -> None:
 def test_standing_and_guideless_machines_have_no_lower_guide() -> None:
     assert forces_report(case("under", inclination="90 deg"), (0.0,), None, "si").notes == ()
     assert case("under", inclination="90 deg").cylinders[0].lifted == ()
+
+
+def test_guide_pressure_and_wear() -> None:
+    """A shoe of 400 by 200 mm: |N|/(l w); the wear line f |N c| sums up to the work of friction at the crosshead."""
+    text = ENGINE.replace("EXPANSION", "3 bar").replace("COMPRESSION", "0 bar")
+    guide = "friction: {crosshead: 0.1, guide: {length: 400 mm, width: 200 mm}}"
+    forces = Case(loads(f"{text}\n{guide}")).cylinders[0]
+    phi = (np.arange(36000) + 0.5) / 100
+    at = forces.at(phi)
+    assert at.p_guide == pytest.approx(abs(at.N) / 0.08, rel=1e-15)
+    assert at.wear == pytest.approx(0.1 * abs(at.N * at.c), rel=1e-12)
+    assert at.wear.mean() * 1.0 == pytest.approx(forces.crosshead_work, rel=1e-5)  # one turn a second
+    assert at.p_guide.max() == pytest.approx(forces.p_guide_max.value, rel=1e-6)
+    assert case().cylinders[0].at([0.0]).p_guide is None

@@ -114,6 +114,10 @@ _COLUMNS = (
         called="guide force",
         peak=True,
     ),
+    _forces("p_guide", "p_g", "pressure", "Mean pressure of the crosshead's shoe on its guide, |N| over its area"),
+    _forces(
+        "wear", "f N c", "power", "Work of friction on the guide over time, by which it wears (Redtenbacher)", "f N c"
+    ),
     Quantity(
         "D", "D", "force", "Radial force at the crank pin, positive toward the shaft", commands=(*_FORCES, *_STRESS)
     ),
@@ -186,6 +190,9 @@ _CYLINDER_VALUES = (
     _forces("A_head", "A_H", "area", "Piston area at the head end"),
     _forces("A_crank", "A_C", "area", "Piston area at the crank end"),
     _forces("p_max", "p_max", "pressure", "Largest gauge pressure in the cylinder's own piston"),
+    _forces(
+        "p_guide_max", "p_g,max", "pressure", "Largest pressure of the crosshead's shoe on its guide", after="T_min"
+    ),
     _forces("m", "m", "mass", "Reciprocating mass with its share of the connecting rod"),
     _forces("P_inertia_max", "P_b,max", "force", "Largest inertia force toward the shaft", after="P_start_min"),
     _forces(

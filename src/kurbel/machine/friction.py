@@ -28,17 +28,32 @@ class Rings(Described):
 
 
 @dataclass(frozen=True, eq=False)
+class Guide(Described):
+    """The shoe with which a crosshead presses on its guide: length along the stroke and width in m."""
+
+    length: float
+    width: float
+
+    KEYS: ClassVar[Keys] = {
+        "length": Key(Physical("length", above=0), "Length of the shoe along the stroke", required=True),
+        "width": Key(Physical("length", above=0), "Width of the shoe", required=True),
+    }
+
+
+@dataclass(frozen=True, eq=False)
 class Friction(Described):
-    """Coefficient f of the crosshead, None where it is left out, piston rings, and a force in N against the motion."""
+    """Coefficient f of the crosshead, None where it is left out, rings, a force in N against the motion, the shoe."""
 
     crosshead: float | None = None
     rings: Rings | None = None
     constant: float | None = None
+    guide: Guide | None = None
 
     KEYS: ClassVar[Keys] = {
         "crosshead": Key(Number(least=0), "Coefficient of friction of the crosshead on its guide", "f"),
         "rings": Key(Record("kurbel.machine.friction:Rings"), "Piston rings"),
         "constant": Key(Physical("force", least=0), "Force against the motion, the same over the stroke", "F_0"),
+        "guide": Key(Record("kurbel.machine.friction:Guide"), "Shoe of the crosshead", needs="crosshead"),
     }
 
     def __post_init__(self) -> None:

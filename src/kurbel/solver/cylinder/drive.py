@@ -135,6 +135,12 @@ class Drive:
         friction = self.cylinder.friction
         return (friction.crosshead or 0.0) if friction else 0.0
 
+    @property
+    def guide_area(self) -> float | None:
+        """Area in m² of the crosshead's shoe; None where its size is not given."""
+        guide = self.cylinder.friction.guide if self.cylinder.friction else None
+        return guide.length * guide.width if guide else None
+
     @cached_property
     def ring_force(self) -> float:
         """Friction force of the piston rings in N; 0 without them."""

@@ -215,6 +215,15 @@ class CylinderForces(Results):
         return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
 
     @property
+    def p_guide_max(self) -> Extreme | None:
+        """Largest pressure of the crosshead's shoe on its guide in Pa."""
+        area, found = self.drive.guide_area, self.extremes_of("N")
+        if not area or found is None:
+            return None
+        most = max(found, key=lambda extreme: abs(extreme.value))
+        return Extreme(abs(most.value) / area, most.degrees)
+
+    @property
     def A_head(self) -> float | None:
         """Area in m² of the cylinder's own piston at the head end."""
         pistons = self.drive.cylinder.pistons

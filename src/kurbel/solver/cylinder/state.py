@@ -246,6 +246,17 @@ class State(OfPoint):
         return self.N * (self._guide_side * self.drive.crosshead_friction) if self.drive.crosshead_friction else 0.0
 
     @cached_property
+    def p_guide(self) -> Any:
+        """|N| over the area of the shoe in Pa; None where its size is not given."""
+        area = self.drive.guide_area
+        return None if area is None or self.N is None else abs(self.N) / area
+
+    @cached_property
+    def wear(self) -> Any:
+        """f |N| |c| in W, the wear line of the guide (D); None without a shoe or a speed."""
+        return None if self.p_guide is None or self.c is None else self._crosshead_drag * self.c * self.direction
+
+    @cached_property
     def F_friction(self) -> Any:
         """All friction along the stroke line in N, positive toward the shaft."""
         if self.P is None or not self.drive.has_friction:

@@ -1,0 +1,57 @@
+"""The report of `kurbel friction`: the inclined plane of Redtenbacher 1862, D 1 to 5."""
+
+from __future__ import annotations
+
+import math
+
+from kurbel.declared.quantity import Quantity
+from kurbel.errors import NoSolutionError, UsageError
+from kurbel.report.shown import shown_column, shown_key_value
+from kurbel.report.tables import LeftOut, Part, PlaceTable, Report
+from kurbel.solver.cylinder.friction import holding_force
+
+_UP = Quantity("P_up", "P_1/Q", "ratio", "Force over the weight that moves the body up")
+_HELD = Quantity("P_held", "P_2/Q", "ratio", "Force over the weight that keeps the body from sliding down")
+_RHO = Quantity("rho", "ρ", "angle", "Angle of friction: at a smaller incline the body rests by itself", "rho")
+
+
+def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -> Report:
+    """Return the forces over the weight on a body on a plane at `incline`, in degrees, with this coefficient f.
+
+    direction: of the force above the plane, in degrees; a horizontal force (D 3) stands below it. Raises UsageError for
+    angles and coefficients that make no inclined plane, and for a force that lifts the body off it.
+    """
+    _check(incline, coefficient, direction)
+    asked = {f"{direction:g}_deg_above_plane" if direction else "along_plane": direction, "horizontal": -incline}
+    left: list[LeftOut] = []
+
+    def force(friction: float, name: str) -> float | None:
+        try:
+            return holding_force(incline, friction, asked[name])
+        except NoSolutionError:
+            what = f"{(_UP if friction > 0 else _HELD).symbol} {name.replace('_', ' ')}"
+            left.append(LeftOut(what, "no force does it, however large: the body locks itself"))
+            return None
+
+    columns = tuple(
+        shown_column(quantity, [force(friction, name) for name in asked], "si")
+        for quantity, friction in ((_UP, coefficient), (_HELD, -coefficient))
+    )
+    table = PlaceTable("plane", "Force P over the weight Q", ("direction",), tuple((name,) for name in asked), columns)
+    rho = shown_key_value(_RHO, math.degrees(math.atan(coefficient)), "si")
+    whole = Part("inclined plane", (), (rho,), tuple(left), place_tables=(table,))
+    head = (
+        f"Incline {incline:g} deg, coefficient {coefficient:g} (Redtenbacher 1862)",
+        "P_1 moves the body up, P_2 keeps it from sliding down; negative, it must push: friction alone holds the body.",
+    )
+    return Report("Reibung auf der schiefen Ebene", "friction", None, "cylinders", (), whole, head=head)
+
+
+def _check(incline: float, coefficient: float, direction: float) -> None:
+    if not 0 <= incline < 90:
+        raise UsageError(f"--incline {incline:g}: a plane is inclined by 0 to less than 90 degrees")
+    if not coefficient >= 0:
+        raise UsageError(f"--coefficient {coefficient:g}: a coefficient of friction is not negative")
+    if not -90 < direction < 90 - incline:
+        room = f"more than -90 and less than {90 - incline:g} degrees above the plane"
+        raise UsageError(f"--direction {direction:g}: must be {room}; steeper the force lifts the body off")

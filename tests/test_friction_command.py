@@ -1,0 +1,89 @@
+"""`kurbel friction`: the inclined plane by Redtenbacher's own cases, by statics, and by its limits."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+
+
+def run(*words: str) -> Result:
+    return CliRunner().invoke(kurbel, ["friction", *words])
+
+
+def answer(incline: float, coefficient: float, *words: str) -> dict[str, Any]:
+    found = run("--incline", str(incline), "--coefficient", str(coefficient), *words, "-f", "json")
+    assert found.exit_code == 0, found.output
+    return json.loads(found.stdout)
+
+
+def forces(found: dict[str, Any]) -> dict[str, list[float | None]]:
+    (table,) = found["machine_place_tables"]
+    return {column["id"]: column["values"] for column in table["columns"]}
+
+
+def test_level_force_is_the_tangent_of_both_angles() -> None:
+    """D 3: P = Q tan(α ± ρ), tan ρ = f; along the plane sin α ± f cos α."""
+    rho = math.atan(0.1)
+    found = forces(answer(30, 0.1))
+    alpha = math.radians(30)
+    assert found["P_up"] == pytest.approx([0.5 + 0.1 * math.cos(alpha), math.tan(alpha + rho)], rel=1e-14)
+    assert found["P_held"] == pytest.approx([0.5 - 0.1 * math.cos(alpha), math.tan(alpha - rho)], rel=1e-14)
+
+
+@pytest.mark.parametrize("direction", [-20.0, 10.0, 45.0])
+def test_statics_of_the_body(direction: float) -> None:
+    """Along the plane P cos β = Q sin α ± f N, across it N = Q cos α − P sin β."""
+    found = forces(answer(30, 0.2, "--direction", str(direction)))
+    alpha, beta = math.radians(30), math.radians(direction)
+    for id, friction in (("P_up", 0.2), ("P_held", -0.2)):
+        force = found[id][0]
+        assert force is not None
+        pressing = math.cos(alpha) - force * math.sin(beta)
+        assert pressing > 0
+        assert force * math.cos(beta) == pytest.approx(math.sin(alpha) + friction * pressing, rel=1e-13)
+
+
+def test_limits() -> None:
+    """D 4: nothing holds it at tan α = f; D 5: no level force moves it up at tan α = 1/f."""
+    at_rest = forces(answer(45, 1.0))
+    assert at_rest["P_held"] == pytest.approx([0, 0], abs=1e-15)
+    locked = answer(60, 0.7)
+    assert forces(locked)["P_up"][1] is None
+    assert locked["machine_left_out"][0]["what"] == "P_1/Q horizontal"
+    assert forces(answer(20, 0.0))["P_up"] == forces(answer(20, 0.0))["P_held"]
+
+
+def test_csv_and_page() -> None:
+    rows = list(csv.reader(io.StringIO(run("--incline", "30", "--coefficient", "0.1", "-f", "csv").stdout)))
+    assert rows[0] == ["table", "direction", "P_up", "P_held"]
+    assert [row[1] for row in rows[1:]] == ["along_plane", "horizontal"]
+    page = run("--incline", "30", "--coefficient", "0.1").stdout
+    assert "P_1/Q" in page
+    assert "0.5866" in page
+    assert "0.4513" in page
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("90", "0.1"), "--incline 90: a plane is inclined by 0 to less than 90 degrees"),
+        (("-5", "0.1"), "--incline -5: a plane is inclined"),
+        (("30", "-0.1"), "--coefficient -0.1: a coefficient of friction is not negative"),
+        (
+            ("30", "0.1", "--direction", "70"),
+            "--direction 70: must be more than -90 and less than 60 degrees above the",
+        ),
+    ],
+)
+def test_refused(words: tuple[str, ...], message: str) -> None:
+    found = run("--incline", words[0], "--coefficient", *words[1:])
+    assert found.exit_code == 2
+    assert message in " ".join(found.stderr.split())
