@@ -6,6 +6,7 @@ import subprocess
 import sys
 from functools import cached_property
 
+import numpy as np
 import pytest
 
 from kurbel.accuracy.leaving_out import evaluated, savings
@@ -61,7 +62,8 @@ def stages_of(thing: object) -> set[str]:
     return {
         name
         for name, value in vars(thing).items()
-        if isinstance(getattr(type(thing), name, None), cached_property) and value not in (None, (), 0.0, False)
+        if isinstance(getattr(type(thing), name, None), cached_property)
+        and (np.ndim(value) or value not in (None, (), 0.0, False))
     }
 
 

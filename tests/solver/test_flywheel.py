@@ -41,7 +41,7 @@ def test_the_whole_machine_stands_under_its_own_keys() -> None:
     """The contract, 3: machine_columns, machine_key_values."""
     found = results(ENGINE + "flywheel: {inertia: 50000 kg m2}\n", "--step", "90")
     columns = {column["id"]: column["values"] for column in found["machine_columns"]}
-    assert list(columns) == ["phi", "T", "T_inertia", "M", "E", "omega"]
+    assert list(columns) == ["phi", "T", "T_inertia", "M", "E", "omega", "alpha"]
     assert columns["phi"] == [0, 90, 180, 270, 360]
     assert columns["E"][0] == 0
     assert columns["E"][-1] == pytest.approx(0, abs=1e-9)
