@@ -109,6 +109,7 @@ class Machine(Described):
             "Sense in which a lying machine turns: over, the crank pin rising from the inner dead centre, so that an "
             "engine presses its crosshead down, or under (R p. 602)",
             absent="over, and nothing is said of the guide",
+            also=("direction", "sense"),
         ),
         "efficiency": Key(
             Number(above=0, most=1),
