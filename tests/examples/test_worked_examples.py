@@ -25,12 +25,14 @@ ASKED = [row for row in ROWS if "ask" in row]
 FILES = sorted(path.stem for path in FOLDER.glob("*.yaml") if path.stem != "answers")
 POUND, POUND_FORCE, FOOT = 0.45359237, 4.4482216152605, 0.3048
 SI = {
-    **dict.fromkeys(("", "deg", "m", "m/s", "m/s2", "rad/s", "kg", "kg m2", "N", "N m", "Pa"), 1.0),
+    **dict.fromkeys(("", "deg", "m", "m/s", "m/s2", "rad/s", "rad/s2", "kg", "kg m2", "N", "N m", "Pa"), 1.0),
     **{"mm": 1e-3, "cm": 1e-2, "in/s": FOOT / 12, "kN": 1e3, "kW": 1e3, "percent": 1e-2},
     **{"lbf": POUND_FORCE, "lb ft2": POUND * FOOT**2, "ton": 2240 * POUND},
     **{"hp": 550 * FOOT * POUND_FORCE, "PS": 735.49875},
 }
-QUESTION = re.compile(r"(?P<command>\w+) (?P<id>\w+)(?:\[(?P<nth>\d)\]|(?P<at>@)(?P<angle>\d*))?")
+QUESTION = re.compile(
+    r"(?P<command>\w+) (?P<id>\w+)(?:\[(?P<nth>\d)\])?(?:(?P<at>@)(?P<angle>\d*))?(?: where (?P<where>.+))?"
+)
 
 
 def question(row: dict[str, Any]) -> dict[str, str | None]:
@@ -40,11 +42,15 @@ def question(row: dict[str, Any]) -> dict[str, str | None]:
 
 
 @cache
-def answer(file: str, command: str) -> dict[str, Any]:
-    """Run the command once for all the crank angles that the table asks of this file."""
+def answer(file: str, command: str, where: str | None) -> dict[str, Any]:
+    """Run the command once for all the crank angles that the table asks of this file, or where a column has a value."""
     asked = [question(row) for row in ASKED if row["file"] == file]
-    angles = {one["angle"] for one in asked if one["command"] == command and one["angle"]} or {"0"}
-    arguments = [command, str(FOLDER / f"{file}.yaml"), "-f", "json", "--angles", ",".join(sorted(angles, key=int))]
+    asked = [one for one in asked if (one["command"], one["where"]) == (command, where)]
+    angles = sorted({one["angle"] for one in asked if one["angle"]}, key=int) or ["0"]
+    columns = {one["id"]: "" for one in asked if one["angle"] or where}
+    arguments = [command, str(FOLDER / f"{file}.yaml"), "-f", "json"]
+    arguments += ["--where", where] if where else ["--angles", ",".join(angles)]
+    arguments += ["--columns", ",".join(("phi", *columns))] if columns else []
     result = CliRunner().invoke(kurbel, arguments)
     assert result.exit_code == 0, result.output
     parsed: dict[str, Any] = json.loads(result.stdout)
@@ -54,15 +60,15 @@ def answer(file: str, command: str) -> dict[str, Any]:
 def told(row: dict[str, Any]) -> Any:
     """Return what kurbel answers, in SI units: a number or a list of them."""
     asked = question(row)
-    parsed = answer(row["file"], asked["command"] or "")
+    parsed = answer(row["file"], asked["command"] or "", asked["where"])
     parts = [{key.removeprefix("machine_"): what for key, what in parsed.items()}, *parsed.get("cylinders", ())]
-    kind = "columns" if asked["angle"] else "key_values"
+    kind = "columns" if asked["angle"] or asked["where"] else "key_values"
     one = next(one for part in parts for one in part.get(kind, ()) if one["id"] == asked["id"])
     if asked["angle"]:
         at = next(one for part in parts for one in part.get(kind, ()) if one["id"] == "phi")["values"]
         return one["values"][at.index(float(asked["angle"]))]
     if asked["nth"]:
-        return one["value"][int(asked["nth"])]
+        return one["values" if asked["where"] else "value"][int(asked["nth"])]
     return one["at_deg" if asked["at"] else "value"]
 
 
