@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 import jsonschema
@@ -18,6 +19,8 @@ from kurbel.machine_file import loads
 from kurbel.machine_file.reader import ROOT
 from kurbel.machine_file.schema import json_schema
 from kurbel.mechanisms.slider_crank import SliderCrank
+
+whole_schema = cache(json_schema)
 
 
 def all_records() -> Iterator[Record]:
@@ -47,7 +50,7 @@ def allowed_by_schema(record: Record, *names: str) -> bool:
     """Whether the rules between keys let these stand together, whatever their values."""
     properties: dict[str, Any] = {}
     rules: list[dict[str, Any]] = []
-    record.describe_all(properties, rules, json_schema()["definitions"])
+    record.describe_all(properties, rules, whole_schema()["definitions"])
     return jsonschema.Draft7Validator({"allOf": rules}).is_valid(dict.fromkeys(names, 1))
 
 

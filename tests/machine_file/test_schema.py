@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from typing import Any
 
 import pytest
@@ -16,10 +17,12 @@ from kurbel.machine_file.schema import json_schema
 
 jsonschema = pytest.importorskip("jsonschema")
 
+whole_schema = cache(json_schema)
+
 
 @pytest.fixture(scope="module")
 def validator() -> Any:
-    schema = json_schema()
+    schema = whole_schema()
     jsonschema.Draft7Validator.check_schema(schema)
     return jsonschema.Draft7Validator(schema)
 
@@ -57,7 +60,7 @@ def test_refuses_what_the_reader_refuses(machine: dict[str, Any], validator: Any
 
 @pytest.mark.parametrize("kind", [kind for kind in SI if kind != "ratio"])
 def test_patterns_know_every_unit(kind: str) -> None:
-    definitions = json_schema()["definitions"]
+    definitions = whole_schema()["definitions"]
     if f"quantity_{kind}" not in definitions:
         pytest.skip("no key of this kind")
     pattern = definitions[f"quantity_{kind}"]["pattern"]
@@ -70,7 +73,7 @@ def test_patterns_know_every_unit(kind: str) -> None:
 
 
 def test_patterns_refuse_what_the_reader_refuses() -> None:
-    pattern = json_schema()["definitions"]["quantity_length"]["pattern"]
+    pattern = whole_schema()["definitions"]["quantity_length"]["pattern"]
     for text in ("1,5 mm", "010 mm", "mm", "5", "5 kg", "1_0 mm"):
         assert not re.search(pattern, text)
         with pytest.raises(UnitError):
@@ -84,13 +87,13 @@ def test_ratios_may_be_quotients_and_percent(validator: Any) -> None:
 
 
 def test_every_key_has_a_sentence() -> None:
-    for schema in [json_schema(), *json_schema()["definitions"].values()]:
+    for schema in [whole_schema(), *whole_schema()["definitions"].values()]:
         for name, inner in schema.get("properties", {}).items():
             assert inner["description"], name
 
 
 def test_a_wrong_unit_is_explained_in_words() -> None:
-    length = json_schema()["definitions"]["quantity_length"]
+    length = whole_schema()["definitions"]["quantity_length"]
     assert length["errorMessage"] == "write a number with its unit, such as '450 mm'"
     assert length["patternErrorMessage"].startswith("write a number with its unit, such as '450 mm'; units: ")
     for unit in unit_names("length"):

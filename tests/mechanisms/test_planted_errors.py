@@ -92,6 +92,7 @@ def broken(file: str) -> Iterator[str]:
                 yield name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("file", "function", "right", "wrong"), SLIPS, ids=[" ".join(slip) for slip in SLIPS])
 def test_a_slip_breaks_a_law(file: str, function: str, right: str, wrong: str, monkeypatch: pytest.MonkeyPatch) -> None:
     take_over(monkeypatch, planted(file, function, right, wrong))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -22,6 +23,11 @@ from machines import AT, STEAM_CARD, one_cylinder
 mp = mpmath.mp
 NODES, WEIGHTS = (tuple(map(mpmath.mpf, each)) for each in np.polynomial.legendre.leggauss(28))
 LAMBDAS = [1e-12, 1e-3, 0.2, 0.25, 0.6, 0.9, 0.99, 1 - 1e-6, 1 - 1e-10]
+
+
+def quick_at(every: list[float], *quick: float) -> list[Any]:
+    """Return the values as parameters; all but these few are left to the slow run."""
+    return [one if one in quick else pytest.param(one, marks=pytest.mark.slow) for one in every]
 
 
 class Oracle:
@@ -117,7 +123,9 @@ def edges(forces: CylinderForces) -> list[mpmath.mpf]:
 
 
 @pytest.mark.parametrize("weight", [False, True])
-@pytest.mark.parametrize("lam", LAMBDAS)
+@pytest.mark.parametrize(
+    "lam", [one if one in (0.25, 0.99) else pytest.param(one, marks=pytest.mark.slow) for one in LAMBDAS]
+)
 def test_friction_work(lam: float, weight: bool) -> None:
     forces = machine(lam, weight, f=0.1 if lam < 0.9 else 0.02 if lam < 0.999 else 1e-7)
     with mpmath.workdps(26):
@@ -160,7 +168,9 @@ def test_friction_work_of_a_driven_machine_near_self_locking(ratio: float, f: fl
 
 
 @pytest.mark.parametrize("column", ["P", "S", "N", "T"])
-@pytest.mark.parametrize("lam", [0.2, 0.6, 0.95])
+@pytest.mark.parametrize(
+    "lam", [pytest.param(0.2, marks=pytest.mark.slow), 0.6, pytest.param(0.95, marks=pytest.mark.slow)]
+)
 def test_extremes(lam: float, column: str) -> None:
     """Brute force over 20,000 angles finds the hill, high precision climbs it."""
     forces = machine(lam)
