@@ -11,7 +11,7 @@ import click
 from kurbel.cli.output_options import Asked
 
 if TYPE_CHECKING:
-    from kurbel.report.rows import Rows
+    from kurbel.report.frame import Rows
 
 
 class AskedRows(NamedTuple):

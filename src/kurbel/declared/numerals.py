@@ -9,8 +9,8 @@ from kurbel.errors import UnitError
 
 NUMBER = re.compile(r"[-+]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 """A number as YAML 1.2 writes it: no leading zero, no underscore, no base 60, no inf."""
-RATIO = re.compile(rf"({NUMBER.pattern})\s*(?:/\s*({NUMBER.pattern})|%)")
-"""What stands for a number by a division."""
+RATIO = rf"({NUMBER.pattern})\s*(?:/\s*({NUMBER.pattern})|%)"
+"""What stands for a number by a division; compiled only where something is no number."""
 
 SPACES = "\xa0\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000"
 """White space that no keyboard has; who wrote it meant a space."""
@@ -56,7 +56,7 @@ def parse_ratio(text: str) -> float:
     >>> parse_ratio("1/80"), parse_ratio("75 %")
     (0.0125, 0.75)
     """
-    found = RATIO.fullmatch(plain(text))
+    found = None if NUMBER.fullmatch(text) else re.fullmatch(RATIO, plain(text))
     if not found:
         return parse_number(text)
     over, under = parse_number(found[1]), parse_number(found[2] or "100")

@@ -16,7 +16,7 @@ FAULT_LIMIT = 100
 """A file with more faults than this is not read on: it is no machine file, and suggestions cost time."""
 LONGEST_VALUE = 200
 """Characters of a value; what is longer is no number, and would flood the message."""
-_GLUED = re.compile(r"\b[A-Za-z_]\w*:\S")
+_GLUED = r"\b[A-Za-z_]\w*:\S"
 
 
 class Plain(str):
@@ -124,5 +124,5 @@ def is_nothing(value: Any) -> bool:
 
 def glued_hint(value: Any) -> str:
     """Return what to write when a key without a space after its colon hides in a value, or an empty text."""
-    found = _GLUED.search(value) if isinstance(value, str) else None
+    found = re.search(_GLUED, value) if isinstance(value, str) else None
     return f"; perhaps a space is missing after the colon of '{found.group().split(':')[0]}'" if found else ""

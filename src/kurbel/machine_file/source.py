@@ -12,8 +12,8 @@ from kurbel.errors import Fault, MachineFileError, Path, UnreadableFileError
 
 SIZE_LIMIT = 16 * 1024 * 1024
 """Largest machine file in bytes; a longer measurement belongs into a file of its own."""
-_LINE_END = re.compile(r"\r\n|[\n\r\x85\u2028\u2029]")  # what YAML takes for the end of a line, no more
-_SPACE = re.compile(f"[{SPACES}]")  # YAML takes them for letters
+_LINE_END = r"\r\n|[\n\r\x85\u2028\u2029]"  # what YAML takes for the end of a line, no more
+_SPACE = dict.fromkeys(map(ord, SPACES), " ")  # YAML takes them for letters
 _UNPRINTABLE = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")  # as YAML has it
 
 
@@ -34,7 +34,7 @@ class Source(NamedTuple):
 
     def lines(self) -> list[str]:
         """Return the lines, split where YAML splits them."""
-        return _LINE_END.split(self.text)
+        return re.split(_LINE_END, self.text)
 
     def error(self, *faults: Fault) -> MachineFileError:
         """Return these faults as an error, each once and in the order of the file."""
@@ -91,7 +91,7 @@ def decode(name: str, content: bytes, folder: str = "") -> Source:
     if content[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in content[:2]:
         raise Source(name, "").error(Fault((), "the file is UTF-16; save it as UTF-8").at(0, 0))
     try:
-        source = Source(name, _SPACE.sub(" ", content.decode("utf-8-sig")), folder, content)
+        source = Source(name, content.decode("utf-8-sig").translate(_SPACE), folder, content)
     except UnicodeDecodeError as error:
         raise _encoding_error(name, content, error.start) from None
     found = _UNPRINTABLE.search(source.text)
@@ -112,7 +112,7 @@ def _encoding_error(name: str, content: bytes, start: int) -> MachineFileError:
 
 def _place_of(text: str, index: int) -> tuple[int, int]:
     """Return line and column, from 0, of the character at an index."""
-    lines = _LINE_END.split(text[:index])
+    lines = re.split(_LINE_END, text[:index])
     return len(lines) - 1, len(lines[-1])
 
 

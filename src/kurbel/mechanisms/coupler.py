@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from kurbel.declared.quantity import Quantity
 from kurbel.numerics.arithmetic import bearing, sqrt
 
 if TYPE_CHECKING:
@@ -49,9 +48,3 @@ def point_motion(mechanism: Mechanism, coupler: Coupler, angle: CrankAngle, alon
     toward = turn * turn
     bend = -R * angle.cos - b * coupler.curvature - a * toward, -R * angle.sin + a * coupler.curvature - b * toward
     return PointMotion(R * angle.cos + a, R * angle.sin + b, *(sqrt(x * x + y * y) for x, y in (speed, bend)))
-
-
-def turning_column(id: str, symbol: str, plain: str, kind: str, text: str, after: str) -> Quantity:
-    """Declare a column that tells how the rod turns, on request."""
-    both = ("motion", "forces")
-    return Quantity(id, symbol, kind, text, plain, both, after=after, on_request=both)

@@ -13,8 +13,8 @@ from kurbel.declared.keys import Key, Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
-from kurbel.mechanisms.coupler import Coupler, turning_column
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, turning_column
+from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Number, Physical
@@ -13,11 +13,13 @@ from kurbel.declared.keys import Key, Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
-from kurbel.mechanisms import Mechanism, Offer, fan
+from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
 from kurbel.mechanisms import crank_formulas as formulas
-from kurbel.mechanisms.coupler import Coupler, turning_column
 from kurbel.numerics.arithmetic import sqrt, where
 from kurbel.numerics.extreme import Extreme
+
+if TYPE_CHECKING:
+    from kurbel.mechanisms.coupler import Coupler
 
 _INFINITE = (("infinite", math.inf),)
 CRANK_KEYS: Keys = {
@@ -189,6 +191,8 @@ class SliderCrank(Mechanism):
 
     def coupler_at(self, angle: CrankAngle) -> Coupler:
         """Return the rod, which leads from the crank pin to the crosshead in the direction −ψ."""
+        from kurbel.mechanisms.coupler import Coupler
+
         sin_psi, cos_psi = self.rod_angle(angle)
         slope = formulas.rod_slope(angle.cos, cos_psi, self.lam)
         return Coupler(-sin_psi, cos_psi, -slope, -formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.lam))

@@ -8,12 +8,11 @@ from typing import Any
 
 from kurbel.errors import UsageError
 from kurbel.machine.cylinder import may_lock
-from kurbel.report.frame import Answer, Frame, Subject, of_state
+from kurbel.report.frame import Answer, Frame, Rows, Subject, of_state, rows_of
 from kurbel.report.guide import guide_notes
 from kurbel.report.left_out import left_out
 from kurbel.report.motion import mechanism_notes
 from kurbel.report.notes import Note, machine_notes, of_cylinder
-from kurbel.report.rows import Rows, rows_of
 from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces

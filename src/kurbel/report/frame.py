@@ -21,6 +21,8 @@ from kurbel.solver.figures import answered
 
 if TYPE_CHECKING:
     from kurbel.mechanisms import Mechanism
+    from kurbel.solver.case import Case
+    from kurbel.solver.cylinder.forces import CylinderForces
 
 Answer = Callable[[Quantity], Any]
 """What answers a column with its values (n,) in SI at certain crank angles, or None where it has none."""
@@ -72,6 +74,18 @@ class Subject(NamedTuple):
 def of_state(state: Any) -> Answer:
     """Return what answers columns by the attributes of a state."""
     return lambda column: getattr(state, column.id, None)
+
+
+Rows = Callable[["Subject", "CylinderForces", float], "Sequence[float]"]
+"""Takes what a cylinder answers, its results, and the degrees of the table; returns crank angles (n,) in degrees."""
+
+
+def rows_of(case: Case, angles: Sequence[float] | Rows, end: float) -> Sequence[float] | Callable[[Subject], Any]:
+    """Return angles as they are, or what tells those of each cylinder, whose table goes from 0 to `end` degrees."""
+    if not callable(angles):
+        return angles
+    found, results = angles, {forces.drive.name: forces for forces in case.cylinders}
+    return lambda subject: found(subject, results[subject.name], end)
 
 
 class Frame(NamedTuple):

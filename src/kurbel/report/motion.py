@@ -6,9 +6,8 @@ from collections.abc import Iterable, Sequence
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.report.frame import Frame, Subject, of_state
+from kurbel.report.frame import Frame, Rows, Subject, of_state, rows_of
 from kurbel.report.left_out import motion_left_out
-from kurbel.report.rows import Rows, rows_of
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -20,20 +20,8 @@ from kurbel.numerics.grid import ascending
 from kurbel.report.angles import stepped
 
 if TYPE_CHECKING:
-    from kurbel.report.frame import Subject
-    from kurbel.solver.case import Case
+    from kurbel.report.frame import Rows, Subject
     from kurbel.solver.cylinder.forces import CylinderForces
-
-Rows = Callable[["Subject", "CylinderForces", float], "Sequence[float]"]
-"""Takes what a cylinder answers, its results, and the degrees of the table; returns crank angles (n,) in degrees."""
-
-
-def rows_of(case: Case, angles: Sequence[float] | Rows, end: float) -> Sequence[float] | Callable[[Subject], Any]:
-    """Return angles as they are, or what tells those of each cylinder, whose table goes from 0 to `end` degrees."""
-    if not callable(angles):
-        return angles
-    found, results = angles, {forces.drive.name: forces for forces in case.cylinders}
-    return lambda subject: found(subject, results[subject.name], end)
 
 
 def over_stroke(step: float) -> Rows:
@@ -73,7 +61,7 @@ class Place(NamedTuple):
     def parsed(cls, text: str) -> Place:
         """Return the condition that a text is. Raises UsageError that says what to write instead."""
         column, equals, value = plain(text).partition("=")
-        number = RATIO.match(value.strip()) or NUMBER.match(value.strip())
+        number = re.match(RATIO, value.strip()) or NUMBER.match(value.strip())
         of = value.strip()[number.end() if number else 0 :].strip()
         if not (re.fullmatch(r"\w+", column.strip()) and equals and (number or of)):
             raise UsageError(f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{text}'")

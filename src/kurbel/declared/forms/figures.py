@@ -148,8 +148,8 @@ class Expectations(_Figures):
         return "`{key value: figure ± tolerance}`, or two bounds `[least, most]`"
 
 
-_PLUS_MINUS = re.compile(r"\s*(?:±|\+\s*/?\s*-)\s*")
-_PERCENT = re.compile(rf"({NUMBER.pattern})\s*%")
+_PLUS_MINUS = r"\s*(?:±|\+\s*/?\s*-)\s*"
+_PERCENT = rf"({NUMBER.pattern})\s*%"
 
 
 class _Figure(Form):
@@ -186,11 +186,11 @@ class _Figure(Form):
         if isinstance(value, list) and len(value) == 2:
             low, high = (self.size.read(reading, one, (*path, index)) for index, one in enumerate(value))
             return self._between(low, high, value)
-        parts = _PLUS_MINUS.split(familiar(value)) if isinstance(value, str) else []
+        parts = re.split(_PLUS_MINUS, familiar(value)) if isinstance(value, str) else []
         if len(parts) != 2 or not all(parts):
             refused(f"expected {self.expected()}, got {kind_of(value)}")
         figure, tolerance = parts
-        if not written_unit(figure) and not _PERCENT.fullmatch(tolerance):
+        if not written_unit(figure) and not re.fullmatch(_PERCENT, tolerance):
             figure = f"{figure} {written_unit(tolerance)}"  # 13.16 ± 0.05 m/s2
         middle = self.size.read(reading, Plain(figure), path)
         around = REFUSED if middle is REFUSED else self._around(reading, tolerance, middle, path)
@@ -202,7 +202,7 @@ class _Figure(Form):
 
     def _around(self, reading: Reading, tolerance: str, middle: float, path: Path) -> Any:
         """Return the tolerance in the base; one in percent is a share of the figure."""
-        share = _PERCENT.fullmatch(tolerance)
+        share = re.fullmatch(_PERCENT, tolerance)
         if share:
             return float(share[1]) / 100 * abs(middle)
         return self.size.read(reading, Plain(tolerance), path)

@@ -9,7 +9,7 @@ from kurbel.declared.forms.scalars import Scalar, refused
 from kurbel.declared.keys import Schema
 from kurbel.declared.numerals import plain
 
-_ORDER = re.compile(r"[1-9][0-9]{0,2}(\s*[-, ]\s*[1-9][0-9]{0,2})*")
+_ORDER = r"[1-9][0-9]{0,2}(\s*[-, ]\s*[1-9][0-9]{0,2})*"
 
 
 class FiringOrder(Scalar):
@@ -17,7 +17,7 @@ class FiringOrder(Scalar):
 
     def parse(self, text: str, folder: str) -> tuple[int, ...]:
         """Return the numbers; raises RuleError where they are not those from 1 on, each once."""
-        if not _ORDER.fullmatch(plain(text)):
+        if not re.fullmatch(_ORDER, plain(text)):
             refused(f"expected {self.expected()}, got '{text}'")
         order = tuple(map(int, re.findall("[0-9]+", text)))
         twice = next((number for number in order if order.count(number) > 1), None)
@@ -38,4 +38,4 @@ class FiringOrder(Scalar):
         return "`1-3-4-2`"
 
     def schema(self, definitions: Schema) -> Schema:
-        return {"type": ["string", "integer"], "pattern": rf"^\s*{_ORDER.pattern}\s*$"}
+        return {"type": ["string", "integer"], "pattern": rf"^\s*{_ORDER}\s*$"}

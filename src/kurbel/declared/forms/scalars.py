@@ -169,7 +169,7 @@ class Number(_Bounded):
             "maximum": largest if self.most is None else self.most,
         }
         number = {name: bound for name, bound in bounds.items() if bound is not None}
-        return self._schema({"type": ["number", "string"], **number, "pattern": f"^\\s*{RATIO.pattern}\\s*$"})
+        return self._schema({"type": ["number", "string"], **number, "pattern": f"^\\s*{RATIO}\\s*$"})
 
 
 class Count(_Bounded):

@@ -188,7 +188,8 @@ class CylinderForces(Results):
     @property
     def reversals_in_noise(self) -> int:
         """How many changes of the sign of P are the noise of a trace alone, and not told."""
-        return 0 if self._reversals is None else len(self._reversals) - len(self.phi_reversal or ())
+        # without noise nothing is within it, and no reversal need be searched to tell so
+        return len(self._reversals) - len(self.phi_reversal or ()) if self._noise and self._reversals is not None else 0
 
     @cached_property
     def _reversals(self) -> Array | None:

@@ -6,9 +6,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms.coupler import PointMotion, point_motion
 
 if TYPE_CHECKING:
+    from kurbel.mechanisms.coupler import PointMotion
     from kurbel.solver.cylinder.drive import Drive
 
 
@@ -24,6 +24,8 @@ class OfPoint:
         coupler = mechanism.coupler_at(self.angle) if point else None
         if point is None or coupler is None:
             return None
+        from kurbel.mechanisms.coupler import point_motion
+
         return point_motion(mechanism, coupler, self.angle, point.from_crank_pin(mechanism), point.across)
 
     @property
