@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 _ROUNDING = 8 * np.finfo(float).eps
 """What is no larger than this beside the largest value of its quantity is rounding and has no sign."""
+_REPEATED = 64 * np.finfo(float).eps
+"""By which, beside the largest value, equal summits of a curve differ that is summed over cylinders and the cycle."""
 
 
 class Sampled(NamedTuple):
@@ -224,8 +226,11 @@ def extremes_of(curve: Curve) -> Extremes:
 def _first_at(curve: Curve, sign: float) -> Extreme:
     """Return the extreme and the first angle that reaches it but for rounding: plateaus answer alike everywhere."""
     values = curve.value * sign
-    best = values.max()
-    level = best - 4 * np.finfo(float).eps * abs(best)
+    best, size = values.max(), np.abs(values).max()
+    # a summit that comes back in every part of the cycle differs by the rounding of the sums that make the curve, ...
+    high = values >= best - _REPEATED * size
+    # ... and what only lies beside a summit, as high but for that, is none
+    summit = values >= np.maximum(np.roll(values, 1), np.roll(values, -1)) - 4 * np.finfo(float).eps * abs(best)
     # beside the values of the other sign this is the rounding of a dead centre, which is no float
-    exact = abs(best) > _ROUNDING * np.abs(values).max()
-    return Extreme(float(best * sign) + 0.0 if exact else 0.0, float(curve.degrees[values >= level].min()))
+    exact = abs(best) > _ROUNDING * size
+    return Extreme(float(best * sign) + 0.0 if exact else 0.0, float(curve.degrees[high & summit].min()))
