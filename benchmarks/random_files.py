@@ -21,7 +21,19 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 from kurbel.cli import kurbel
 from random_files import machine_file
 
-COMMANDS = ("check", "motion", "forces", "flywheel", "stress")
+COMMANDS: tuple[tuple[str, ...], ...] = (
+    ("check",),
+    ("check", "-f", "json"),
+    ("motion",),
+    ("motion", "--where", "b = 1/6 b_max"),
+    ("motion", "--over", "x", "--compare"),
+    ("forces",),
+    ("forces", "--where", "P = 0"),
+    ("forces", "--over", "x", "--units", "imperial", "--layout", "rows"),
+    ("forces", "-f", "json", "--set", "rotation=under"),
+    ("flywheel",),
+    ("stress",),
+)
 
 
 def main() -> None:
@@ -32,15 +44,16 @@ def main() -> None:
     slowest = (0.0, "", -1)
     for number in range(count):
         text = machine_file(np.random.default_rng([seed, number]))
-        for command in COMMANDS:
+        for arguments in COMMANDS:
+            command = " ".join(arguments)
             begin = time.process_time()
-            result = CliRunner().invoke(kurbel, [command, "-"], input=text)
+            result = CliRunner().invoke(kurbel, [*arguments, "-"], input=text)
             slowest = max(slowest, (time.process_time() - begin, command, number))
             statuses[command, result.exit_code] += 1
             if result.exit_code not in (0, 1, 2, 3) or "Warning:" in result.stderr:
                 print(f"machine {number}, {command}: status {result.exit_code}: {result.stderr.strip()[-300:]}")
     for (command, status), found in sorted(statuses.items()):
-        print(f"{command:<10} status {status}: {found}")
+        print(f"{command:<60} status {status}: {found}")
     print(f"seed {seed}; slowest: {slowest[0]:.1f} s of CPU, {slowest[1]} of machine {slowest[2]}")
 
 

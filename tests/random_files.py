@@ -25,6 +25,9 @@ def maybe(random: Random, share: float, keys: Keys) -> Keys:
     return keys if random.random() < share else {}
 
 
+KINDS = ["slider-crank", "scotch-yoke", "slotted-lever", "four-bar", "parallel-crank", "yoke-frame"]
+
+
 def mechanism(random: Random) -> tuple[str, Keys]:
     """Return a mechanism: lengths that mostly fit one another, and its optional sizes now and then."""
     crank = 10 ** random.uniform(-2, 0.3)
@@ -34,27 +37,31 @@ def mechanism(random: Random) -> tuple[str, Keys]:
 
     pin = maybe(random, 0.5, {"pin_diameter": long(0.1, 0.3), "pin_length": long(0.1, 0.4)})
     rod = {"crank": f"{crank:.6g} m", "rod": long(1.05, 8)} | maybe(random, 0.3, {"offset": long(-0.3, 0.3)})
-    name = str(
-        random.choice(
-            ["slider-crank"] * 5 + ["scotch-yoke", "slotted-lever", "four-bar", "parallel-crank", "yoke-frame"]
-        )
-    )
+    name = str(random.choice(["slider-crank"] * 5 + ["four-bar", *KINDS]))
     kinds: dict[str, Keys] = {
         "slider-crank": rod,
         "yoke-frame": rod | maybe(random, 0.5, {"gland": long(1, 3)}),
         "scotch-yoke": {"stroke": long(1, 4)} | pin | maybe(random, 0.5, {"guide_length": long(0.5, 2)}),
         "slotted-lever": {"crank": f"{crank:.6g} m", "frame": long(0.5, 4), "lever": long(2, 8)} | pin,
-        "four-bar": {"crank": f"{crank:.6g} m", "coupler": long(1.5, 5), "rocker": long(1.5, 5), "frame": long(1.5, 5)},
+        "four-bar": {"crank": f"{crank:.6g} m", "coupler": long(0.8, 5), "rocker": long(0.8, 5), "frame": long(0.1, 5)},
         "parallel-crank": {"crank": f"{crank:.6g} m", "frame": long(2, 6)}
         | maybe(random, 0.5, {"coupler_mass": "80 kg"}),
     }
-    return name, {"mechanism": name} | kinds[name]
+    far = "rocker_pin" if name == "four-bar" else "crosshead_pin"
+    point = {"from": str(random.choice(["crank_pin", far])), "along": long(-1, 3)}
+    point |= maybe(random, 0.5, {"across": long(-1, 1)})
+    joined = name in ("slider-crank", "yoke-frame", "four-bar")
+    return name, {"mechanism": name} | kinds[name] | maybe(random, 0.3 if joined else 0.02, {"point": point})
 
 
 def pressure(random: Random, four: bool) -> Any:
     """Return what stands for one end of an indicator."""
     high, low = number(random, 1, 60), number(random, 0.2, 0.9)
-    kind = random.choice(["card", "constant", "trace", "ideal"])
+    kind = random.choice(["card", "constant", "trace", "ideal", "one", "drawn"])
+    if kind == "one":
+        return f"{high} bar"
+    if kind == "drawn" and not four:
+        return drawn(random, high, low)
     if kind == "constant" and not four:
         return {"constant": {"expansion": f"{high} bar", "compression": f"{low} bar"}}
     if kind == "trace":
@@ -85,6 +92,27 @@ def pressure(random: Random, four: bool) -> Any:
     return card | ({"intake": line(low, low), "exhaust": line(low, low)[::-1]} if four else {})
 
 
+def drawn(random: Random, high: float, low: float) -> Keys:
+    """Return a card on paper: its lines in millimetres, or its area or mean height by planimeter."""
+    length = number(random, 50, 120)
+    paper: Keys = {"drawn": {"length": f"{length} mm", "spring": f"{number(random, 2, 20)} mm/bar"}}
+    kind = random.choice(["lines", "area", "mean_height"])
+    if kind == "lines":
+        lines = {"expansion": [[0, high], [length / 3, high], [length, low]], "compression": [[length, low], [0, high]]}
+        return paper | lines
+    return paper | {str(kind): f"{number(random, 100, 3000)} mm2" if kind == "area" else f"{high} mm"}
+
+
+def friction(random: Random) -> Keys:
+    """Return the friction of a piston: of the crosshead on its guide, of rings, as a constant force."""
+    crosshead = {"crosshead": number(random, 0, 0.3)}
+    shoe = {"guide": {"length": size(random, 0.2, "m"), "width": size(random, 0.1, "m")}}
+    rings = {"rings": {"count": 3, "height": size(random, 0.01, "m"), "pressure": "2 bar", "coefficient": 0.1}}
+    keys = maybe(random, 0.7, crosshead | maybe(random, 0.4, shoe)) | maybe(random, 0.3, rings)
+    keys |= maybe(random, 0.5, {"constant": size(random, 300, "N")})
+    return keys or crosshead
+
+
 def cylinder(random: Random, four: bool) -> Keys:
     """Return the keys of one cylinder."""
     name, keys = mechanism(random)
@@ -96,8 +124,8 @@ def cylinder(random: Random, four: bool) -> Keys:
         keys |= {"indicator": {"pressures": str(random.choice(["gauge", "absolute"]))} | ends}
         keys |= maybe(random, 0.2, {"crank_end_rod": "20 mm"})
     if slides and random.random() < 0.7:
-        masses: Keys = {"piston": size(random, 100, "kg")}
-        if rod and random.random() < 0.6:
+        masses: Keys = {str(random.choice(["piston", "reciprocating"])): size(random, 100, "kg")}
+        if rod and "piston" in masses and random.random() < 0.6:
             exact = {
                 "mass": size(random, 60, "kg"),
                 "center_of_gravity": keys["crank"],
@@ -108,7 +136,7 @@ def cylinder(random: Random, four: bool) -> Keys:
             )
         keys |= {"masses": masses} | maybe(random, 0.3, {"inclination": f"{number(random, -180, 180)} deg"})
     if name == "slider-crank" and "bore" in keys:
-        keys |= maybe(random, 0.4, {"friction": {"crosshead": number(random, 0, 0.3)}})
+        keys |= maybe(random, 0.5, {"friction": friction(random)})
     if slides and "bore" not in keys:
         keys |= maybe(random, 0.6, {"ram_force": {"work": size(random, 5e3, "N"), "return": size(random, 5e2, "N")}})
     if not slides:
@@ -120,8 +148,12 @@ def cylinder(random: Random, four: bool) -> Keys:
 def turning(random: Random) -> Keys:
     """Return flywheel, load and coupling."""
     inertia = {"inertia": size(random, 300, "kg m2", 2.5)}
+    if random.random() < 0.3:
+        inertia = {"mass": size(random, 300, "kg", 2.5), "radius_of_gyration": size(random, 1, "m")}
     wish = {"fluctuation": number(random, 0.001, 0.2)}
     flywheel = inertia if random.random() < 0.5 else wish if random.random() < 0.7 else inertia | wish
+    rim: Keys = {"mean_diameter": size(random, 2, "m")} | maybe(random, 0.5, {"allowable_tension": "5 N/mm2"})
+    flywheel |= maybe(random, 0.4, {"rim": rim})
     loads: list[Keys] = [{"power_law": number(random, -0.5, 4)}, {"slip": 10 ** random.uniform(-9, 0)}]
     coupling = {
         "stiffness": size(random, 1e5, "N m/rad", 2),
@@ -141,22 +173,59 @@ CRANKSHAFT = {
 }
 
 
+def effort(random: Random) -> Keys:
+    """Return a turning-moment diagram by its harmonics."""
+    orders = [[order, number(random, -9, 9), number(random, -9, 9)] for order in range(1, int(random.integers(2, 9)))]
+    return {"unit": "kN m", "mean": number(random, -3, 9), "harmonics": orders}
+
+
+def cylinders(random: Random, four: bool) -> Keys:
+    """Return several cylinders: each for itself, like the first one, or equal ones at once."""
+    count = int(random.integers(2, 7))
+    order = {"firing_order": "-".join(str(number) for number in random.permutation(count) + 1)}
+    kind = random.choice(["list", "like", "equal"])
+    if kind == "equal":
+        at_once = maybe(random, 0.95, order) | maybe(random, 0.5, {"spacing": size(random, 0.3, "m")})
+        at_once |= maybe(random, 0.3, {"bank_angles": ["-30 deg", "30 deg"]})
+        return {"cylinders": {"count": count, "each": cylinder(random, four)} | at_once}
+    found = [cylinder(random, four) | {"name": "first"}]
+    for _ in range(count - 1):
+        keys = {"like": "first"} | maybe(random, 0.3, {"bore": size(random, 0.3, "m")})
+        found.append(cylinder(random, four) if kind == "list" else keys)
+    if random.random() < 0.5:
+        return {"cylinders": found} | order
+    return {"cylinders": [each | {"crank_position": f"{number(random, 0, 720)} deg"} for each in found]}
+
+
+EXPECTED = {
+    **{"c_max": "6 m/s ± 10 %", "stroke": "0.5 m ± 0.4 m", "T_peak": ["1 N", "90 kN"], "alpha_max": "3 rad/s2 ± 1 %"},
+    **{"work": "5 kJ ± 3 kJ", "delta": "1/100 ± 20 %", "S_max": "50 kN ± 50 %"},
+}
+
+
 def machine_file(random: Random) -> str:
     """Return the text of a machine file."""
     four = bool(random.random() < 0.25)
     keys: Keys = maybe(random, 0.95, {"speed": size(random, 200, "rpm")}) | {
         "cycle": "four-stroke" if four else "two-stroke"
     }
-    if random.random() < 0.3:
-        count = int(random.integers(2, 7))
-        keys["cylinders"] = [
-            cylinder(random, four) | {"crank_position": f"{number(random, 0, 720)} deg"} for _ in range(count)
-        ]
+    keys |= maybe(random, 0.3, {"rotation": str(random.choice(["over", "under"]))})
+    if random.random() < 0.08:
+        keys |= {"effort": effort(random)}
     else:
-        keys |= cylinder(random, four)
-    keys |= (
-        turning(random)
-        | maybe(random, 0.2, {"crankshaft": CRANKSHAFT})
-        | maybe(random, 0.3, {"limits": {"c_max": "6 m/s", "delta": 0.01}})
+        keys |= cylinders(random, four) if random.random() < 0.3 else cylinder(random, four)
+    overhung = {"overhung": True, "b": "900 mm", "flywheel_position": "-300 mm"} if random.random() < 0.5 else {}
+    keys |= turning(random) | maybe(random, 0.2, {"crankshaft": CRANKSHAFT | overhung})
+    keys |= maybe(random, 0.2, {"brake_torque": size(random, 2e3, "N m")})
+    keys |= maybe(
+        random,
+        0.3,
+        {
+            "limits": {"stroke": "5 m"}
+            | maybe(random, 0.8, {"c_max": "6 m/s"})
+            | maybe(random, 0.3, {"delta": 0.01, "P_peak": "50 kN"})
+        },
     )
+    figures = {key: value for key, value in EXPECTED.items() if random.random() < 0.3}
+    keys |= {"expect": figures} if figures and random.random() < 0.2 else {}
     return yaml.safe_dump(keys, sort_keys=False)

@@ -126,6 +126,10 @@ def _numbers(machine: Machine) -> list[tuple[object, ...]]:
             f"cylinders: {{count: 4, firing_order: 1-3-2, {EACH}}}",
             "cylinders.firing_order: it names 3 cylinders, the machine has 4",
         ),
+        (
+            "firing_order: 1-3-4-2\neffort: {unit: N m, mean: 3, harmonics: [[1, 1, 1]]}",
+            "1:15: firing_order: it names 4 cylinders, the machine has 0",
+        ),
         (f"cylinders: {{count: 4, firing_order: 1-3-3-2, {EACH}}}", "cylinder 3 stands twice in 1-3-3-2"),
         (f"cylinders: {{count: 4, firing_order: 1-3-5-2, {EACH}}}", "cylinder 4 is missing in 1-3-5-2"),
         (f"cylinders: {{count: 4, firing_order: 1:3:4:2, {EACH}}}", "such as '1-3-4-2', got '1:3:4:2'"),

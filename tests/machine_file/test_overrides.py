@@ -68,6 +68,8 @@ def test_the_last_one_holds() -> None:
         ("speed", "--set speed: write KEY=VALUE"),
         (".=3", "--set .=3: write KEY=VALUE"),
         ("bore=*a", "'*a' is not supported; write the value itself; a cylinder may be 'like: NAME'"),
+        ("name=\x1b[31mred", "--set name=\\u001b[31mred: the character U+001B cannot be printed; remove it"),
+        ("name=a\udcff", "is no UTF-8"),
         ("bore=[1", "--set bore=[1: a comma or ']' is missing"),
     ],
 )
@@ -75,6 +77,10 @@ def test_a_fault_names_the_override(override: str, message: str) -> None:
     with pytest.raises(KurbelError, match=re.escape(message)) as caught:
         loads(DEMO, "m", [override])
     assert "Traceback" not in str(caught.value)
+
+
+def test_a_space_of_another_width_is_one() -> None:
+    assert loads(DEMO, "m", ["bore=450\u00a0mm"]).cylinders[0].pistons[0].bore == pytest.approx(0.45)
 
 
 @pytest.mark.parametrize("command", ["motion", "forces", "flywheel", "check", "accuracy --quick"])

@@ -114,11 +114,25 @@ class TestWhere:
             ("T = 0", 2, "left out for this machine"),
             ("b > 0", 2, "expected a column and a value"),
             ("b = 1/0 b_max", 2, "quotient"),
+            ("", 2, "expected a column and a value"),
+            ("theta = 0", 2, "'theta' is left out for this machine"),
+            ("b\x00 = 0", 2, "expected a column and a value"),
         ],
     )
     def test_what_cannot_be_asked(self, condition: str, status: int, message: str) -> None:
         found, said = refused("motion", "--where", condition)
         assert (found, message in said) == (status, True), said
+
+    def test_printed_symbols(self) -> None:
+        """sin ψ = sin φ / 5: ψ = 10° where sin φ = 5 sin 10°."""
+        degrees = np.degrees(np.arcsin(5 * np.sin(np.radians(10))))
+        assert json_of("motion", "--where", "ψ = 10 deg")["phi"] == pytest.approx([degrees, 180 - degrees], rel=1e-14)
+        assert json_of("motion", "--where", "ψ̇ = 0")["phi"] == pytest.approx([90, 270], rel=1e-14)
+
+    @pytest.mark.parametrize("condition", ["b = 1/6 b_max" * 1000, "b = " + "9" * 100_000, "b" * 100_000 + " = 0"])
+    def test_the_message_about_a_long_word_is_short(self, condition: str) -> None:
+        status, said = refused("motion", "--where", condition)
+        assert (status, len(said) < 300) == (2, True)
 
 
 class TestOverTheStroke:

@@ -23,12 +23,12 @@ class AskedRows(NamedTuple):
 
     def rows(self, asked: Asked) -> Rows | None:
         """Return what finds the crank angles, None for a table over the angle itself."""
-        ways = [self.where and "--where", self.over and "--over", asked.angles and "--angles"]
-        if len(given := [way for way in ways if way]) > 1:
+        ways = {"--where": self.where, "--over": self.over, "--angles": asked.angles or None}
+        if len(given := [way for way, said in ways.items() if said is not None]) > 1:
             raise click.UsageError(f"{' and '.join(given)} both say at which crank angles; leave one of them out.")
         from kurbel.report.rows import Place, over_stroke
 
-        if self.where:
+        if self.where is not None:
             return Place.parsed(self.where).angles
         return over_stroke(asked.step) if self.over else None
 

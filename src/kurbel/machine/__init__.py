@@ -60,7 +60,7 @@ def _standing(
     from kurbel.machine.equal import fired
 
     each = cylinders if isinstance(cylinders, tuple) else cylinders.cylinders
-    degrees = 360.0 * max(CYCLES[one.cycle or cycle] for one in each)
+    degrees = 360.0 * max((CYCLES[one.cycle or cycle] for one in each), default=1)
     if isinstance(cylinders, tuple):
         return fired(cylinders, order or (), degrees, ("firing_order",))
     return cylinders.standing(order, degrees)

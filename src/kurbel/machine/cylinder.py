@@ -92,7 +92,9 @@ class Cylinder(Described):
             "γ",
             absent="0 deg",
         ),
-        "axial_position": Key(Physical("length"), "Place along the shaft", "z", absent="moments left out"),
+        "axial_position": Key(
+            Physical("length"), "Place along the shaft; no figure hangs on it yet", "z", absent="not known"
+        ),
         "ram_force": Key(
             Record("kurbel.machine.resistance:RamForce"),
             "Force on a ram against its motion, constant on each stroke",

@@ -33,7 +33,9 @@ class EqualCylinders(Described):
             absent="that of the machine; where every bank has one cylinder, all stand on one crank pin",
         ),
         "spacing": Key(
-            Physical("length", above=0), "From one cylinder of a bank to the next along the shaft", absent="not known"
+            Physical("length", above=0),
+            "From one cylinder of a bank to the next along the shaft; no figure hangs on it yet",
+            absent="not known",
         ),
         "bank_angles": Key(
             Listing(Physical("angle", least=-360, most=360)),

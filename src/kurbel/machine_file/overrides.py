@@ -6,8 +6,9 @@ from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
-from kurbel.errors import Fault, Path, UsageError, path_text
+from kurbel.errors import Fault, MachineFileError, Path, UsageError, path_text
 from kurbel.machine_file.events import parse
+from kurbel.machine_file.source import decode
 
 
 class Override(NamedTuple):
@@ -29,7 +30,11 @@ def read_override(text: str) -> Override:
     if not equals or not all(steps):
         raise UsageError(f"--set {shown(text)}: write KEY=VALUE, such as --set cylinders.0.bore='450 mm'")
     reading = Reading()
-    tree = parse(value, reading)
+    try:
+        # an argument that is no UTF-8 has its bytes as surrogates
+        tree = parse(decode("--set", value.encode("utf-8", "surrogatepass")).text, reading)
+    except MachineFileError as error:
+        raise UsageError(f"--set {shown(text)}: {error.faults[0].message}") from None
     if reading.faults:
         raise UsageError(f"--set {shown(text)}: {reading.faults[0].message}")
     return Override(text, tuple(int(step) if step.isdecimal() else step for step in steps), tree)

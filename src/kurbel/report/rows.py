@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kurbel.declared.numerals import NUMBER, RATIO, parse_ratio, plain
-from kurbel.declared.quantity import Quantity
+from kurbel.declared.quantity import Quantity, ambiguity, called
+from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import example, unit_factor
 from kurbel.errors import NoSolutionError, UnitError, UsageError
@@ -63,8 +64,8 @@ class Place(NamedTuple):
         column, equals, value = plain(text).partition("=")
         number = re.match(RATIO, value.strip()) or NUMBER.match(value.strip())
         of = value.strip()[number.end() if number else 0 :].strip()
-        if not (re.fullmatch(r"\w+", column.strip()) and equals and (number or of)):
-            raise UsageError(f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{text}'")
+        if len(text) > LONGEST_VALUE or not (text.isprintable() and column.strip() and equals and (number or of)):
+            raise UsageError(f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{shown(text)}'")
         try:
             return cls(column.strip(), parse_ratio(number.group()) if number else 1.0, of, text)
         except UnitError as error:
@@ -72,23 +73,29 @@ class Place(NamedTuple):
 
     def angles(self, subject: Subject, forces: CylinderForces, end: float) -> Sequence[float]:
         """Return the crank angles in degrees, exact but for rounding; see `Rows`. Raises NoSolutionError for none."""
-        column = subject.lists.columns("forces").get(self.column)
-        if column is None:
-            known = tuple(every_quantity().columns("forces"))
-            raise UsageError(
-                f"--where: '{self.column}' is no column{did_you_mean(self.column, known)} (known: {', '.join(known)})"
-            )
-        value = self._value(subject, column)
-        found = forces.angles_where(self.column, value)
-        if found is None:
+        column = self._column(subject)
+        value = self._value(subject, column) if column else 0.0
+        found = column and forces.angles_where(column.id, value)
+        if column is None or found is None:
             raise UsageError(f"--where: '{self.column}' is left out for this machine; kurbel check says why")
         if not found.angles:
             low, high = (show(one, column.kind) for one in found.span)
             raise NoSolutionError(
-                f"{subject.name}: {self.column} is nowhere {show(value, column.kind)}: it goes from {low} to {high}"
+                f"{subject.name}: {column.id} is nowhere {show(value, column.kind)}: it goes from {low} to {high}"
             )
         # a table over one turn has what a cycle of two has in either
         return ascending(np.mod(found.angles, end), 1e-9).tolist()  # type: ignore[no-any-return]
+
+    def _column(self, subject: Subject) -> Quantity | None:
+        """Return the column that is meant, by id or printed symbol; None for one of other machines alone."""
+        own, every = (lists.columns("forces") for lists in (subject.lists, every_quantity()))
+        ids = called(self.column, own.values()) or called(self.column, every.values())
+        if not ids:
+            near = did_you_mean(self.column, tuple(every))
+            raise UsageError(f"--where: '{self.column}' is no column{near} (known: {', '.join(every)})")
+        if wrong := ambiguity(self.column, ids):
+            raise UsageError(f"--where: {wrong}")
+        return own.get(ids[0])
 
     def _value(self, subject: Subject, column: Quantity) -> float:
         """Return the value in SI: a number with a unit of the column's kind, or a fraction of a key value."""
@@ -104,8 +111,8 @@ class Place(NamedTuple):
 
     def _key_value(self, subject: Subject, column: Quantity, no_unit: str) -> float:
         known = subject.lists.key_values("forces")
-        quantity = known.get(self.of)
-        if quantity is None or quantity.kind != column.kind:
+        quantity = next((known[id] for id in called(self.of, known.values()) if known[id].kind == column.kind), None)
+        if quantity is None:
             alike = [one.id for one in known.values() if one.kind == column.kind and not one.listed]
             raise UsageError(
                 f"--where: '{self.of}' is neither a unit nor a key value of this kind: {no_unit}; "
