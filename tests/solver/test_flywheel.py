@@ -316,3 +316,10 @@ def test_a_column_that_is_not_there_is_told_with_those_that_are() -> None:
     answer = run(ENGINE + "flywheel: {inertia: 9000 kg m2}\n", "--columns", "M_coupling")
     assert answer.exit_code == 2
     assert "'M_coupling' is left out for this machine, which has phi, T, T_inertia, M, E, omega" in answer.stderr
+
+
+def test_an_effort_beyond_all_speeds_is_refused_by_name() -> None:
+    text = "{speed: 60 rpm, effort: {unit: N m, mean: 300, harmonics: [[5, 1e18, 0]]}, flywheel: {inertia: 3 kg m2}}"
+    result = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text)
+    assert result.exit_code == 2
+    assert "beyond what can be computed" in result.stderr

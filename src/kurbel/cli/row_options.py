@@ -26,11 +26,11 @@ class AskedRows(NamedTuple):
         ways = {"--where": self.where, "--over": self.over, "--angles": asked.angles or None}
         if len(given := [way for way, said in ways.items() if said is not None]) > 1:
             raise click.UsageError(f"{' and '.join(given)} both say at which crank angles; leave one of them out.")
+        if self.where is None and not self.over:
+            return None
         from kurbel.report.rows import Place, over_stroke
 
-        if self.where is not None:
-            return Place.parsed(self.where).angles
-        return over_stroke(asked.step) if self.over else None
+        return over_stroke(asked.step) if self.where is None else Place.parsed(self.where).angles
 
     @property
     def columns(self) -> tuple[str, ...]:

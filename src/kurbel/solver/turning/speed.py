@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from kurbel.errors import UsageError
 from kurbel.numerics.collocation import Periodic, Standstill, periodic
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
@@ -124,6 +125,8 @@ class SpeedLine(ABC):
         def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
             return {"ratio": self._ratio(degrees, within)}
 
+        if not np.isfinite(self._samples.value).all():
+            raise UsageError("the speed line leads beyond what can be computed with: check effort and flywheel")
         found = extremes(self.grid, {"ratio": self._samples}, evaluate)["ratio"]
         if not found.smallest.value > self.SLOWEST**2 - 1:
             raise Standstill(found.smallest.degrees)
