@@ -26,11 +26,11 @@ class AskedRows(NamedTuple):
         ways = [self.where and "--where", self.over and "--over", asked.angles and "--angles"]
         if len(given := [way for way in ways if way]) > 1:
             raise click.UsageError(f"{' and '.join(given)} both say at which crank angles; leave one of them out.")
+        if not (self.where or self.over):
+            return None
         from kurbel.report.rows import Place, over_stroke
 
-        if self.where:
-            return Place.parsed(self.where).angles
-        return over_stroke(asked.step) if self.over else None
+        return Place.parsed(self.where).angles if self.where else over_stroke(asked.step)
 
     @property
     def columns(self) -> tuple[str, ...]:
