@@ -266,6 +266,9 @@ def test_what_a_machine_does_not_need_is_not_imported(tmp_path: Path) -> None:
     assert "numpy" in loaded
     for needless in ("rich", "kurbel.machine.turning", "kurbel.machine.crankshaft", "kurbel.machine.trace"):
         assert needless not in loaded
+    for needless in ("kurbel.report.rows", "kurbel.mechanisms.coupler", "kurbel.report.warnings"):
+        assert needless not in loaded
+    assert "kurbel.report.rows" in modules_after("forces", str(plain), "-f", "csv", "--over", "x")
     for needless in ("kurbel.solver.turning", "kurbel.solver.strength"):
         assert needless not in modules_after("check", str(plain))
     plain.write_text("{speed: 60 rpm, crank: 400 mm, rod: 2 m}", encoding="utf-8")

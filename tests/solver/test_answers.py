@@ -223,6 +223,14 @@ class TestReversalsInTheNoise:
         assert clean.phi_reversal == pytest.approx([turn, 360 - turn], abs=1e-3)
         assert clean.reversals_in_noise == 0
 
+    def test_without_a_trace_no_reversal_is_searched_for_the_noise(self) -> None:
+        end = "{unit: bar, expansion: [[0, 3], [1, 3]], compression: [[1, 0], [0, 0]]}"
+        card = f"{{head_end: {end}, crank_end: mirrored}}"
+        text = f"{{speed: 60 rpm, crank: 400 mm, rod: 2 m, bore: 450 mm, indicator: {card}}}"
+        plain = Case(loads(text)).cylinders[0]
+        assert plain.reversals_in_noise == 0
+        assert not vars(plain).keys() & {"_reversals", "_curves"}
+
     def test_changes_in_a_band_lead_on_or_back(self) -> None:
         """Above, thrice through zero within the band, below; then to zero and back below; then above again."""
         angles = np.array([10.0, 30, 50, 70, 90, 110, 130, 150, 170])
