@@ -7,7 +7,6 @@ from functools import cache
 from typing import Any
 
 from kurbel.errors import UsageError
-from kurbel.machine.cylinder import may_lock
 from kurbel.report.frame import Answer, Frame, Rows, Subject, of_state, rows_of
 from kurbel.report.guide import guide_notes
 from kurbel.report.left_out import left_out
@@ -53,9 +52,7 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
     cylinder = forces.drive.cylinder
 
     def at(degrees: Any) -> Answer:
-        if may_lock(cylinder):
-            # first, so that a crosshead that locks itself is told with an angle that does not depend on the step
-            forces.extremes_of("N")
+        forces.refuse_locking()  # first, with an angle that does not depend on the step
         return of_state(forces.at(degrees))
 
     def warnings() -> Iterable[str]:

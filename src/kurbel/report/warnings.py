@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
-from kurbel.machine.cylinder import may_lock
 
 if TYPE_CHECKING:
     from kurbel.solver.case import Case
@@ -20,9 +19,7 @@ def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
     """Return what looks wrong in the forces of a cylinder, or that it locks itself."""
 
     def found() -> Iterable[str]:
-        if may_lock(forces.drive.cylinder):
-            # first, so that a crosshead that locks itself is told with an angle that does not depend on the step
-            forces.extremes_of("N")
+        forces.refuse_locking()  # first, with an angle that does not depend on the step
         yield from _balance_warnings(forces)
         if forces.reversals_in_noise:
             yield (

@@ -11,6 +11,7 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid, Pieces, integral
@@ -106,6 +107,11 @@ class CylinderForces(Results):
             return self._at_pins
         curve = self._curves.get(column) if self.drive.has_force else None
         return extremes_of(curve) if curve else self.motion.extremes_of(column)
+
+    def refuse_locking(self) -> None:
+        """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
+        if may_lock(self.drive.cylinder):
+            self.extremes_of("N")
 
     @property
     def _at_pins(self) -> Extremes | None:
