@@ -9,6 +9,7 @@ from kurbel.declared.units import unit_factor
 SI = {
     "length": "m",
     "area": "m^2",
+    "volume": "m^3",
     "mass": "kg",
     "force": "N",
     "pressure": "Pa",
@@ -35,6 +36,7 @@ SI = {
 TECHNICAL = SI | {
     "length": "mm",
     "area": "cm^2",
+    "volume": "l",
     "force": "kgf",
     "pressure": "at",
     "stress": "kgf/cm^2",
@@ -49,6 +51,7 @@ _METRIC: dict[str, Any] = {
     **SI,
     "length": ("mm", "m"),
     "area": "cm^2",
+    "volume": ("cm^3", "l"),
     "mass": ("kg", "t"),
     "force": ("N", "kN", "MN"),
     "pressure": ("mbar", "bar"),
@@ -63,6 +66,7 @@ _IMPERIAL: dict[str, Any] = {
     **SI,
     "length": "in",
     "area": "in^2",
+    "volume": "in^3",
     "mass": "lb",
     "force": "lbf",
     "pressure": "psi",

@@ -87,6 +87,7 @@ _POUND_FEET = {
 _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
     "length": lambda: _LENGTH,
     "area": lambda: _AREA,
+    "volume": lambda: {"m3": (1, 1), "l": (1, 1e3), "dm3": (1, 1e3), "cm3": (1, 1e6), "in3": (254**3, 1e12)},
     "mass": lambda: {**_MASS, "tonne": (1e3, 1), "long ton": (2240 * _POUND, 1), "short ton": (2e3 * _POUND, 1)},
     "force": lambda: {**_FORCE, "long tonf": (2240 * _LBF, 1), "short tonf": (2e3 * _LBF, 1)},
     "pressure": lambda: {**_PRESSURE, **_product(_FORCE, _AREA, "/"), **_POUNDS_OF_FORCE},

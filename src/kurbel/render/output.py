@@ -16,6 +16,7 @@ from kurbel.render import Look, pieces
 from kurbel.render.charset import Charset
 
 if TYPE_CHECKING:
+    from kurbel.render.lines import Line
     from kurbel.report.tables import Report
 
 _MOST_COLOURED_LINES = 400
@@ -31,18 +32,22 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
         write_file(file_name, pieces(report, look._replace(encoding="utf-8")))
         return
     look = look._replace(encoding=stdout_charset().encoding, width=look.width or stdout_width())
-    if look.format == "table" and _stdout().isatty() and _coloured(report, look):
+    if look.format == "table" and write_coloured(_page(report, look), look):
         return
     write_stdout(pieces(report, look))
 
 
-def _coloured(report: Report, look: Look) -> bool:
-    """Write the page in colour and return True, unless the terminal or its user would rather not."""
-    if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
-        return False
+def _page(report: Report, look: Look) -> Iterator[Line]:
     from kurbel.render.page import page
 
-    lines = list(islice(page(report, look), _MOST_COLOURED_LINES + 1))
+    return page(report, look)
+
+
+def write_coloured(page: Iterable[Line], look: Look) -> bool:
+    """Write lines in colour and return True, unless there is no terminal, or it or its user would rather not."""
+    if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+        return False
+    lines = list(islice(page, _MOST_COLOURED_LINES + 1))
     if len(lines) > _MOST_COLOURED_LINES:
         return False
     from kurbel.render.terminal import write_lines

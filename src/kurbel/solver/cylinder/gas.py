@@ -35,7 +35,7 @@ class PistonGas:
         self._cycle = cycle
         self.head = None if head is None else pressure_in(head, at_head)
         self.crank = None if crank is None else pressure_in(crank, at_crank)
-        self._stroke = mechanism.stroke
+        self.stroke = mechanism.stroke
 
     @property
     def starts(self) -> Array:
@@ -62,7 +62,7 @@ class PistonGas:
     @cached_property
     def works(self) -> tuple[float, float]:
         """Indicated work in J per cycle of the cylinder of head end and crank end: A s ∮ p dz."""
-        way = self._stroke * self.repeats
+        way = self.stroke * self.repeats
         return (
             self.piston.head_area * way * self.head.area if self.head else 0.0,
             self.piston.crank_area * way * self.crank.area if self.crank else 0.0,
@@ -80,7 +80,7 @@ class PistonGas:
         found = [
             (area * end.area, area * end.area_by_angle) for end, area in ends if end and hasattr(end, "area_by_angle")
         ]
-        way = self._stroke * self.repeats
+        way = self.stroke * self.repeats
         return (way * sum(w for w, _ in found), way * sum(d for _, d in found)) if found else None
 
     @property
@@ -93,4 +93,4 @@ class PistonGas:
     def swept_volume(self) -> float:
         """Volume in m³ swept in the chambers that have pressures."""
         head = self.piston.head_area if self.head else 0.0
-        return float((head + (self.piston.crank_area if self.crank else 0.0)) * self._stroke)
+        return float((head + (self.piston.crank_area if self.crank else 0.0)) * self.stroke)

@@ -23,15 +23,26 @@ class TurningColumns:
     """
 
     def __init__(
-        self, turned: MachineEffort, crank: float | None, speed: SpeedLine | ElasticCoupling | None, phi: Array
+        self,
+        turned: MachineEffort,
+        crank: float | None,
+        speed: SpeedLine | ElasticCoupling | None,
+        phi: Array,
+        within: Array | None = None,
     ) -> None:
         self._turned, self._crank, self._speed = turned, crank, speed
         self.phi = phi
+        self._within = phi if within is None else within
 
     @cached_property
     def M(self) -> Array:
-        """Turning effort in N m, just after a jump where there is one."""
-        return np.asarray(self._turned.effort.torque(self.phi, self.phi).value)
+        """Turning effort in N m."""
+        return np.asarray(self._turned.effort.torque(self.phi, self._within).value)
+
+    @property
+    def M_load(self) -> Array:
+        """The resistance in N m, at the nominal speed."""
+        return np.asarray(self._turned.excess.load.torque(self.phi, self._within).value)
 
     @property
     def T(self) -> Array | None:
@@ -44,7 +55,7 @@ class TurningColumns:
         masses, efficiency = self._turned.masses, self._turned.efficiency
         if self._crank is None or not masses:
             return None
-        torque = Sum(*((efficiency, mass) for mass in masses)).torque(self.phi, self.phi)
+        torque = Sum(*((efficiency, mass) for mass in masses)).torque(self.phi, self._within)
         return np.asarray(torque.value / self._crank)
 
     @property

@@ -51,9 +51,17 @@ class MachineTurning(Results):
         """What answers key values, the first that knows one."""
         return (self, *((self.elastic,) if self.elastic else ()))
 
-    def at(self, degrees: Array) -> TurningColumns:
-        """Return every column at crank angles (n,) of crank 1 in degrees, just after a jump where there is one."""
-        return TurningColumns(self.turned, self.crank, self.speed, degrees)
+    def at(self, degrees: Array, within: Array | None = None) -> TurningColumns:
+        """Return every column at crank angles (n,) of crank 1 in degrees.
+
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        """
+        return TurningColumns(self.turned, self.crank, self.speed, degrees, within)
+
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees between which every quantity is smooth."""
+        return self.excess.grid.breaks
 
     # turning effort
 

@@ -1,0 +1,220 @@
+"""Pictures of a machine. One more is one declaration here, with what makes its panels from the results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from importlib import import_module
+from itertools import islice
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kurbel.declared.reading import shown
+from kurbel.errors import NoSolutionError, UsageError
+from kurbel.near_words import did_you_mean
+from kurbel.report.pictures.picture import Panel, Picture
+
+if TYPE_CHECKING:
+    from kurbel.report.pictures.source import Source
+    from kurbel.solver.case import Case
+
+FILE, TERMINAL = 1 / 2000, 1 / 250
+"""By what of its height a line of points may miss a curve: less than can be seen on paper, or in a terminal."""
+
+
+class Declared(NamedTuple):
+    """A picture: its word, its German title, and a sentence; of: `cylinders`, or a result of the case.
+
+    panels: the function that yields its panels from a source, as `module:function` below this package. rows: instead of
+    that, columns over `over`, one panel for each group of those that the machine has.
+    """
+
+    id: str
+    title: str
+    text: str
+    of: str
+    panels: str = ""
+    rows: tuple[tuple[str, ...], ...] = ()
+    over: str = "phi"
+
+    def drawn(self, source: Source) -> Iterable[Panel]:
+        """Return the panels; none where the machine does not have what they show."""
+        if self.panels:
+            module, name = self.panels.split(":")
+            function: Callable[[Source], Iterable[Panel]] = getattr(import_module(f"{__name__}.{module}"), name)
+            return function(source)
+        if not source.having((self.over,)) and self.over != "phi":
+            return ()
+        return (source.panel(ids, self.over) for row in self.rows if (ids := source.having(row)))
+
+
+PICTURES = (
+    Declared(
+        "piston-force",
+        "Kolbenüberdrucklinie",
+        "Force P_0 of gas, weight and resistance against the line of the inertia forces over the crank angle; what "
+        "lies between is the piston force P, below alone. It turns over where both lines cross (Druckwechsel).",
+        "cylinders",
+        "cylinder:piston_force",
+    ),
+    Declared(
+        "piston-force-way",
+        "Kolbenüberdrucklinie über dem Weg",
+        "The same over the way of the piston, stroke by stroke (R Abb. 1055).",
+        "cylinders",
+        "cylinder:piston_force_over_way",
+    ),
+    Declared(
+        "card",
+        "Indikatordiagramm",
+        "Gauge pressure at both ends of the pistons over the way from the inner dead centre (R Abb. 1051).",
+        "cylinders",
+        "cylinder:cards",
+    ),
+    Declared(
+        "card-volume",
+        "Indikatordiagramm über dem Raum",
+        "Gauge pressure over the volume swept in each chamber, with the clearance where that is known.",
+        "cylinders",
+        "cylinder:cards_over_volume",
+    ),
+    Declared(
+        "forces",
+        "Kräfte im Kurbeltrieb",
+        "Forces in the rod, on the guide and at the crank pin over the crank angle (R Abb. 1061, 1062).",
+        "cylinders",
+        "cylinder:forces",
+    ),
+    Declared(
+        "effort-polar",
+        "Tangentialdruck in polarer Darstellung",
+        "Tangential force T drawn outward from the circle of the crank pin (R Abb. 1063).",
+        "cylinders",
+        "cylinder:polar_effort",
+    ),
+    Declared(
+        "effort",
+        "Drehkraftlinie",
+        "Turning effort of the whole machine and the resistance, its lobes numbered with their work; below the excess "
+        "work and the speed (R Abb. 1064 to 1067).",
+        "flywheel",
+        "whole_machine:effort",
+    ),
+    Declared(
+        "throw-stress",
+        "Beanspruchung der Kurbelwelle",
+        "Largest combined stress of each part of the crank throw over the cycle.",
+        "strength",
+        "whole_machine:throw_stress",
+    ),
+    Declared(
+        "motion",
+        "Kolbenweg, Geschwindigkeit, Beschleunigung",
+        "Way, velocity and acceleration over the crank angle (R Abb. 1047 to 1050).",
+        "cylinders",
+        rows=(("x",), ("c",), ("b",), ("theta",), ("theta_dot",), ("theta_ddot",)),
+    ),
+    Declared(
+        "motion-way",
+        "Geschwindigkeit und Beschleunigung über dem Weg",
+        "Velocity and acceleration over the way (R Abb. 1049, 1050).",
+        "cylinders",
+        rows=(("c",), ("b",)),
+        over="x",
+    ),
+    Declared("mechanism", "Getriebe", "The mechanism to scale.", "cylinders", "mechanism:mechanism"),
+)
+"""The pictures, the one that says most of a machine first."""
+
+
+class Wish(NamedTuple):
+    """How pictures are wanted: in which system of units, how finely (FILE or TERMINAL), of which cylinder alone.
+
+    angles: crank angles in degrees at which a mechanism is drawn, None where it moves.
+    """
+
+    system: str = "metric"
+    fineness: float = FILE
+    cylinder: str | None = None
+    angles: Sequence[float] | None = None
+
+
+def pictures(case: Case, names: Sequence[str], wish: Wish) -> Iterator[Picture]:
+    """Yield these pictures of a machine; without names the first that it has, `all` for every one.
+
+    Raises UsageError for a picture that there
+    is not, or that this machine does not have, NoSolutionError where the machine locks itself or stalls.
+    """
+    with np.errstate(all="ignore"):
+        for declared in _chosen(case, names, wish):
+            found = list(_pictures(case, declared, wish))
+            if not found:
+                raise UsageError(_missing(case, declared, wish))
+            yield from found
+
+
+def pictures_of(case: Case, wish: Wish) -> tuple[Declared, ...]:
+    """Return the pictures that a machine has; one that is without a solution is drawn of it, too, and then says so."""
+    found = []
+    with np.errstate(all="ignore"):
+        for one in PICTURES:
+            try:
+                has = _has(case, one, wish)
+            except NoSolutionError:
+                has = True
+            found += [one] if has else []
+    return tuple(found)
+
+
+def _chosen(case: Case, names: Sequence[str], wish: Wish) -> Iterable[Declared]:
+    if names and "all" not in names:
+        return [_named(name) for name in names]
+    having = (one for one in PICTURES if _has(case, one, wish))
+    found = list(having if names else islice(having, 1))
+    if not found:
+        raise UsageError(f"{case.machine.name}: there is nothing to draw; kurbel check says what is missing")
+    return found
+
+
+def _named(name: str) -> Declared:
+    known = {one.id: one for one in PICTURES}
+    if name not in known:
+        raise UsageError(f"no picture '{shown(name)}'{did_you_mean(name, tuple(known))} (there are {', '.join(known)})")
+    return known[name]
+
+
+def _missing(case: Case, declared: Declared, wish: Wish) -> str:
+    names = [one.drive.name for one in case.cylinders]
+    if wish.cylinder is not None and wish.cylinder not in names:
+        return f"--cylinder: there is no '{shown(wish.cylinder)}'; there are {', '.join(names)}"
+    having = ", ".join(one.id for one in pictures_of(case, wish))
+    return f"{case.machine.name} has no picture '{declared.id}': what it shows is left out; it has {having}"
+
+
+def _has(case: Case, declared: Declared, wish: Wish) -> bool:
+    with suppress(UsageError):
+        return any(True for source, _ in _sources(case, declared, wish) for _ in declared.drawn(source))
+    return False
+
+
+def _pictures(case: Case, declared: Declared, wish: Wish) -> Iterator[Picture]:
+    for source, name in _sources(case, declared, wish):
+        if panels := tuple(declared.drawn(source)):
+            of = name if len(case.machine.cylinders) > 1 and declared.of == "cylinders" else ""
+            across = 2 if declared.id == "mechanism" and len(panels) > 1 else 1
+            yield Picture(declared.id, declared.title, declared.text, panels, case.machine.name, of, across)
+
+
+def _sources(case: Case, declared: Declared, wish: Wish) -> Iterator[tuple[Source, str]]:
+    """Yield what a picture is drawn from, each with the name of its cylinder."""
+    from kurbel.report.pictures.source import Source
+
+    results = case.cylinders if declared.of == "cylinders" else (getattr(case, declared.of),)
+    for one in results:
+        name = one.drive.name if declared.of == "cylinders" else ""
+        if declared.of == "cylinders":
+            if wish.cylinder not in (None, name):
+                continue
+            one.refuse_locking()
+        yield Source(one, wish.system, wish.fineness, wish.angles), name
