@@ -24,7 +24,7 @@ FILE, TERMINAL = 1 / 2000, 1 / 250
 
 
 class Declared(NamedTuple):
-    """A picture: its word, its German title, and a sentence; of: `cylinders`, or a result of the case.
+    """A picture: its word, its German title, and a sentence; command: whose results it shows.
 
     panels: the function that yields its panels from a source, as `module:function` below this package. rows: instead of
     that, columns over `over`, one panel for each group of those that the machine has.
@@ -33,7 +33,7 @@ class Declared(NamedTuple):
     id: str
     title: str
     text: str
-    of: str
+    command: str
     panels: str = ""
     rows: tuple[tuple[str, ...], ...] = ()
     over: str = "phi"
@@ -55,42 +55,42 @@ PICTURES = (
         "Kolbenüberdrucklinie",
         "Force P_0 of gas, weight and resistance against the line of the inertia forces over the crank angle; what "
         "lies between is the piston force P, below alone. It turns over where both lines cross (Druckwechsel).",
-        "cylinders",
+        "forces",
         "cylinder:piston_force",
     ),
     Declared(
         "piston-force-way",
         "Kolbenüberdrucklinie über dem Weg",
         "The same over the way of the piston, stroke by stroke (R Abb. 1055).",
-        "cylinders",
+        "forces",
         "cylinder:piston_force_over_way",
     ),
     Declared(
         "card",
         "Indikatordiagramm",
         "Gauge pressure at both ends of the pistons over the way from the inner dead centre (R Abb. 1051).",
-        "cylinders",
+        "forces",
         "cylinder:cards",
     ),
     Declared(
         "card-volume",
         "Indikatordiagramm über dem Raum",
         "Gauge pressure over the volume swept in each chamber, with the clearance where that is known.",
-        "cylinders",
+        "forces",
         "cylinder:cards_over_volume",
     ),
     Declared(
         "forces",
         "Kräfte im Kurbeltrieb",
         "Forces in the rod, on the guide and at the crank pin over the crank angle (R Abb. 1061, 1062).",
-        "cylinders",
+        "forces",
         "cylinder:forces",
     ),
     Declared(
         "effort-polar",
         "Tangentialdruck in polarer Darstellung",
         "Tangential force T drawn outward from the circle of the crank pin (R Abb. 1063).",
-        "cylinders",
+        "forces",
         "cylinder:polar_effort",
     ),
     Declared(
@@ -105,25 +105,27 @@ PICTURES = (
         "throw-stress",
         "Beanspruchung der Kurbelwelle",
         "Largest combined stress of each part of the crank throw over the cycle.",
-        "strength",
+        "stress",
         "whole_machine:throw_stress",
     ),
     Declared(
         "motion",
         "Kolbenweg, Geschwindigkeit, Beschleunigung",
         "Way, velocity and acceleration over the crank angle (R Abb. 1047 to 1050).",
-        "cylinders",
+        "motion",
         rows=(("x",), ("c",), ("b",), ("theta",), ("theta_dot",), ("theta_ddot",)),
     ),
     Declared(
         "motion-way",
         "Geschwindigkeit und Beschleunigung über dem Weg",
         "Velocity and acceleration over the way (R Abb. 1049, 1050).",
-        "cylinders",
+        "motion",
         rows=(("c",), ("b",)),
         over="x",
     ),
-    Declared("mechanism", "Getriebe", "The mechanism to scale.", "cylinders", "mechanism:mechanism"),
+    Declared(
+        "mechanism", "Getriebe", "The mechanism to scale, with the forces on it.", "motion", "mechanism:mechanism"
+    ),
 )
 """The pictures, the one that says most of a machine first."""
 
@@ -201,7 +203,7 @@ def _has(case: Case, declared: Declared, wish: Wish) -> bool:
 def _pictures(case: Case, declared: Declared, wish: Wish) -> Iterator[Picture]:
     for source, name in _sources(case, declared, wish):
         if panels := tuple(declared.drawn(source)):
-            of = name if len(case.machine.cylinders) > 1 and declared.of == "cylinders" else ""
+            of = name if len(case.machine.cylinders) > 1 else ""
             across = 2 if declared.id == "mechanism" and len(panels) > 1 else 1
             yield Picture(declared.id, declared.title, declared.text, panels, case.machine.name, of, across)
 
@@ -210,11 +212,16 @@ def _sources(case: Case, declared: Declared, wish: Wish) -> Iterator[tuple[Sourc
     """Yield what a picture is drawn from, each with the name of its cylinder."""
     from kurbel.report.pictures.source import Source
 
-    results = case.cylinders if declared.of == "cylinders" else (getattr(case, declared.of),)
-    for one in results:
-        name = one.drive.name if declared.of == "cylinders" else ""
-        if declared.of == "cylinders":
-            if wish.cylinder not in (None, name):
-                continue
-            one.refuse_locking()
-        yield Source(one, wish.system, wish.fineness, wish.angles), name
+    of_machine = _OF_MACHINE.get(declared.command)
+    if of_machine:
+        yield Source(getattr(case, of_machine), wish.system, wish.fineness), ""
+        return
+    for one in case.cylinders:
+        if wish.cylinder in (None, one.drive.name):
+            if declared.command == "forces":
+                one.refuse_locking()
+            yield Source(one, wish.system, wish.fineness, wish.angles), one.drive.name
+
+
+_OF_MACHINE = {"flywheel": "flywheel", "stress": "strength"}
+"""Command -> the result of a case that its pictures are drawn from; those of others are drawn of each cylinder."""

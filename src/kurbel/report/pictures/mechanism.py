@@ -78,8 +78,8 @@ def _members(sketch: Sketch, crank: float, unit: str) -> Iterator[Curve]:
         yield _curve("guide", (start, end))
     for link in sketch.links:
         yield _curve("member", [sketch.joints[name] for name in link])
-    for joint, (start, end) in sketch.blocks:
-        yield _curve("block", _box(sketch.joints[joint], sketch.joints[start], sketch.joints[end], size))
+    for joint, (first, last) in sketch.blocks:
+        yield _curve("block", _box(sketch.joints[joint], sketch.joints[first], sketch.joints[last], size))
     if sketch.output and sketch.toward:
         along = (sketch.joints[sketch.output][0] + sketch.toward[0], sketch.joints[sketch.output][1] + sketch.toward[1])
         yield _curve("block", _box(sketch.joints[sketch.output], sketch.joints[sketch.output], along, size))
