@@ -11,14 +11,14 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import quantities_of
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Figure, Results
+from kurbel.solver.figures import Figure, Shown
 
 if TYPE_CHECKING:
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
     from kurbel.solver.turning.flywheel import MachineTurning
 
 
-class Case:
+class Case(Shown):
     """A machine with its results.
 
     >>> from kurbel.machine import Cylinder, Machine
@@ -43,16 +43,6 @@ class Case:
         if "forces" in commands and not commands & {"flywheel", "stress"}:
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
         return (self.strength if "stress" in commands else self.flywheel)[name]
-
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        machine = self.machine
-        parts: list[tuple[str, Results]] = [(one.drive.name, one) for one in self.cylinders]
-        if len(parts) != 1 or machine.flywheel:
-            parts.append(("whole machine", self.flywheel))
-        tables = (f"<h4>{escape(name)}</h4>{one._repr_html_()}" for name, one in parts)
-        return f"<h3>{escape(machine.name)}</h3>{''.join(tables)}"
 
     @cached_property
     def cylinders(self) -> tuple[CylinderForces, ...]:

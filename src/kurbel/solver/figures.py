@@ -1,16 +1,16 @@
-"""Results by name: key values by id or printed symbol, all columns at once, and what a notebook shows of them."""
+"""Results by name: key values by id or printed symbol, and all columns at once."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from kurbel.declared.quantities import COMMON, Lists
-from kurbel.declared.quantity import NOISE_POWER, Quantity, ambiguity, called
-from kurbel.declared.unit_systems import SI, convert, shown_unit
-from kurbel.errors import KurbelError, UsageError
+from kurbel.declared.quantity import Quantity, ambiguity, called
+from kurbel.declared.unit_systems import SI
+from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
 
@@ -27,7 +27,16 @@ class Figure(NamedTuple):
     quantity: Quantity
 
 
-class Results:
+class Shown:
+    """What a notebook shows; `kurbel.notebook` puts in how, since tables and pictures are made far above the solver."""
+
+    as_html: ClassVar[Callable[[Any], str] | None] = None
+
+    def _repr_html_(self) -> str | None:
+        return Shown.as_html(self) if Shown.as_html else None
+
+
+class Results(Shown):
     """What has key values and columns of a command; attributes of those ids, or what a quantity asks, answer them."""
 
     command: ClassVar[str]
@@ -67,16 +76,6 @@ class Results:
         found = {id: getattr(state, id, None) for id in self.lists.columns(self.command) if id != "phi"}
         return {"phi": angles, **{id: np.asarray(one, float) for id, one in found.items() if one is not None}}
 
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        try:
-            with np.errstate(all="ignore"):
-                rows = "".join(map(_row, self.figures()))
-        except KurbelError as error:
-            return f"<p>{escape(str(error))}</p>"
-        return f"<table>{rows}</table>"
-
 
 def answered(results: tuple[Any, ...], quantity: Quantity) -> Any:
     """Return what the results have for a key value, in SI; None where they have none."""
@@ -97,17 +96,3 @@ def _asked(results: Any, name: str, argument: str = "", part: str = "") -> Any:
 def _figure(quantity: Quantity, value: Any) -> Figure:
     number, degrees = value if isinstance(value, Extreme) else (value, None)
     return Figure(number, SI[quantity.kind], degrees, quantity)
-
-
-def _row(figure: Figure) -> str:
-    from html import escape
-
-    quantity = figure.quantity
-    each = figure.value if isinstance(figure.value, tuple) else (figure.value,)
-    unit = shown_unit(quantity.kind, "metric", max(map(abs, each), default=0.0))
-    numbers = ", ".join(f"{convert(one, quantity.kind, unit):.4g}" for one in each)
-    if any(map(quantity.is_noise, each)):
-        numbers = f"< 1e{NOISE_POWER}"
-    at = "" if figure.degrees is None else f"at {figure.degrees:.2f}°"
-    cells = (quantity.symbol, numbers, unit, at, quantity.text)
-    return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"

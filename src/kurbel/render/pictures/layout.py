@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from kurbel.render.pictures.labels import Box, figure_text
+from kurbel.render.pictures.labels import Box, figure_text, symbol
 from kurbel.render.pictures.panel_items import panel_items
 from kurbel.render.pictures.scale import Scale, scale_of
-from kurbel.render.pictures.scene import Item, Scene, Text
+from kurbel.render.pictures.scene import Dots, Item, Scene, Text
+from kurbel.render.pictures.style import LOOKS, SHAPES
 
 if TYPE_CHECKING:
     from kurbel.render import Look
@@ -34,6 +36,9 @@ def scene(picture: Picture, look: Look, width: float = WIDTH) -> Scene:
         for panel, frame, scales in placed:
             items += panel_items(panel, frame, scales, look)
         top = max(frame.bottom for _, frame, _ in placed) + 4
+    legend = list(_legend(picture, top, width, look))
+    top += legend[-1].y - top + 10 if legend and isinstance(legend[-1], Text) else 0.0
+    items += legend
     moving = any(panel.frames for panel in picture.panels)
     return Scene(width, top, tuple(items), words_of(picture, look), SECONDS if moving else 0.0)
 
@@ -52,6 +57,15 @@ def _placed(panel: Panel, room: Box, count: int) -> tuple[Panel, Box, tuple[Scal
     frame = room._replace(bottom=room.top + above + tall + below)
     start = room.left + left
     return panel, frame, (x.reach(start, start + across), y.reach(room.top + above + tall, room.top + above))
+
+
+def _legend(picture: Picture, top: float, width: float, look: Look) -> Iterator[Item]:
+    """Yield what the marks of all panels stand for, in columns."""
+    across = 4
+    for number, (name, mark) in enumerate(picture.legend):
+        left, base = 12 + number % across * (width - 12) / across, top + 14 + number // across * 16
+        yield Dots(((left, base - 4),), f"c{mark % len(LOOKS)}", 3.0, corners=SHAPES[mark % len(SHAPES)])
+        yield Text(left + 9, base, symbol(name, look))
 
 
 def words_of(picture: Picture, look: Look) -> str:

@@ -12,7 +12,7 @@ from kurbel.render.charset import width as cells
 from kurbel.render.pictures.labels import CHARACTER, Box, Taken, axis_text, figure_text, symbol
 from kurbel.render.pictures.scale import Scale, tick_text, ticks
 from kurbel.render.pictures.scene import Dots, Item, Line, Places, Text, thinned
-from kurbel.render.pictures.style import LOOKS
+from kurbel.render.pictures.style import LOOKS, SHAPES
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -68,7 +68,7 @@ def looks_of(panel: Panel) -> list[int]:
 def _grid(panel: Panel, scales: Scales, look: Look) -> Iterator[Item]:
     """Yield thin lines with what they stand for, and what runs along the axes."""
     x, y = scales
-    across, up = ticks(x, panel.x, int((x.end - x.start) / 64)), ticks(y, panel.y, int((y.start - y.end) / 30))
+    across, up = ticks(x, panel.x, max(3, int((x.end - x.start) / 64))), ticks(y, panel.y, int((y.start - y.end) / 30))
     lines = [((x.place(v), y.start), (x.place(v), y.end)) for v in across]
     lines += [((x.start, y.place(v)), (x.end, y.place(v))) for v in up]
     yield Line(tuple(lines), "g")
@@ -104,7 +104,8 @@ def _curve(panel: Panel, number: int, curve: Curve, look: int, scales: Scales) -
         return
     if curve.kind == "dots":
         yield from (Line((part,), f"j{look}") for part in parts if len(part) > 1)
-        yield Dots(tuple(place for part in parts for place in part), f"c{look}", 2.2)
+        shape = SHAPES[(look if curve.look is None else curve.look) % len(SHAPES)]
+        yield Dots(tuple(place for part in parts for place in part), f"c{look}", 2.4, corners=shape)
         return
     kind = _KINDS.get(curve.kind, f"k{look}")
     yield Line(parts, kind, curve.kind == "block", moving)
@@ -124,11 +125,11 @@ def _heading(panel: Panel, frame: Box, scales: Scales, looks: list[int], look: L
     """Yield what stands above a panel: its title, what runs upward, and which stroke is which quantity."""
     x, base = scales[0], frame.top + (13 if panel.plain else 24)
     left = x.start if panel.plain else 12.0 + frame.left
-    said = [look.charset.text(panel.title)] if panel.title else []
-    said += [] if panel.plain else [axis_text(panel.y.name, panel.y.unit, look)]
-    yield Text(left, base, "    ".join(said), "t")
-    left += CHARACTER * cells("    ".join(said)) + 24
-    lines = [(curve, one) for curve, one in zip(panel.curves, looks) if curve.kind in ("line", "dots")]
+    for text in (look.charset.text(panel.title), "" if panel.plain else axis_text(panel.y.name, panel.y.unit, look)):
+        if text:
+            yield Text(left, base, text)
+            left += CHARACTER * cells(text) + 20
+    lines = [(curve, one) for curve, one in zip(panel.curves, looks) if curve.kind == "line"]
     for curve, one in lines if len(lines) > 1 else ():
         name = symbol(curve.name, look)
         wide = 30 + CHARACTER * cells(name) + 16

@@ -88,7 +88,8 @@ def _dots(axes: Any, item: Dots, top: float, order: int) -> None:
     if item.places:
         x, y = zip(*((x, y + top) for x, y in item.places))
         size = (2 * item.radius * _POINT) ** 2
-        axes.scatter(x, y, s=size, linewidth=1.2 * _POINT, zorder=order, **_fill(item.look))
+        marker = [(a, -b) for a, b in item.corners] if item.corners else "o"
+        axes.scatter(x, y, s=size, marker=marker, linewidth=1.2 * _POINT, zorder=order, **_fill(item.look))
 
 
 def _stroke(look: str) -> dict[str, Any]:

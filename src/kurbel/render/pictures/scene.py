@@ -34,12 +34,13 @@ class Text(NamedTuple):
 
 
 class Dots(NamedTuple):
-    """Small circles at places, of a class of the style."""
+    """Small figures at places, of a class of the style; corners: of the figure, none for a circle."""
 
     places: Places
     look: str
     radius: float = 2.6
     frames: tuple[Places, ...] = ()
+    corners: Places = ()
 
 
 Item = Union[Line, Text, Dots]

@@ -27,6 +27,17 @@ LOOKS = (
 )
 """After Okabe and Ito, whom the colour-blind can tell apart, darkened or lightened to a contrast of 4.5."""
 
+SHAPES: tuple[tuple[tuple[float, float], ...], ...] = (
+    (),
+    ((-1, -1), (1, -1), (1, 1), (-1, 1)),
+    ((0, -1.3), (1.2, 1), (-1.2, 1)),
+    ((0, -1.4), (1.4, 0), (0, 1.4), (-1.4, 0)),
+    ((0, 1.3), (1.2, -1), (-1.2, -1)),
+    ((-1.4, -0.5), (1.4, -0.5), (1.4, 0.5), (-1.4, 0.5)),
+    ((-0.5, -1.4), (0.5, -1.4), (0.5, 1.4), (-0.5, 1.4)),
+)
+"""Corners of the figures that mark points, over their radius; none is a circle. Seven of them and six colours."""
+
 INK, PAPER = ("#1a1a1a", "#e8e8e8"), ("#ffffff", "#15181b")
 FAINT, GRID = ("#5c5c5c", "#a5a5a5"), ("#dcdcdc", "#33383d")
 GAIN, LOSS = ("#b9cfe2", "#2d4a63"), ("#f1dccd", "#59402c")

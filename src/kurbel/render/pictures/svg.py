@@ -76,6 +76,10 @@ def _dots(item: Dots, seconds: float) -> str:
         for name, part in (("cx", 0), ("cy", 1)):
             values = [_number(one[number][part]) for one in item.frames]
             moves += _moves(name, iter(values), seconds) if len(set(values)) > 1 else ""
+        if item.corners:
+            corners = tuple((x + item.radius * a, y + item.radius * b) for a, b in item.corners)
+            found.append(f'<path class="{item.look}" d="{_path((corners,), True)}"/>')
+            continue
         where = f'cx="{_number(x)}" cy="{_number(y)}" r="{item.radius:g}"'
         found.append(f'<circle class="{item.look}" {where}{f">{moves}</circle>" if moves else "/>"}')
     return "".join(found)

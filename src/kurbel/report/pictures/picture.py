@@ -123,7 +123,8 @@ class Frame(NamedTuple):
 class Picture(NamedTuple):
     """A picture: its word on the command line, the printed title, and a sentence that says what is seen.
 
-    machine: its name; of: the cylinder, '' where there is one only; across: how many panels stand side by side.
+    machine: its name; of: the cylinder, '' where there is one only; across: how many panels stand side by side;
+    legend: what the looks of its curves stand for, where that is told once for all panels.
     """
 
     id: str
@@ -133,6 +134,7 @@ class Picture(NamedTuple):
     machine: str = ""
     of: str = ""
     across: int = 1
+    legend: tuple[tuple[Words, int], ...] = ()
 
     @property
     def heading(self) -> str:
