@@ -71,8 +71,7 @@ def solve(machine: Machine) -> Case:
     machine: from `load`, `loads`, or built in Python. Raises NoSolutionError, when a result is asked for that does not
     exist, because a crosshead locks itself for instance.
     """
-    import kurbel.notebook  # its results show themselves
-    from kurbel.solver.case import Case
+    from kurbel.notebook import Case  # which shows itself there
 
     return Case(machine)
 

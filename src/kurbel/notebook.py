@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import Extreme
-from kurbel.solver.case import Case
+from kurbel.solver.case import Case as Case
 from kurbel.solver.figures import Figure, Results, Shown
 
 if TYPE_CHECKING:

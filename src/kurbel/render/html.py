@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from html import escape
-from itertools import repeat
+from itertools import chain, repeat
 from typing import TYPE_CHECKING
 
 from kurbel.render.numbers import angle
@@ -31,10 +31,10 @@ GOOD, BAD, LINK = ("#1d6b34", "#7fd49a"), ("#a31515", "#ff9d94"), ("#0b5394", "#
 
 def html(report: Report, look: Look) -> Iterator[str]:
     """Yield the report as a page of its own."""
-    yield from page(look.charset.text(report.title), f"<main>\n{''.join(tables(report, look, 1))}</main>\n")
+    yield from page(look.charset.text(report.title), chain(("<main>\n",), tables(report, look, 1), ("</main>\n",)))
 
 
-def page(title: str, body: str, more_style: str = "") -> Iterator[str]:
+def page(title: str, body: Iterable[str], more_style: str = "") -> Iterator[str]:
     """Yield a self-contained page: no script, nothing from elsewhere, and the browser is told so."""
     yield (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -44,7 +44,7 @@ def page(title: str, body: str, more_style: str = "") -> Iterator[str]:
         f'<meta name="color-scheme" content="light dark">\n<title>{escape(title)}</title>\n'
         f"<style>\n{style()}{more_style}</style>\n</head>\n<body>\n"
     )
-    yield body
+    yield from body
     yield "</body>\n</html>\n"
 
 
@@ -96,7 +96,7 @@ def _angle_tables(report: Report, look: Look) -> Iterator[str]:
                 columns = [*sheet.heads, *band.rows[start : start + _ACROSS]]
                 rows = zip(*(row.cells for row in columns))
                 heads = [(row.symbol, row.unit) for row in columns]
-                yield table(heads, rows, band.name, len(sheet.heads), range(len(heads)))
+                yield from table(heads, rows, band.name, len(sheet.heads), range(len(heads)))
 
 
 def _place_tables(report: Report, look: Look) -> Iterator[str]:
@@ -109,7 +109,7 @@ def _place_tables(report: Report, look: Look) -> Iterator[str]:
             across = slice(start, start + _ACROSS)
             heads = [*((head, "") for head in one.heads), *cells.heads[across]]
             rows = ((*own, *texts[across]) for own, texts in zip(names, cells.rows))
-            yield table(heads, rows, look.charset.text(one.title), 0, range(len(one.heads), len(heads)))
+            yield from table(heads, rows, look.charset.text(one.title), 0, range(len(one.heads), len(heads)))
 
 
 def table(
@@ -119,8 +119,8 @@ def table(
     of_row: int,
     numbers: Collection[int],
     verdicts: Sequence[str] = (),
-) -> str:
-    """Return a table that a narrow window scrolls: heads of columns with their units, rows of texts.
+) -> Iterator[str]:
+    """Yield a table that a narrow window scrolls, row by row: heads of columns with their units, rows of texts.
 
     of_row: how many columns are the heads of their rows; numbers: which columns are numbers; verdicts: a class of each
     row, `good` or `bad`, where they have one.
@@ -130,13 +130,13 @@ def table(
         f'<th scope="col"{_RIGHT if k in numbers else ""}>{escape(symbol)}{f"<br>{_small(unit)}" if unit else ""}</th>'
         for k, (symbol, unit) in enumerate(heads)
     )
-    classes = (f' class="{one}"' for one in verdicts) if verdicts else repeat("")
-    body = "".join(f"<tr{own}>{''.join(_cells(row, of_row, numbers))}</tr>\n" for own, row in zip(classes, rows))
     label = escape(caption or "values over the crank angle", quote=True)
-    return (
-        f'<div class="wide" tabindex="0" role="region" aria-label="{label}"><table>{said}\n'
-        f"<thead><tr>{over}</tr></thead>\n<tbody>\n{body}</tbody></table></div>\n"
-    )
+    yield f'<div class="wide" tabindex="0" role="region" aria-label="{label}"><table>{said}\n'
+    yield f"<thead><tr>{over}</tr></thead>\n<tbody>\n"
+    classes = (f' class="{one}"' for one in verdicts) if verdicts else repeat("")
+    for own, row in zip(classes, rows):
+        yield f"<tr{own}>{''.join(_cells(row, of_row, numbers))}</tr>\n"
+    yield "</tbody></table></div>\n"
 
 
 _RIGHT = ' class="r"'

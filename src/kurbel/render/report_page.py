@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from html import escape
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from kurbel import __version__
@@ -32,9 +33,9 @@ _STYLE = (
 
 def report_page(document: Document, look: Look, date: str) -> Iterator[str]:
     """Yield the page. date: what stands as its date."""
-    head = "".join(_head(document, look, date))
-    body = "".join(text for section in document.sections for text in _section(section, look))
-    yield from page(look.charset.text(document.title), f"<main>\n{head}{body}</main>\n", f"{_STYLE}{css()}\n")
+    sections = (text for section in document.sections for text in _section(section, look))
+    body = chain(("<main>\n",), _head(document, look, date), sections, ("</main>\n",))
+    yield from page(look.charset.text(document.title), body, f"{_STYLE}{css()}\n")
 
 
 def _head(document: Document, look: Look, date: str) -> Iterator[str]:
@@ -79,7 +80,7 @@ def _figure(picture: Picture, look: Look) -> str:
 
 
 def _grid(grid: Grid, look: Look) -> str:
-    return table(
+    parts = table(
         [(look.charset.text(head), "") for head in grid.heads],
         [[_cell(text, k in grid.units, look) for k, text in enumerate(row)] for row in grid.rows],
         look.charset.text(grid.title),
@@ -87,6 +88,7 @@ def _grid(grid: Grid, look: Look) -> str:
         numbers=grid.numbers,
         verdicts=grid.verdicts,
     )
+    return "".join(parts)
 
 
 def _cell(text: str, unit: bool, look: Look) -> str:

@@ -57,7 +57,11 @@ text{{font:11px system-ui,"DejaVu Sans",sans-serif;fill:{ink}}}
 
 def css() -> str:
     """Return the style sheet of pictures, for light and dark; paper is light."""
-    return f"{_sheet(0)}@media screen and (prefers-color-scheme:dark){{{_sheet(1)}}}"
+    still = "svg .moving{display:none}svg .still{display:inline}"
+    return (
+        f"{_sheet(0)}svg .still{{display:none}}@media (prefers-reduced-motion:reduce){{{still}}}@media print{{{still}}}"
+        f"@media screen and (prefers-color-scheme:dark){{{_sheet(1)}}}"
+    )
 
 
 def _sheet(mode: int) -> str:
