@@ -33,7 +33,7 @@ def report(
     from kurbel.cli.progress import Progress
     from kurbel.machine_file.given import given
     from kurbel.render import Look
-    from kurbel.render.output import refuse_overwriting, write_out
+    from kurbel.render.output import refuse_overwriting, write_text
     from kurbel.render.report_page import report_page
     from kurbel.report.side_by_side import side_by_side
     from kurbel.report.whole import whole_report
@@ -55,7 +55,7 @@ def report(
         document = side_by_side(cases, keys, system, progress)
     progress("writing")
     look = Look("html", comma=decimal == "comma", digits=digits)
-    write_out(report_page(document, look, _today()), file_name)
+    write_text(report_page(document, look, _today()), file_name)
 
 
 def _today() -> str:

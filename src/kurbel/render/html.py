@@ -86,7 +86,7 @@ def tables(report: Report, look: Look, level: int = 2) -> Iterator[str]:
     yield from _place_tables(report, look)
     yield from (f"<p>{_prose(one, look)}</p>\n" for one in (report.mirrored, *report.notes) if one)
     for part in report.all_parts:
-        yield from _of_part(part_name(report, part, look), part, look)
+        yield from _of_part(part_name(report, part, look), part, look, level + 1)
 
 
 def _angle_tables(report: Report, look: Look) -> Iterator[str]:
@@ -162,20 +162,21 @@ def _prose(text: str, look: Look) -> str:
     return escape(sentence_text(text, look))
 
 
-def _of_part(name: str, part: Part, look: Look) -> Iterator[str]:
+def _of_part(name: str, part: Part, look: Look, level: int) -> Iterator[str]:
     said = f": {name}" if name else ""
     if part.key_values:
         yield key_values(part.key_values, f"Key values{said}", look)
     if part.left_out:
-        yield item_list(f"Left out{said}", (f"{one.what}: {one.why}" for one in part.left_out), look)
+        lines = (f"{one.what}: {one.why}" for one in part.left_out)
+        yield item_list(f"Left out{said}", lines, level, look)
     if part.warnings:
-        yield item_list(f"Warnings{said}", part.warnings, look)
+        yield item_list(f"Warnings{said}", part.warnings, level, look)
 
 
-def item_list(title: str, items: Iterable[str], look: Look) -> str:
-    """Return a list of sentences under its title."""
+def item_list(title: str, items: Iterable[str], level: int, look: Look) -> str:
+    """Return a list of sentences under its title, a heading of this level."""
     lines = "".join(f"<li>{_prose(one, look)}</li>\n" for one in items)
-    return f"<h4>{escape(title)}</h4>\n<ul>\n{lines}</ul>\n"
+    return f"<h{level}>{escape(title)}</h{level}>\n<ul>\n{lines}</ul>\n"
 
 
 def key_values(found: Iterable[KeyValue], caption: str, look: Look) -> str:

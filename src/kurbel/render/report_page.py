@@ -50,7 +50,7 @@ def _provenance(given: Provenance, look: Look) -> str:
     said = [f"{one.file}: SHA-256 {one.sha256 or 'not known, the file is gone'}" for one in given.inputs]
     said += [f"set over it: {one}" for one in given.overrides]
     said += [f"{name} {version}" for name, version in given.versions.items()]
-    return item_list("Made from", said, look) if said else ""
+    return item_list("Made from", said, 2, look) if said else ""
 
 
 def _section(section: Section, look: Look) -> Iterator[str]:

@@ -74,6 +74,12 @@ class Canvas:
             self._roles[row][column + offset] = role
             self._written[row, column + offset] = True
 
+    @property
+    def used(self) -> tuple[int, int]:
+        """The first row in which something stands, and the row after the last one."""
+        rows = [k for k in range(self.rows) if self._bits[k].any() or "".join(self._letters[k]).strip()] or [0]
+        return rows[0], rows[-1] + 1
+
     def line_of(self, row: int) -> Line:
         """Return a row of the canvas, neighbours of one role as one piece."""
         pieces: list[Piece] = []

@@ -49,7 +49,8 @@ def _panel(panel: Panel, look: Look, width: int, rows: int) -> Iterator[Line]:
     yield from (line(one) for one in folded(_head(panel, look), width))
     _draw(panel, canvas, scales, look)
     at = {int(scales[1].place(v)) * rows // down: text for v, text in zip(up, texts)}
-    for row in range(rows):
+    shown = range(*canvas.used) if panel.plain else range(rows)
+    for row in shown:
         label = line(right(at.get(row, ""), side - 1) + " ", "unit") if side else ()
         yield (*label, *canvas.line_of(row))
     if not panel.plain:
