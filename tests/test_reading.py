@@ -10,7 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
 CODE = [file for folder in ("src", "tests", "docs", "benchmarks") for file in (ROOT / folder).rglob("*.py")]
-PAGES = [*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
+PAGES = [*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md")]
 FILE = re.compile(r"(?<![\w/.])[\w./-]*\w\.(?:md|py|yaml|svg|csv|json|toml|txt|expected)\b")
 NAME = re.compile(r"\bkurbel(?:\.[A-Za-z_]\w*)+")
 READERS = {"engine.yaml", "MACHINE.yaml", "m.yaml", "demo.yaml", "broken.yaml", "run7.csv", "kurbel.schema.json"}
@@ -54,5 +54,5 @@ def test_docstrings_and_pages_point_to_what_is_there() -> None:
 
 
 def test_what_is_not_there_is_found() -> None:
-    text = "see formulas.md 3.7, docs/symbols.md, kurbel.solver.case.Case and kurbel.solver.drive"
+    text = "see formulas.md 3.7, docs/limits.md, kurbel.solver.case.Case and kurbel.solver.drive"
     assert astray(text, ROOT / "README.md") == ["formulas.md", "kurbel.solver.drive"]
