@@ -26,7 +26,7 @@ def _cited(text: str, version: str) -> str:
 
 def _dated(text: str, version: str) -> str:
     """Return the changelog with its unreleased part under this version and today, and a new empty one above."""
-    if "## [Unreleased]\n\n##" in text or "## [Unreleased]" not in text:
+    if not re.search(r"(?m)^## \[Unreleased\]\n+(?!## )", text):
         sys.exit("CHANGELOG.md: nothing stands under [Unreleased]")
     return text.replace("## [Unreleased]", f"## [Unreleased]\n\n## [{version}] - {date.today().isoformat()}", 1)
 
