@@ -14,7 +14,15 @@ PAGES = [*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md")]
 FILE = re.compile(r"(?<![\w/.])[\w./-]*\w\.(?:md|py|yaml|svg|csv|json|toml|txt|expected)\b")
 NAME = re.compile(r"\bkurbel(?:\.[A-Za-z_]\w*)+")
 SHOWN = re.compile(r'title="([^"]+)"')
-READERS = {"engine.yaml", "MACHINE.yaml", "m.yaml", "machines/mill-engine.yaml", "run7.csv", "effort.csv", "indicator.csv"}
+READERS = {
+    "engine.yaml",
+    "MACHINE.yaml",
+    "m.yaml",
+    "machines/mill-engine.yaml",
+    "run7.csv",
+    "effort.csv",
+    "indicator.csv",
+}
 READERS |= {"forces.md", "FILE.svg", "kurbel.schema.json"}
 ELSEWHERE = READERS | {"examples/ICE_example.py", "kurbel.mechanisms.harmonic_cam"}
 """Files of the reader's own, one of opentorsion, and the mechanism that the pages add as an example."""
