@@ -88,7 +88,7 @@ def _place_rows(report: Report, look: Look) -> Iterator[list[str]]:
 
 def head(column: Column) -> str:
     """Return id and unit: `x_m`, `b_m/s^2`, `M_Nm`, or the id alone for a ratio."""
-    unit = column.unit.replace(" ", "")
+    unit = column.unit.replace(" abs", "_abs").replace(" ", "")
     return f"{column.id}_{unit}" if unit else column.id
 
 

@@ -28,7 +28,7 @@ def forces_report(
     machine = case.machine
     if not machine.cylinders:
         raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
-    frame = Frame("forces", rows_of(case, angles, 360.0 * machine.revolutions), columns, system, also)
+    frame = Frame("forces", rows_of(angles, 360.0 * machine.revolutions), columns, system, also)
     notes = (*mechanism_notes(machine), *guide_notes(case), *_rod_notes(case))
     return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=notes)
 
@@ -62,7 +62,7 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
         yield from left_out(case.machine, cylinder)
         yield from _no_loss(forces)
 
-    return Subject(cylinder.name, (forces, forces.motion), at, cylinder.mechanism, left, warnings)
+    return Subject(cylinder.name, (forces, forces.motion), at, forces.lists, left, warnings, source=forces)
 
 
 def _no_loss(forces: CylinderForces) -> tuple[LeftOut, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,17 +12,12 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.reading import shown
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms import every_quantity, quantities_of
+from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.figures import answered
-
-if TYPE_CHECKING:
-    from kurbel.mechanisms import Mechanism
-    from kurbel.solver.case import Case
-    from kurbel.solver.cylinder.forces import CylinderForces
 
 Answer = Callable[[Quantity], Any]
 """What answers a column with its values (n,) in SI at certain crank angles, or None where it has none."""
@@ -32,22 +27,18 @@ class Subject(NamedTuple):
     """What a command speaks of: one cylinder, or the whole machine.
 
     results: what answers its key values, the first that knows one; at: takes crank angles (n,) in degrees and returns
-    what answers its columns; mechanism: whose own quantities it has besides. left_out, warnings, place_tables: are made
-    when they are read.
+    what answers its columns; lists: the quantities that it may have. left_out, warnings, place_tables: are made
+    when they are read; source: where its columns are told of, `angles_where`, None for what has no rows.
     """
 
     name: str
     results: tuple[Any, ...]
     at: Callable[[Any], Answer] | None = None
-    mechanism: Mechanism | None = None
+    lists: Lists = COMMON
     left_out: Callable[[], Iterable[LeftOut]] = tuple
     warnings: Callable[[], Iterable[str]] = tuple
     place_tables: tuple[PlaceTable, ...] = ()
-
-    @property
-    def lists(self) -> Lists:
-        """The quantities that it may have."""
-        return quantities_of(self.mechanism) if self.mechanism else COMMON
+    source: Any = None
 
     def says(self, quantity: Quantity) -> bool:
         """Whether a quantity says something new here."""
@@ -76,16 +67,16 @@ def of_state(state: Any) -> Answer:
     return lambda column: getattr(state, column.id, None)
 
 
-Rows = Callable[["Subject", "CylinderForces", float], "Sequence[float]"]
-"""Takes what a cylinder answers, its results, and the degrees of the table; returns crank angles (n,) in degrees."""
+Rows = Callable[["Subject", float], "Sequence[float]"]
+"""Takes a subject and the degrees of its table; returns crank angles (n,) in degrees."""
 
 
-def rows_of(case: Case, angles: Sequence[float] | Rows, end: float) -> Sequence[float] | Callable[[Subject], Any]:
-    """Return angles as they are, or what tells those of each cylinder, whose table goes from 0 to `end` degrees."""
+def rows_of(angles: Sequence[float] | Rows, end: float) -> Sequence[float] | Callable[[Subject], Any]:
+    """Return angles as they are, or what tells those of each subject, whose table goes from 0 to `end` degrees."""
     if not callable(angles):
         return angles
-    found, results = angles, {forces.drive.name: forces for forces in case.cylinders}
-    return lambda subject: found(subject, results[subject.name], end)
+    found = angles
+    return lambda subject: found(subject, end)
 
 
 class Frame(NamedTuple):

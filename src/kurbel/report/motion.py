@@ -24,7 +24,7 @@ def motion_report(
     machine = case.machine
     if not machine.cylinders:
         raise UsageError(f"{machine.name} has no cylinder; kurbel motion needs one")
-    frame = Frame("motion", rows_of(case, angles, 360.0), columns, system, also)
+    frame = Frame("motion", rows_of(angles, 360.0), columns, system, also)
     return frame.report(machine, "Bewegung des Kurbeltriebes", subjects(case), notes=mechanism_notes(machine))
 
 
@@ -39,8 +39,9 @@ def _subject(machine: Machine, forces: CylinderForces) -> Subject:
         cylinder.name,
         (forces.motion,),
         lambda degrees: of_state(forces.at(degrees)),
-        cylinder.mechanism,
+        forces.lists,
         lambda: motion_left_out(machine, cylinder),
+        source=forces,
     )
 
 

@@ -22,7 +22,6 @@ from kurbel.report.angles import stepped
 
 if TYPE_CHECKING:
     from kurbel.report.frame import Rows, Subject
-    from kurbel.solver.cylinder.forces import CylinderForces
 
 
 def over_stroke(step: float) -> Rows:
@@ -32,8 +31,8 @@ def over_stroke(step: float) -> Rows:
     """
     fractions = np.asarray(stepped(step, 100.0)) / 100
 
-    def angles(subject: Subject, forces: CylinderForces, end: float) -> Sequence[float]:
-        mechanism = forces.drive.mechanism
+    def angles(subject: Subject, end: float) -> Sequence[float]:
+        mechanism = subject.source.drive.mechanism
         if mechanism.turns:
             raise UsageError(f"--over x: the output of a {mechanism.name} turns on and has no stroke")
         way = mechanism.stroke * fractions
@@ -51,15 +50,16 @@ def _turns(end: float) -> list[tuple[float, int]]:
 
 
 class Place(NamedTuple):
-    """A condition such as `b = 1/6 b_max`: a column, and the value at which it is wanted, as it is written."""
+    """A condition such as `b = 1/6 b_max`: a column of a command, and the value at which it is wanted, as written."""
 
+    command: str
     column: str
     factor: float
     of: str
     text: str
 
     @classmethod
-    def parsed(cls, text: str) -> Place:
+    def parsed(cls, text: str, command: str) -> Place:
         """Return the condition that a text is. Raises UsageError that says what to write instead."""
         column, equals, value = plain(text).partition("=")
         number = re.match(RATIO, value.strip()) or NUMBER.match(value.strip())
@@ -67,15 +67,15 @@ class Place(NamedTuple):
         if len(text) > LONGEST_VALUE or not (text.isprintable() and column.strip() and equals and (number or of)):
             raise UsageError(f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{shown(text)}'")
         try:
-            return cls(column.strip(), parse_ratio(number.group()) if number else 1.0, of, text)
+            return cls(command, column.strip(), parse_ratio(number.group()) if number else 1.0, of, text)
         except UnitError as error:
             raise UsageError(f"--where: {error}") from None
 
-    def angles(self, subject: Subject, forces: CylinderForces, end: float) -> Sequence[float]:
+    def angles(self, subject: Subject, end: float) -> Sequence[float]:
         """Return the crank angles in degrees, exact but for rounding; see `Rows`. Raises NoSolutionError for none."""
         column = self._column(subject)
         value = self._value(subject, column) if column else 0.0
-        found = column and forces.angles_where(column.id, value)
+        found = column and subject.source.angles_where(column.id, value)
         if column is None or found is None:
             raise UsageError(f"--where: '{self.column}' is left out for this machine; kurbel check says why")
         if not found.angles:
@@ -88,7 +88,7 @@ class Place(NamedTuple):
 
     def _column(self, subject: Subject) -> Quantity | None:
         """Return the column that is meant, by id or printed symbol; None for one of other machines alone."""
-        own, every = (lists.columns("forces") for lists in (subject.lists, every_quantity()))
+        own, every = (lists.columns(self.command) for lists in (subject.lists, every_quantity()))
         ids = called(self.column, own.values()) or called(self.column, every.values())
         if not ids:
             near = did_you_mean(self.column, tuple(every))
@@ -110,7 +110,7 @@ class Place(NamedTuple):
         return self.factor * up / down
 
     def _key_value(self, subject: Subject, column: Quantity, no_unit: str) -> float:
-        known = subject.lists.key_values("forces")
+        known = subject.lists.key_values(self.command)
         quantity = next((known[id] for id in called(self.of, known.values()) if known[id].kind == column.kind), None)
         if quantity is None:
             alike = [one.id for one in known.values() if one.kind == column.kind and not one.listed]

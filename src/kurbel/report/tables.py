@@ -39,7 +39,8 @@ class Column(NamedTuple):
     values: a tuple, or an array of doubles, which takes a quarter of the memory;
     decimals: fixed number of decimals in printed tables, where the digits of a source are to be kept;
     marked: indices of the values that the printed table marks with an asterisk; alone: each value has a scale of its
-    own, since they run over many powers of ten, as errors do.
+    own, since they run over many powers of ten, as errors do; size: of the largest value of the whole curve, where the
+    values here are but rounding beside it, and 0 where they are not.
     """
 
     id: str
@@ -51,6 +52,7 @@ class Column(NamedTuple):
     decimals: int | None = None
     marked: tuple[int, ...] = ()
     alone: bool = False
+    size: float = 0.0
 
 
 class KeyValue(NamedTuple):

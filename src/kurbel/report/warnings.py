@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
+from kurbel.report.guide import guide_warnings
 
 if TYPE_CHECKING:
     from kurbel.solver.case import Case
@@ -27,6 +28,7 @@ def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
                 "counted as Druckwechsel"
             )
         yield from _bound_warnings(forces)
+        yield from guide_warnings(forces)
 
     return _as_far_as_solved(found, "forces")
 

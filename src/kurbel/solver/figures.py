@@ -96,7 +96,7 @@ def _asked(results: Any, name: str, argument: str = "", part: str = "") -> Any:
 
 def _figure(quantity: Quantity, value: Any) -> Figure:
     number, degrees = value if isinstance(value, Extreme) else (value, None)
-    return Figure(number, SI[quantity.kind], degrees, quantity)
+    return Figure(number, quantity.marked(SI[quantity.kind]), degrees, quantity)
 
 
 def _row(figure: Figure) -> str:
@@ -109,5 +109,5 @@ def _row(figure: Figure) -> str:
     if any(map(quantity.is_noise, each)):
         numbers = f"< 1e{NOISE_POWER}"
     at = "" if figure.degrees is None else f"at {figure.degrees:.2f}°"
-    cells = (quantity.symbol, numbers, unit, at, quantity.text)
+    cells = (quantity.symbol, numbers, quantity.marked(unit), at, quantity.text)
     return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"
