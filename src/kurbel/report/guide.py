@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from kurbel.report.alike import together
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
@@ -13,11 +14,11 @@ _MOST = 4
 
 
 def guide_notes(case: Case) -> Iterable[str]:
-    """Yield for each cylinder that its crosshead rests on the lower guide, where it does."""
-    for forces in case.cylinders:
-        if _guided(forces) and not forces.lifted:
-            name = f"{forces.drive.name}: " if len(case.cylinders) > 1 else ""
-            yield f"{name}{_told(forces)} (R p. 602)."
+    """Yield of which cylinders the crosshead rests on the lower guide."""
+    resting = [forces for forces in case.cylinders if _guided(forces) and not forces.lifted]
+    if resting:
+        name = f"{together([one.drive.name for one in resting])}: " if len(case.cylinders) > 1 else ""
+        yield f"{name}{_told(resting[0])} (R p. 602)."
 
 
 def guide_warnings(forces: CylinderForces) -> Iterable[str]:
