@@ -294,7 +294,10 @@ def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
     ) -> None:
         system = units or ("si" if output.look.format in ("csv", "json") else "metric")
         asked = Asked(file, overrides, step, angles, columns, system, cylinder, key_values_only, output)
-        command(asked=asked, **others)
+        from kurbel.declared.unit_systems import told_in
+
+        with told_in(units or "metric"):
+            command(asked=asked, **others)
 
     return _stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
         output_options(with_asked)

@@ -77,7 +77,7 @@ def key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Li
 
 
 def _placed_below(one: _Shown) -> _Shown:
-    return one._replace(place="", text=f"{one.place}: {one.text}") if one.place else one
+    return one._replace(place="", text=f"{one.place}  {one.text}") if one.place else one
 
 
 def _standing_out(head: str, value: str, look: Look) -> Iterator[Line]:

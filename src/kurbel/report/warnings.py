@@ -140,7 +140,7 @@ def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
         return
     for near in turning.elastic.resonances:
         yield (
-            f"resonance: harmonic {near.order:g} of the torque ({near.amplitude:.4g} N m) lies "
+            f"resonance: harmonic {near.order:g} of the torque ({show(near.amplitude, 'torque')}) lies "
             f"{100 * abs(near.distance):.2g} % from the natural order {turning.elastic.natural_order:.4g} and is "
             f"amplified {near.amplification:.3g} times"
         )
