@@ -148,7 +148,7 @@ columns_option = click.option(
 )
 _part_options = _stacked(
     click.option(
-        "--cylinder", metavar="NAME", help="Only the results of this cylinder.", shell_complete=complete_cylinder
+        "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
     ),
     click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
 )

@@ -108,7 +108,9 @@ class Frame(NamedTuple):
             last = parts.pop() if whole else None
             name = machine.name
             report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=tuple(notes))
-            return report._replace(provenance=provenance(machine))
+            return report._replace(
+                provenance=provenance(machine), cylinders=tuple(cylinder.name for cylinder in machine.cylinders)
+            )
 
     def _part(self, subject: Subject) -> Part:
         return Part(

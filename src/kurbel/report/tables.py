@@ -129,7 +129,8 @@ class Report(NamedTuple):
     title: head line over the printed table, with its German title; command and machine as in JSON (`machine` is None
     for `kurbel table`); group: `cylinders`, `ratios` or `scenes`, the JSON key of `parts`; whole: the results of the
     whole machine, if any; mirrored: what changes under a second head line of the angles 360° − φ (empty: no such line);
-    notes: sentences below the table; head: sentences right below the title; provenance: None where no file was read.
+    notes: sentences below the table; head: sentences right below the title; provenance: None where no file was read;
+    cylinders: the names of all that the machine has.
     """
 
     title: str
@@ -142,6 +143,7 @@ class Report(NamedTuple):
     notes: tuple[str, ...] = ()
     head: tuple[str, ...] = ()
     provenance: Provenance | None = None
+    cylinders: tuple[str, ...] = ()
 
     @property
     def all_parts(self) -> tuple[Part, ...]:
@@ -149,7 +151,18 @@ class Report(NamedTuple):
         return self.parts if self.whole is None else (*self.parts, self.whole)
 
     def of_cylinder(self, name: str) -> Report:
-        """Return the results of one cylinder alone. Raises UsageError where there are none by that name."""
+        """Return the results of one cylinder alone, by its name or its number.
+
+        Raises UsageError where there are none, and where one is called by the number of another.
+        """
+        numbered = dict(zip(map(str, range(1, len(self.cylinders) + 1)), self.cylinders))
+        if numbered.get(name, name) != name and name in self.cylinders:
+            own = self.cylinders.index(name) + 1
+            raise UsageError(
+                f"--cylinder: '{name}' is the name of cylinder {own} and the number of '{shown(numbered[name])}'; "
+                f"write '{own}' or '{shown(numbered[name])}'"
+            )
+        name = numbered.get(name, name)
         names = tuple(str(part.name) for part in self.parts)
         if name not in names:
             there = ", ".join(names) or "the whole machine only"

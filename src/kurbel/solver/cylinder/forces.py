@@ -19,7 +19,7 @@ from kurbel.numerics.search import Curve, Evaluate, Extremes, Sampled, curves, e
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.state import State
-from kurbel.solver.figures import Results, answered
+from kurbel.solver.figures import Results, answered, crank_angles
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -51,6 +51,10 @@ class CylinderForces(Results):
         return known.absolute if gas and gas.absolute else known
 
     @property
+    def _of(self) -> str:
+        return self.drive.name
+
+    @property
     def answering(self) -> tuple[Any, ...]:
         """What answers key values, the first that knows one."""
         return (self, self.motion)
@@ -67,7 +71,7 @@ class CylinderForces(Results):
 
         At a jump the value just after it is meant.
         """
-        return self.drive.at(np.asarray(degrees, dtype=float))
+        return self.drive.at(crank_angles(degrees))
 
     @cached_property
     def grid(self) -> Grid:

@@ -14,7 +14,7 @@ from kurbel.numerics.collocation import Standstill, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import rising_root
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Results
+from kurbel.solver.figures import Results, crank_angles
 from kurbel.solver.turning.columns import OF_SPEED, TurningColumns
 from kurbel.solver.turning.machine_effort import MachineEffort, dead_centre_force
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedLine, floquet
@@ -54,7 +54,7 @@ class MachineTurning(Results):
 
     def at(self, degrees: Array) -> TurningColumns:
         """Return every column at crank angles (n,) of crank 1 in degrees, just after a jump where there is one."""
-        return TurningColumns(self.turned, self.crank, self.speed, degrees)
+        return TurningColumns(self.turned, self.crank, self.speed, crank_angles(degrees))
 
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
