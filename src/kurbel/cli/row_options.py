@@ -35,10 +35,10 @@ class AskedRows(NamedTuple):
     @property
     def columns(self) -> tuple[str, ...]:
         """The columns that are shown besides."""
+        from kurbel.report.frame import APPROXIMATIONS
+
         return (*(("z",) if self.over else ()), *(APPROXIMATIONS if self.compare else ()))
 
-
-APPROXIMATIONS = ("x_book", "c_book", "b_book", "P_gas_book")
 
 where_option = click.option(
     "--where", metavar="'COLUMN = VALUE'", help="Rows where a column has a value, such as 'b = 1/6 b_max'."

@@ -19,6 +19,9 @@ from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.figures import answered
 
+APPROXIMATIONS = ("x_book", "c_book", "b_book", "P_gas_book")
+"""Columns of the book beside the exact ones."""
+
 Answer = Callable[[Quantity], Any]
 """What answers a column with its values (n,) in SI at certain crank angles, or None where it has none."""
 
@@ -105,9 +108,10 @@ class Frame(NamedTuple):
             every = (*subjects, *((whole,) if whole else ()))
             parts = [self._part(one) for one in every]
             self._refuse_absent(every, parts)
+            told = (*notes, *self._nothing_compared(parts))
             last = parts.pop() if whole else None
             name = machine.name
-            report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=tuple(notes))
+            report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=told)
             return report._replace(
                 provenance=provenance(machine), cylinders=tuple(cylinder.name for cylinder in machine.cylinders)
             )
@@ -146,6 +150,14 @@ class Frame(NamedTuple):
     def _key_values(self, subject: Subject) -> Iterator[KeyValue]:
         for quantity, value in subject.key_values(self.command):
             yield shown_key_value(quantity, value, self.system)
+
+    def _nothing_compared(self, parts: Sequence[Part]) -> Iterator[str]:
+        asked = {*self.also} & {*APPROXIMATIONS}
+        if asked and not any(column.id in asked for part in parts for column in part.columns):
+            yield (
+                "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset "
+                "and of a piston with pressures; this machine has neither."
+            )
 
     def _refuse_absent(self, subjects: Sequence[Subject], parts: Sequence[Part]) -> None:
         """Raise UsageError for a column that was asked for and that no part has."""

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from kurbel.report.frame import Rows, Subject
 
 
+_OF_SPEED = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
+
+
 def over_stroke(step: float) -> Rows:
     """Return the angles at which x passes 0, step, 2 step, … percent of the stroke, on both strokes.
 
@@ -77,7 +80,7 @@ class Place(NamedTuple):
         value = self._value(subject, column) if column else 0.0
         found = column and subject.source.angles_where(column.id, value)
         if column is None or found is None:
-            raise UsageError(f"--where: '{self.column}' is left out for this machine; kurbel check says why")
+            raise UsageError(f"--where: '{self.column}' is left out for this machine{self._why(subject, column)}")
         if not found.angles:
             low, high = (show(one, column.kind) for one in found.span)
             raise NoSolutionError(
@@ -85,6 +88,12 @@ class Place(NamedTuple):
             )
         # a table over one turn has what a cycle of two has in either
         return ascending(np.mod(found.angles, end), 1e-9).tolist()  # type: ignore[no-any-return]
+
+    def _why(self, subject: Subject, column: Quantity | None) -> str:
+        """Return why a column is left out, as far as the speed is the reason."""
+        if column is None or column.kind not in _OF_SPEED or subject.source.omega is not None:
+            return "; kurbel check says why"
+        return ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
 
     def _column(self, subject: Subject) -> Quantity | None:
         """Return the column that is meant, by id or printed symbol; None for one of other machines alone."""

@@ -98,10 +98,11 @@ def _bound_warnings(forces: CylinderForces) -> Iterable[str]:
 def _of_turning(turning: MachineTurning) -> Iterable[str]:
     machine = turning.machine
     if turning.deficit is not None:
+        word = "more" if turning.deficit > 0 else "less"
         yield (
             f"mean effort {show(turning.M_mean, 'torque')} and mean resistance "
             f"{show(turning.M_mean - turning.deficit, 'torque')} differ: the machine does not run steadily like this; "
-            f"E and ω count {show(turning.deficit, 'torque')} more resistance all the time"
+            f"E and ω count {show(abs(turning.deficit), 'torque')} {word} resistance all the time"
         )
     if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
         yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
