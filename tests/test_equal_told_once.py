@@ -97,3 +97,11 @@ def test_findings_name_their_cylinder() -> None:
 def test_no_key_value_runs_over_the_page(columns: int, name: str, command: str) -> None:
     page = run(command, str(CONFIGS / f"{name}.yaml"), "--key-values", "--width", str(columns))
     assert [line for line in page.splitlines() if width(line) > columns] == []
+
+
+@pytest.mark.parametrize("columns", [40, 80])
+def test_check_fills_a_width(columns: int) -> None:
+    page = run("check", "-", "--width", str(columns), text=V8.format(bank=90))
+    lines = page.splitlines()
+    assert columns - 16 <= max(map(width, lines)) <= columns
+    assert page.split() == run("check", "-", text=V8.format(bank=90)).split()

@@ -158,6 +158,9 @@ units_option = click.option(
     help="metric: mm, bar, kN, the default of tables and markdown; technical: mm, kgf, at, as the old books; "
     "imperial: in, lbf, psi; si: the default of csv and json.",
 )
+width_option = click.option(
+    "--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill; a terminal's own if not given."
+)
 _look_options = _stacked(
     click.option(
         "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
@@ -179,9 +182,7 @@ _look_options = _stacked(
     click.option(
         "--digits", type=click.IntRange(1, 17), help="Significant digits; if not given 4, and all in csv and json."
     ),
-    click.option(
-        "--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill; a terminal's own if not given."
-    ),
+    width_option,
 )
 
 

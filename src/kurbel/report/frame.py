@@ -82,6 +82,12 @@ def rows_of(angles: Sequence[float] | Rows, end: float) -> Sequence[float] | Cal
     return lambda subject: found(subject, end)
 
 
+def refuse_without_cylinder(machine: Machine, command: str) -> None:
+    """Raise UsageError where a command has nothing to tell of."""
+    if not machine.cylinders:
+        raise UsageError(f"{machine.name} has no cylinder; kurbel {command} needs one")
+
+
 class Frame(NamedTuple):
     """A report to be made: of which command, at which crank angles (n,) in degrees, with which columns, in which units.
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.report.frame import Frame, Rows, Subject, of_state, rows_of
+from kurbel.report.frame import Frame, Rows, Subject, of_state, refuse_without_cylinder, rows_of
 from kurbel.report.left_out import motion_left_out
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
@@ -22,8 +21,7 @@ def motion_report(
 ) -> Report:
     """Return the motion of every cylinder's mechanism; angles: crank angles, or what finds them; see `Frame`."""
     machine = case.machine
-    if not machine.cylinders:
-        raise UsageError(f"{machine.name} has no cylinder; kurbel motion needs one")
+    refuse_without_cylinder(machine, "motion")
     frame = Frame("motion", rows_of(angles, 360.0), columns, system, also)
     return frame.report(machine, "Bewegung des Kurbeltriebes", subjects(case), notes=mechanism_notes(machine))
 
