@@ -90,7 +90,7 @@ def test_the_column_has_the_value_there(name: str, condition: str, column: str) 
 @pytest.mark.parametrize(
     ("condition", "status", "message"),
     [
-        ("M = 1 kN m", 3, "M is nowhere 1000 N m"),
+        ("M = 1 kN m", 3, "M is nowhere 1 kN m"),
         ("T = 0", 2, "'T' is left out for this machine"),
         ("b = 0", 2, "'b' is no column"),
         ("M = 1 mm", 2, "neither a unit nor a key value of this kind"),
@@ -121,3 +121,35 @@ def test_b_at_its_own_zero() -> None:
     assert rows["b"] == ["m/s²", "0.00", "0.00"]
     assert rows["P_b"] == ["kN", "0.00", "0.00"]
     assert rows["c"] == ["m/s", "2.136", "-2.136"]
+
+
+STAGES = """
+speed: 600 rpm
+cylinders:
+  - {name: LP, stroke: 200 mm, rod: 450 mm, bore: 400 mm,
+     indicator: {head_end: {constant: {expansion: 0 bar, compression: 3 bar}}}}
+  - {name: HP, like: LP, indicator: {head_end: {constant: {expansion: 3 bar, compression: 9 bar}}}}
+"""
+
+
+def of_stages(*words: str) -> Result:
+    return CliRunner().invoke(kurbel, ["forces", "-", *words], input=STAGES)
+
+
+def test_one_cylinder_may_have_what_another_has_not() -> None:
+    both = of_stages("--where", "p_head = 5 bar", "--columns", "p_head")
+    assert both.exit_code == 0
+    assert "LP: p_head is nowhere 5 bar: it goes from 0 mbar to 3 bar." in both.stdout
+    rows = of_stages("--where", "p_head = 5 bar", "--columns", "p_head", "-f", "csv").stdout.splitlines()
+    assert {row.split(",")[0] for row in rows[1:]} == {"HP"}
+    assert of_stages("--where", "p_head = 5 bar", "--columns", "p_head", "--cylinder", "2").exit_code == 0
+    for cylinder, condition in (("LP", "p_head = 5 bar"), ("HP", "p_head = 1 bar")):
+        alone = of_stages("--where", condition, "--columns", "p_head", "--cylinder", cylinder)
+        assert (alone.exit_code, f"{cylinder}: p_head is nowhere" in alone.stderr) == (3, True)
+    neither = of_stages("--where", "p_head = 50 bar")
+    assert (neither.exit_code, "LP: p_head is nowhere 50 bar" in neither.stderr) == (3, True)
+
+
+def test_a_unit_alone_is_no_value() -> None:
+    result = of_stages("--where", "p_head = bar")
+    assert (result.exit_code, "has no number before the unit; write 5.4 bar" in result.stderr) == (2, True)

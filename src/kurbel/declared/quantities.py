@@ -191,13 +191,13 @@ _CYLINDER_VALUES = (
     _forces("A_crank", "A_C", "area", "Piston area at the crank end"),
     _forces("p_max", "p_max", "pressure", "Largest gauge pressure in the cylinder's own piston", gauge=True),
     _forces(
-        "p_guide_max", "p_g,max", "pressure", "Largest pressure of the crosshead's shoe on its guide", after="T_min"
+        "p_guide_max", "p_g,max", "pressure", "Largest pressure of the crosshead's shoe on its guide", after="T_peak"
     ),
     _forces(
-        "p_guide_mean", "p_g,m", "pressure", "Mean over the way of the shoe's pressure on its guide", after="T_min"
+        "p_guide_mean", "p_g,m", "pressure", "Mean over the way of the shoe's pressure on its guide", after="T_peak"
     ),
-    _forces("wear_max", "f N c_max", "power", "Largest value of the wear line of the guide", after="T_min"),
-    _forces("wear_mean", "f N c_m", "power", "Mean of the wear line: power lost on the guide", after="T_min"),
+    _forces("wear_max", "f N c_max", "power", "Largest value of the wear line of the guide", after="T_peak"),
+    _forces("wear_mean", "f N c_m", "power", "Mean of the wear line: power lost on the guide", after="T_peak"),
     _forces("m", "m", "mass", "Reciprocating mass with its share of the connecting rod"),
     _forces("P_inertia_max", "P_b,max", "force", "Largest inertia force toward the shaft", after="P_start_min"),
     _forces(

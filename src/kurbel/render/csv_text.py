@@ -41,7 +41,7 @@ def _line(row: Iterable[str], separator: str) -> str:
 def _table(report: Report, parts: list[Part], look: Look, separator: str) -> Iterator[str]:
     """Yield head and rows; a number is never quoted, so that none is looked at twice."""
     heads = _merged([[head(column) for column in part.columns] for part in parts])
-    named = report.group == "ratios" or len(parts) > 1
+    named = report.group == "ratios" or len([*parts, *(part for part in report.parts if part.nowhere)]) > 1
     first = "rod_ratio" if report.group == "ratios" else "cylinder"
     yield _line([*([first] if named else []), *heads], separator)
     for part in parts:

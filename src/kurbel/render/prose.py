@@ -142,7 +142,8 @@ def value_text(one: KeyValue, look: Look) -> tuple[str, int]:
 
 def sentence_text(text: str, look: Look) -> str:
     """Return a sentence in the characters of the output, its numbers with the decimal comma where that is asked for."""
-    text = look.charset.text(text)
+    squared = re.sub(r"(?<=[a-z])\^2", "²", text)
+    text = look.charset.text(squared if look.charset.has(squared) else text)
     return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if look.comma else text
 
 

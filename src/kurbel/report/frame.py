@@ -10,7 +10,7 @@ import numpy as np
 from kurbel.declared.quantities import COMMON, Lists
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.reading import shown
-from kurbel.errors import UsageError
+from kurbel.errors import NoSolutionError, Nowhere, UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
@@ -88,6 +88,14 @@ def refuse_without_cylinder(machine: Machine, command: str) -> None:
         raise UsageError(f"{machine.name} has no cylinder; kurbel {command} needs one")
 
 
+def _nowhere(parts: Sequence[Part]) -> Iterator[str]:
+    """Yield why parts have no row, in one sentence each; raises NoSolutionError where none has."""
+    without = [part.nowhere for part in parts if part.nowhere]
+    if without and not any(part.columns for part in parts):
+        raise NoSolutionError(without[0])
+    return (f"{one}." for one in without)
+
+
 class Frame(NamedTuple):
     """A report to be made: of which command, at which crank angles (n,) in degrees, with which columns, in which units.
 
@@ -114,7 +122,7 @@ class Frame(NamedTuple):
             every = (*subjects, *((whole,) if whole else ()))
             parts = [self._part(one) for one in every]
             self._refuse_absent(every, parts)
-            told = (*notes, *self._nothing_compared(parts))
+            told = (*notes, *self._nothing_compared(parts), *_nowhere(parts))
             last = parts.pop() if whole else None
             name = machine.name
             report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=told)
@@ -123,13 +131,18 @@ class Frame(NamedTuple):
             )
 
     def _part(self, subject: Subject) -> Part:
+        try:
+            columns, nowhere = self._columns(subject), ""
+        except Nowhere as error:
+            columns, nowhere = (), str(error)
         return Part(
             subject.name,
-            self._columns(subject),
+            columns,
             self._later(lambda: self._key_values(subject)),
             self._later(subject.left_out),
             self._later(subject.warnings),
             subject.place_tables,
+            nowhere,
         )
 
     def _later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:

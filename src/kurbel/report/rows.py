@@ -13,7 +13,7 @@ from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import example, unit_factor
-from kurbel.errors import NoSolutionError, UnitError, UsageError
+from kurbel.errors import Nowhere, UnitError, UsageError
 from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
@@ -57,7 +57,7 @@ class Place(NamedTuple):
 
     command: str
     column: str
-    factor: float
+    factor: float | None
     of: str
     text: str
 
@@ -70,7 +70,7 @@ class Place(NamedTuple):
         if len(text) > LONGEST_VALUE or not (text.isprintable() and column.strip() and equals and (number or of)):
             raise UsageError(f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{shown(text)}'")
         try:
-            return cls(command, column.strip(), parse_ratio(number.group()) if number else 1.0, of, text)
+            return cls(command, column.strip(), parse_ratio(number.group()) if number else None, of, text)
         except UnitError as error:
             raise UsageError(f"--where: {error}") from None
 
@@ -83,7 +83,7 @@ class Place(NamedTuple):
             raise UsageError(f"--where: '{self.column}' is left out for this machine{self._why(subject, column)}")
         if not found.angles:
             low, high = (show(one, column.kind) for one in found.span)
-            raise NoSolutionError(
+            raise Nowhere(
                 f"{subject.name}: {column.id} is nowhere {show(value, column.kind)}: it goes from {low} to {high}"
             )
         # a table over one turn has what a cycle of two has in either
@@ -108,15 +108,18 @@ class Place(NamedTuple):
 
     def _value(self, subject: Subject, column: Quantity) -> float:
         """Return the value in SI: a number with a unit of the column's kind, or a fraction of a key value."""
+        factor = 1.0 if self.factor is None else self.factor
         if not self.of:
-            if self.factor and column.kind != "ratio":
+            if factor and column.kind != "ratio":
                 raise UsageError(f"--where: {self.text} has no unit; write for instance {example(column.kind)}")
-            return self.factor
+            return factor
         try:
             up, down = unit_factor(self.of, column.kind)
         except UnitError as error:
-            return self.factor * self._key_value(subject, column, str(error))
-        return self.factor * up / down
+            return factor * self._key_value(subject, column, str(error))
+        if self.factor is None:
+            raise UsageError(f"--where: {shown(self.text)} has no number before the unit; write {example(column.kind)}")
+        return factor * up / down
 
     def _key_value(self, subject: Subject, column: Quantity, no_unit: str) -> float:
         known = subject.lists.key_values(self.command)

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import NamedTuple, TypeVar, Union
 
 from kurbel.declared.reading import shown
-from kurbel.errors import UsageError
+from kurbel.errors import NoSolutionError, UsageError
 
 Value = Union[float, int, None]
 Item = TypeVar("Item")
@@ -97,7 +97,7 @@ class PlaceTable(NamedTuple):
 class Part(NamedTuple):
     """The results of one cylinder, L/R or scene, or of the whole machine; the first column is the crank angle.
 
-    `name` is the cylinder's name or the L/R as a number.
+    `name` is the cylinder's name or the L/R as a number. nowhere: why it has no row, where rows are sought.
     """
 
     name: str | float
@@ -106,6 +106,7 @@ class Part(NamedTuple):
     left_out: Collection[LeftOut] = ()
     warnings: Collection[str] = ()
     place_tables: tuple[PlaceTable, ...] = ()
+    nowhere: str = ""
 
 
 class Input(NamedTuple):
@@ -153,7 +154,8 @@ class Report(NamedTuple):
     def of_cylinder(self, name: str) -> Report:
         """Return the results of one cylinder alone, by its name or its number.
 
-        Raises UsageError where there are none, and where one is called by the number of another.
+        Raises UsageError where there are none, and where one is called by the number of another; NoSolutionError where
+        no row of it is found.
         """
         numbered = dict(zip(map(str, range(1, len(self.cylinders) + 1)), self.cylinders))
         if numbered.get(name, name) != name and name in self.cylinders:
@@ -169,6 +171,8 @@ class Report(NamedTuple):
             raise UsageError(
                 f"--cylinder: kurbel {self.command} has no results of '{shown(name)}'; it has those of {there}"
             )
+        if nowhere := self.parts[names.index(name)].nowhere:
+            raise NoSolutionError(nowhere)
         title = f"{self.title}: {name}" if len(self.all_parts) > 1 else self.title
         return self._replace(title=title, parts=(self.parts[names.index(name)],), whole=None)
 
