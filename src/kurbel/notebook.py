@@ -67,7 +67,7 @@ def _key_values(results: Results, caption: str) -> str:
 
     with np.errstate(all="ignore"):
         try:
-            found = [shown_key_value(one.quantity, _value(one), "metric") for one in results.figures()]
+            found = [shown_key_value(one.quantity, _value(one), "metric") for one in results.key_values().values()]
         except KurbelError as error:
             return f"<p>{escape(str(error))}</p>"
     return key_values(found, caption, Look("html"))

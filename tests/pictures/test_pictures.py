@@ -57,7 +57,7 @@ def test_marks_stand_where_the_key_values_do(name: str) -> None:
     for id in LINES[name]:
         for picture in drawn(name, id):
             results = case.flywheel if id == "effort" else case.strength if id == "throw-stress" else case.cylinders[0]
-            known = {one.quantity.symbol: one for one in results.figures()}
+            known = {one.quantity.symbol: one for one in results.key_values().values()}
             for panel in picture.panels:
                 for mark in panel.marks:
                     if mark.figure.name.symbol == "Druckwechsel":

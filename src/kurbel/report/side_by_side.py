@@ -86,7 +86,7 @@ def _rows(left: Subject | None, right: Subject | None, command: str, system: str
         given = [value for value in values if value is not None]
         unit = shown_unit(quantity.kind, system, max(map(abs, given)))
         texts = [_NONE if value is None else f"{convert(value, quantity.kind, unit):.5g}" for value in values]
-        yield quantity.symbol, *texts, unit, _difference(values), quantity.text
+        yield quantity.symbol, *texts, quantity.marked(unit), _difference(values), quantity.text
 
 
 def _values(subject: Subject | None, command: str) -> dict[Quantity, float]:

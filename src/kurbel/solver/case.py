@@ -44,6 +44,9 @@ class Case(Shown):
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
         return (self.strength if "stress" in commands else self.flywheel)[name]
 
+    def __repr__(self) -> str:
+        return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
+
     @cached_property
     def cylinders(self) -> tuple[CylinderForces, ...]:
         """Motion, forces and key values of every cylinder, in the order of the machine file."""
@@ -55,6 +58,11 @@ class Case(Shown):
         from kurbel.solver.strength.crankshaft import CrankshaftStrength
 
         return CrankshaftStrength(self.machine, self.cylinders)
+
+    @property
+    def stress(self) -> CrankshaftStrength:
+        """What `kurbel stress` answers, by the name of the command as the others are."""
+        return self.strength
 
     @cached_property
     def flywheel(self) -> MachineTurning:

@@ -68,14 +68,14 @@ PICTURES = (
     Declared(
         "card",
         "Indikatordiagramm",
-        "Gauge pressure at both ends of the pistons over the way from the inner dead centre (R Abb. 1051).",
+        "Pressure at both ends of the pistons over the way from the inner dead centre (R Abb. 1051).",
         "forces",
         "cylinder:cards",
     ),
     Declared(
         "card-volume",
         "Indikatordiagramm über dem Raum",
-        "Gauge pressure over the volume swept in each chamber, with the clearance where that is known.",
+        "Pressure over the volume swept in each chamber, with the clearance where that is known.",
         "forces",
         "cylinder:cards_over_volume",
     ),

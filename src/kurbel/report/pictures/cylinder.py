@@ -43,7 +43,7 @@ def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
     def values(degrees: Array, within: Array) -> Array:
         state = source.results.at(degrees, within)
         angle = CrankAngle.of(degrees)
-        return np.stack([state.way, *(end(state.way, angle, within) for _, end in ends)])
+        return np.stack([state.way, *(end(state.way, angle, within) + gas.base for _, end in ends)])
 
     samples = sampled(source.results.breaks, values, source.fineness)
     for (name, _), line in zip(ends, samples.values[1:]):
@@ -61,9 +61,10 @@ def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
     ]
     own = piston is source.results.drive.cylinder.pistons[0] and not over_volume
     marks = tuple(_highest(source, unit, run)) if own else ()
-    y = Axis(Words("p", "p"), unit)
+    y = Axis(Words("p", "p"), f"{unit} abs" if gas.absolute else unit)
     x = Axis(_V if over_volume else words(source.quantity("x")), run)
-    return Panel(x, y, (*curves, zero_line(curves)), marks=marks, title=piston.name if several else "")
+    ambient = zero_line(curves, float(convert(gas.base, "pressure", unit)))
+    return Panel(x, y, (*curves, ambient), marks=marks, title=piston.name if several else "")
 
 
 def _volume(gas: PistonGas, end: str, way: Array) -> Array:
@@ -82,7 +83,11 @@ def _highest(source: Source, unit: str, run: str) -> Iterable[Mark]:
         way = float(source.results.at(np.array([highest.degrees])).way[0])
         quantity = source.results.lists.key_values("forces")["p_max"]
         value = float(convert(highest.value, "pressure", unit))
-        yield Mark(float(convert(way, "length", run)), value, Figure(words(quantity), value, unit, highest.degrees))
+        yield Mark(
+            float(convert(way, "length", run)),
+            value,
+            Figure(words(quantity), value, quantity.marked(unit), highest.degrees),
+        )
 
 
 def piston_force(source: Source) -> Iterator[Panel]:

@@ -130,7 +130,7 @@ def level(name: Words, value: float, x: tuple[float, float]) -> Curve:
     return Curve(name, (Piece(np.array(x), np.array([value, value])),), kind="faint")
 
 
-def zero_line(curves: Sequence[Curve]) -> Curve:
-    """Return the faint line y = 0 as far as the curves reach."""
+def zero_line(curves: Sequence[Curve], height: float = 0.0) -> Curve:
+    """Return the faint line y = 0, or of what else counts as nothing, as far as the curves reach."""
     every = [piece for curve in curves for piece in curve.pieces]
-    return level(Words("", ""), 0.0, extent(every, "x"))
+    return level(Words("", ""), height, extent(every, "x"))

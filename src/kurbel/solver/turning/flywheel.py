@@ -14,8 +14,8 @@ from kurbel.numerics.collocation import Standstill, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import rising_root
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Results
-from kurbel.solver.turning.columns import TurningColumns
+from kurbel.solver.figures import Results, crank_angles
+from kurbel.solver.turning.columns import OF_SPEED, TurningColumns
 from kurbel.solver.turning.machine_effort import MachineEffort, dead_centre_force
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedLine, floquet
 from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law, turning
@@ -23,6 +23,7 @@ from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.machine.turning import Rim
+    from kurbel.numerics.where import Where
     from kurbel.solver.turning.coupling import ElasticCoupling
 
 _MISSED = 1e-3
@@ -56,12 +57,24 @@ class MachineTurning(Results):
 
         At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
         """
-        return TurningColumns(self.turned, self.crank, self.speed, degrees, within)
+        return TurningColumns(self.turned, self.crank, self.speed, crank_angles(degrees), within)
 
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees between which every quantity is smooth."""
         return self.excess.grid.breaks
+
+    def angles_where(self, column: str, value: float) -> Where | None:
+        """Return where in the cycle a column has a value in SI; None for a column that is left out."""
+        from kurbel.numerics.where import where
+
+        grid = self.speed.grid if column in OF_SPEED and self.speed else self.excess.grid
+
+        def sampled(degrees: Array, within: Array) -> Any:
+            return self.at(degrees).curve(column, within)
+
+        samples = sampled(grid.degrees, grid.within)
+        return None if samples is None else where(grid, samples, sampled, value)
 
     # turning effort
 
