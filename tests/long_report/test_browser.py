@@ -15,15 +15,12 @@ from typing import Any
 import pytest
 from pages import page_of
 
-CHROMIUM = shutil.which("chromium")
+from browser import CHROMIUM, dumped
+
 pytestmark = pytest.mark.slow  # each takes seconds to start a browser
 browser = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine")
 PAGES = [("waterworks",), ("gas-engine",), ("waterworks", "compressor")]
-FLAGS = (
-    *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--hide-scrollbars"),
-    *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
-    "--host-resolver-rules=MAP * ~NOTFOUND",  # nothing of the page may need the net
-)
+NO_NET = "--host-resolver-rules=MAP * ~NOTFOUND"  # nothing of the page may need it
 MEASURE = """<script>
 const beyond = [...document.querySelectorAll('body *')].filter(one => {
   const box = one.getBoundingClientRect();
@@ -51,11 +48,8 @@ document.body.innerHTML = '<pre id="found"></pre>'; document.getElementById('fou
 """A window of its own for the page, which may be narrower than the browser allows its windows to be."""
 
 
-def run_browser(file: Path, *flags: str) -> subprocess.CompletedProcess[str]:
-    assert CHROMIUM
-    profile = file.parent / f"profile-{os.urandom(4).hex()}"
-    command = [CHROMIUM, *FLAGS, f"--user-data-dir={profile}", "--enable-logging=stderr", *flags, file.as_uri()]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+def shown(file: Path, *flags: str) -> tuple[str, list[str]]:
+    return dumped(file.as_uri(), file.parent / f"profile-{os.urandom(4).hex()}", NO_NET, *flags)
 
 
 def measured(page: str, width: int, folder: Path, *flags: str, scrolled: bool = True) -> dict[str, Any]:
@@ -65,9 +59,9 @@ def measured(page: str, width: int, folder: Path, *flags: str, scrolled: bool = 
     (folder / "measured.html").write_text(open_page.replace("</body>", f"{script}</body>"), encoding="utf-8")
     frame = folder / "frame.html"
     frame.write_text(FRAME.replace("WIDTH", str(width)), encoding="utf-8")
-    done = run_browser(frame, "--window-size=1400,1000", "--virtual-time-budget=5000", "--dump-dom", *flags)
-    found = re.search(r'<pre id="found">(.+?)</pre>', done.stdout, re.DOTALL)
-    assert found, done.stderr
+    page_at_end, console = shown(frame, "--window-size=1400,1000", *flags)
+    found = re.search(r'<pre id="found">(.+?)</pre>', page_at_end, re.DOTALL)
+    assert found, console
     parsed: dict[str, Any] = json.loads(unescape(found.group(1)))
     return parsed
 
@@ -78,9 +72,9 @@ def test_the_console_stays_silent(names: tuple[str, ...], tmp_path: Path) -> Non
     """Whatever the page would load from elsewhere, its policy forbids, and the console would tell."""
     file = tmp_path / "report.html"
     file.write_text(page_of(*names), encoding="utf-8")
-    assert "CONSOLE" not in run_browser(file, "--dump-dom").stderr
+    assert shown(file)[1] == []
     file.write_text(page_of(*names).replace("<main>", "<main><script>1</script>"), encoding="utf-8")
-    assert "CONSOLE" in run_browser(file, "--dump-dom").stderr  # a browser that would not tell proves nothing
+    assert shown(file)[1]  # a browser that would not tell proves nothing
 
 
 @browser
@@ -114,7 +108,7 @@ def test_print_stays_within_the_sheet(sheet: str, inner: float, tmp_path: Path) 
 def test_a_page_can_be_printed(tmp_path: Path) -> None:
     file, sheet = tmp_path / "report.html", tmp_path / "report.pdf"
     file.write_text(page_of("waterworks"), encoding="utf-8")
-    run_browser(file, "--no-pdf-header-footer", f"--print-to-pdf={sheet}")
+    shown(file, "--no-pdf-header-footer", f"--print-to-pdf={sheet}")
     assert sheet.read_bytes().startswith(b"%PDF")
     assert len(re.findall(rb"/Type\s*/Page\b", sheet.read_bytes())) >= 5
 
