@@ -11,7 +11,7 @@ _balance = partial(Quantity, commands=_COMMAND)
 _book = partial(Quantity, commands=_COMMAND, on_request=_COMMAND)
 
 BALANCE_COLUMNS = (
-    _balance("F_x", "F_x", "force", "Free force on the frame along the stroke line of cylinder 1, outward from the shaft"),
+    _balance("F_x", "F_x", "force", "Free force along the stroke line of cylinder 1, outward from the shaft"),
     _balance("F_y", "F_y", "force", "Free force across it, 90° on in the sense of rotation"),
     _book("F_x_book", "F_x,0", "force", "F_x by the acceleration of first order (R 291)"),
     _book("F_y_book", "F_y,0", "force", "F_y by the acceleration of first order (R 291)"),

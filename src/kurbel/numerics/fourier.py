@@ -25,7 +25,7 @@ def coefficients(function: Callable[[Array], Array]) -> ComplexArray | None:
     """
     count = _FEWEST
     while count <= _MOST:
-        values = function(np.arange(count) * (360.0 / count))
+        values = function(np.linspace(0.0, 360.0, count, endpoint=False))
         rounding = np.finfo(float).eps * np.abs(values).max()
         found = np.fft.rfft(values)[1:] / count
         sizes = np.abs(found)

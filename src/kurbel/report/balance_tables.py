@@ -15,6 +15,7 @@ from kurbel.solver.balance.free import Free
 from kurbel.solver.balance.machine_balance import MachineBalance
 from kurbel.solver.balance.weights import Weight
 
+_Entry = tuple[Quantity, "list[float | None]"]
 _DIGITS = 4
 _NOTHING = 1e-9
 """Degrees by which a direction may miss another by rounding."""
@@ -30,20 +31,19 @@ def balance_tables(balance: MachineBalance, system: str, compare: bool) -> Itera
             ("orders", "Orders: circles with the crank (+) and against it (−)", circles),
             ("ellipses", "Orders: ellipses, and where the circles stand at φ = 0", ellipses),
         ):
-            columns = (orders, *(_alone(quantity, values, system) for quantity, values in found))
-            yield PlaceTable(id, title, (), ((),) * len(balance.free.orders), columns)
+            yield PlaceTable(id, title, (), ((),) * len(orders.values), (orders, *_alone(tuple(found), system)))
     yield from _weights(balance, system)
 
 
-def _alone(quantity: Quantity, values: Sequence[float | None], system: str) -> Column:
-    column = shown_column(quantity, values, system)
-    return column._replace(alone=0 if quantity.kind == "angle" else _DIGITS)
+def _alone(found: Sequence[_Entry], system: str) -> Iterator[Column]:
+    """Yield the columns, those of one kind in one unit, but with a scale for every amplitude."""
+    for quantity, values in found:
+        alike = [abs(v) for other, each in found if other.kind == quantity.kind for v in each if v is not None]
+        column = shown_column(quantity, values, system, max(alike, default=0.0))
+        yield column._replace(alone=0 if quantity.kind == "angle" else _DIGITS)
 
 
-_Found = Iterator[tuple[Quantity, list["float | None"]]]
-
-
-def _circles(balance: MachineBalance, square: float, compare: bool) -> _Found:
+def _circles(balance: MachineBalance, square: float, compare: bool) -> Iterator[_Entry]:
     book = balance.book if compare else None
     for name, vector, first in (
         ("F", balance.free.force, book and book.force),
@@ -71,7 +71,7 @@ def _shares(vector: Circles, orders: Iterable[int]) -> list[float | None]:
     return [float(squares[order - 1]) / whole if whole else None for order in orders]
 
 
-def _ellipses(free: Free, square: float) -> _Found:
+def _ellipses(free: Free, square: float) -> Iterator[_Entry]:
     for name, vector in (("F", free.force), ("M", free.moment)):
         if vector is None:
             continue
@@ -104,7 +104,9 @@ def _weights(balance: MachineBalance, system: str) -> Iterator[PlaceTable]:
     if best := planes | shafts:
         names = tuple((name,) for name in best)
         columns = _of_weights(list(best.values()), system)
-        yield PlaceTable("best_weights", "Counterweights in two planes, and balance shafts", ("weight",), names, columns)
+        yield PlaceTable(
+            "best_weights", "Counterweights in two planes, and balance shafts", ("weight",), names, columns
+        )
     if balance.locomotive:
         wheels = [Weight(one, 1, place) for one, place in zip(balance.locomotive.unbalanced, balance.wheels)]
         assert balance.omega

@@ -43,15 +43,15 @@ def shown_columns(
     return tuple(shown_column(column, values, system) for column, values in found.items())
 
 
-def shown_column(quantity: Quantity, values: Sequence[float | None], system: str) -> Column:
+def shown_column(quantity: Quantity, values: Sequence[float | None], system: str, beside: float = 0.0) -> Column:
     """Return the column of a quantity; values (n,) in SI, None where there is none.
 
-    Raises UsageError where one is not finite.
+    beside: the largest value in SI of what is to have the same unit. Raises UsageError where one is not finite.
     """
     given = np.frombuffer(values) if isinstance(values, array) else np.array([v for v in values if v is not None])
     if not np.isfinite(given).all():
         raise too_large(quantity)
-    unit = shown_unit(quantity.kind, system, max(given.max(initial=0.0), -given.min(initial=0.0)))
+    unit = shown_unit(quantity.kind, system, max(given.max(initial=beside), -given.min(initial=0.0)))
     given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
     given += 0.0
     shown = values if isinstance(values, array) else _filled(values, given.tolist())

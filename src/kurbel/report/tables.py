@@ -79,9 +79,9 @@ class LeftOut(NamedTuple):
 class PlaceTable(NamedTuple):
     """A table whose rows are named places instead of crank angles; `id` names it in csv and json.
 
-    heads: what the names are, such as (part, place), or (); names: those of each row, one to a head, with _ for a blank;
-    columns: as over the crank angle, one value to a row; headed: the heads are printed too, and the names are texts as
-    they stand.
+    heads: what the names are, such as (part, place), or none; names: those of each row, one to a head, with _ for a
+    blank; columns: as over the crank angle, one value to a row; headed: the heads are printed too, and the names are
+    texts as they stand.
     """
 
     id: str

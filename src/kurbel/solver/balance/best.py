@@ -11,9 +11,8 @@ from kurbel.numerics.enclosing import smallest_circle
 from kurbel.solver.balance.circles import Circles, unit_vectors
 from kurbel.solver.balance.weights import Weight
 
-_SETTLED = 1e-14  # the radius, relatively
-_INSIDE = 1e-9  # what stands so far within the circle does not carry it
-_AT_ONCE = 8  # summits; of a curve that is a circle all points are
+_SETTLED = 1e-13  # the radius, relatively
+_AT_ONCE = 6  # summits; of a curve that is a circle all points are
 _ROUNDS = 100
 _REAL = 1e-12  # what a lever in m may miss the plane of its force by, by rounding
 
@@ -29,20 +28,22 @@ def least(products: Circles) -> Least:
     """Return the counterweight u on the crank that leaves the least largest |P(φ) + u e^{iφ}|.
 
     In the frame of the crank P is the curve P(φ) e^{−iφ}, and −u the centre of the smallest circle round it. That round
-    its farthest points grows, point by point, until nothing of the curve stands beyond it.
+    its farthest points grows, point by point, until nothing of the curve stands beyond it. With even orders alone the
+    curve is its own image about 0, where the centre then is.
     """
+    if not (products.forward[::2].any() or products.backward[::2].any()):
+        return Least(0j, products)
     points: list[complex] = []
     weight, radius = -complex(products.forward[0]), 0.0
     for _ in range(_ROUNDS):
         left = products.turned_by(weight)
-        far = left.summits[:_AT_ONCE]
-        if far[0].value <= radius * (1 + _SETTLED):
+        far = [one for one in left.summits[:_AT_ONCE] if one.value > radius * (1 + _SETTLED)]
+        if not far:
             break
         angles = np.array([one.degrees for one in far])
         points += (products.at(angles) * unit_vectors(-angles)).tolist()
-        centre, radius = smallest_circle(points)
-        points = [one for one in points if abs(one - centre) > radius * (1 - _INSIDE)]
-        weight = -centre
+        centre, radius, carriers = smallest_circle(points)
+        points, weight = list(carriers), -centre
     return Least(weight, left)
 
 
@@ -65,9 +66,13 @@ def shafts(force: Circles, moment: Circles | None, z_0: float | None) -> tuple[W
     """
     found = []
     for order in (-1, 2, -2):
-        circle, lever = ((one.forward if order > 0 else one.backward)[abs(order) - 1] for one in (force, moment or force))
+        circle, lever = (_circle(one, order) for one in (force, moment or force))
         if circle:
-            arm = complex(lever / circle) if moment else 1j
+            arm = lever / circle if moment else 1j
             place = None if z_0 is None or abs(arm.imag) > _REAL * (1 + abs(arm)) else z_0 + arm.real
-            found.append(Weight(-complex(circle) / order**2, order, place))
+            found.append(Weight(-circle / order**2, order, place))
     return tuple(found)
+
+
+def _circle(vector: Circles, order: int) -> complex:
+    return complex((vector.forward if order > 0 else vector.backward)[abs(order) - 1])

@@ -58,16 +58,20 @@ class Circles:
 
     @cached_property
     def summits(self) -> tuple[Extreme, ...]:
-        """Every angle in degrees at which the length of the vector is largest but for rounding, with that length."""
+        """Every angle in degrees at which the length of the vector turns from rising to falling, highest first.
+
+        A length that never changes, or but for rounding, has one at 0°.
+        """
         angles = np.concatenate(([0.0], self._turning_points))
         lengths = np.abs(self.at(angles))
-        highest = lengths >= lengths.max() * (1 - _ALIKE)
-        return tuple(Extreme(float(lengths[k]), float(angles[k])) for k in np.flatnonzero(highest))
+        order = np.argsort(-lengths, kind="stable")
+        return tuple(Extreme(float(lengths[k]), float(angles[k])) for k in order)
 
     @property
     def largest(self) -> Extreme:
-        """The largest length, and the first angle in degrees at which it is reached."""
-        return min(self.summits, key=lambda one: one.degrees)
+        """The largest length, and the first angle in degrees at which it is reached but for rounding."""
+        highest = self.summits[0].value
+        return min((one for one in self.summits if one.value >= highest * (1 - _ALIKE)), key=lambda one: one.degrees)
 
     @property
     def _turning_points(self) -> Array:
@@ -76,7 +80,7 @@ class Circles:
             return np.array([])
         # eight samples for each angle that |F|², of twice the order, may turn at
         count = 32 * 2 ** int(self._orders[-1]).bit_length()
-        angles = np.arange(count + 1) * (360.0 / count)
+        angles: Array = np.linspace(0.0, 360.0, count + 1)
         slopes = self._sampled_slopes(count)
         falling = np.flatnonzero((slopes[:-1] > 0) & (slopes[1:] <= 0))
         low, high = angles[falling], angles[falling + 1]
@@ -96,5 +100,5 @@ class Circles:
         spectrum[orders], spectrum[-orders] = self.forward[orders - 1], self.backward[orders - 1]
         turns = 1j * np.fft.fftfreq(count, 1 / count)
         vectors, slopes = np.fft.ifft(spectrum), np.fft.ifft(turns * spectrum)
-        found = (vectors.conj() * slopes).real
-        return np.append(found, found[0])
+        found = np.asarray((vectors.conj() * slopes).real)
+        return np.append(found, found[:1])

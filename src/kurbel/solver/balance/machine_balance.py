@@ -13,6 +13,7 @@ import numpy as np
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.search import Extremes
 from kurbel.solver.balance.best import Least, in_planes, least, shafts
 from kurbel.solver.balance.circles import Circles
 from kurbel.solver.balance.columns import BalanceColumns
@@ -148,18 +149,18 @@ class MachineBalance(Results):
         return not any(map(swirls, self._cylinders))
 
     @cached_property
-    def _roll_extremes(self) -> Any:
+    def _roll_extremes(self) -> Extremes | None:
         return Excess(self.roll).effort_extremes if self.roll else None
 
     @property
     def M_roll_max(self) -> Extreme | None:
         """Largest rolling moment on the frame in N m."""
-        return self._roll_extremes and self._roll_extremes.largest
+        return self._roll_extremes.largest if self._roll_extremes else None
 
     @property
     def M_roll_min(self) -> Extreme | None:
         """Smallest rolling moment on the frame in N m."""
-        return self._roll_extremes and self._roll_extremes.smallest
+        return self._roll_extremes.smallest if self._roll_extremes else None
 
     # counterweights
 
@@ -219,7 +220,7 @@ class MachineBalance(Results):
 
     @cached_property
     def planes(self) -> tuple[float, ...]:
-        """Places in m of two planes for counterweights: those given, or of the outer cylinders; none if they are one."""
+        """Places in m of two planes for counterweights: those given, or of the outer cylinders; () if they are one."""
         given = self.machine.counterweights
         named = () if isinstance(given, tuple) else given.planes
         places = [one.place for one in self.throws if one.place is not None]

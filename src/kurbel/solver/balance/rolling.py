@@ -1,4 +1,4 @@
-"""The rolling moment that the frame bears about the shaft: against the turning effort, and what the masses add to it."""
+"""The rolling moment on the frame about the shaft: against the turning effort, and what the masses add to it."""
 
 from __future__ import annotations
 

@@ -54,17 +54,6 @@ class Throw:
         return Weight(one.product * direction, 1, beside if one.axial_position is None else one.axial_position)
 
 
-def levered(weight: Weight, planes: tuple[float, float]) -> tuple[Weight, Weight]:
-    """Return two weights in these planes that have the force and the moment of one; its place must be known."""
-    first, second = planes
-    assert weight.place is not None
-    share = (weight.place - first) / (second - first)
-    return (
-        Weight(weight.product * (1 - share), weight.order, first),
-        Weight(weight.product * share, weight.order, second),
-    )
-
-
 def counterweights_of(machine: Machine, throws: tuple[Throw, ...], wheels: tuple[float, ...]) -> Iterator[Weight]:
     """Yield the weights on the crank, those of each throw and those of the whole machine.
 
