@@ -46,7 +46,7 @@ cylinders:
 TWO_CRANKS = """
 speed: 600 rpm
 cylinders:
-  - {name: left, axial_position: -0.35 m, crank: 300 mm, rod_ratio: 6, masses: {reciprocating: 300 kg, rotating: 120 kg}}
+  - {name: left, axial_position: -0.35 m, crank: 0.3 m, rod_ratio: 6, masses: {reciprocating: 300 kg, rotating: 120 kg}}
   - {like: left, name: right, crank_position: 90 deg, axial_position: 0.35 m}
 """
 

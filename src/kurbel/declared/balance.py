@@ -8,17 +8,19 @@ from kurbel.declared.quantity import Quantity, by_id
 
 _COMMAND = ("balance",)
 _balance = partial(Quantity, commands=_COMMAND)
-_book = partial(Quantity, commands=_COMMAND, on_request=_COMMAND)
+_on_request = partial(Quantity, commands=_COMMAND, on_request=_COMMAND)
 
 BALANCE_COLUMNS = (
     _balance("F_x", "F_x", "force", "Free force along the stroke line of cylinder 1, outward from the shaft"),
     _balance("F_y", "F_y", "force", "Free force across it, 90° on in the sense of rotation"),
-    _book("F_x_book", "F_x,0", "force", "F_x by the acceleration of first order (R 291)"),
-    _book("F_y_book", "F_y,0", "force", "F_y by the acceleration of first order (R 291)"),
+    _on_request("F_free", "F", "force", "Free force, its magnitude"),
+    _on_request("F_x_book", "F_x,0", "force", "F_x by the acceleration of first order (R 291)"),
+    _on_request("F_y_book", "F_y,0", "force", "F_y by the acceleration of first order (R 291)"),
     _balance("M_x", "M_x", "torque", "Free moment Σ (z − z_0) F_x"),
     _balance("M_y", "M_y", "torque", "Free moment Σ (z − z_0) F_y"),
-    _book("M_x_book", "M_x,0", "torque", "M_x by the acceleration of first order (R 291)"),
-    _book("M_y_book", "M_y,0", "torque", "M_y by the acceleration of first order (R 291)"),
+    _on_request("M_free", "M_f", "torque", "Free moment, its magnitude"),
+    _on_request("M_x_book", "M_x,0", "torque", "M_x by the acceleration of first order (R 291)"),
+    _on_request("M_y_book", "M_y,0", "torque", "M_y by the acceleration of first order (R 291)"),
     _balance("M_roll", "M_roll", "torque", "Rolling moment on the frame about the shaft, in the sense of rotation"),
 )
 BALANCE_VALUES = (

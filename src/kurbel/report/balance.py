@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 import numpy as np
 
 from kurbel.declared.unit_systems import show
-from kurbel.errors import UsageError
 from kurbel.report.balance_tables import balance_tables
 from kurbel.report.frame import Frame, Subject, of_state
 from kurbel.report.pins import pin_notes
 from kurbel.report.tables import LeftOut, Report
-from kurbel.solver.balance.machine_balance import MachineBalance
+from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.case import Case
 
 _BOOK = ("F_x_book", "F_y_book", "M_x_book", "M_y_book")
@@ -43,33 +41,14 @@ def balance_report(
 def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
     """Yield the whole machine; compare: see `balance_report`."""
     machine = case.machine
-    if not machine.cylinders:
-        raise UsageError(f"{machine.name} has no cylinder; kurbel balance needs one")
     balance = case.balance
     yield Subject(
         "whole machine",
-        (*balance.answering, *((_Book(balance),) if compare else ())),
+        (*balance.answering, *((BookBalance(balance),) if compare else ())),
         lambda degrees: of_state(balance.at(degrees)),
         left_out=lambda: _left_out(balance, compare),
         warnings=lambda: pin_notes(machine),
     )
-
-
-class _Book:
-    """The key values after the book's acceleration of first order, printed only where they are asked for."""
-
-    def __init__(self, balance: MachineBalance) -> None:
-        self._balance = balance
-
-    @property
-    def F_free_max_book(self) -> Any:
-        """Largest free force in N."""
-        return self._balance.largest(self._balance.book and self._balance.book.force)
-
-    @property
-    def M_free_max_book(self) -> Any:
-        """Largest free moment in N m."""
-        return self._balance.largest(self._balance.book and self._balance.book.moment)
 
 
 def _left_out(balance: MachineBalance, compare: bool) -> Iterable[LeftOut]:

@@ -17,7 +17,7 @@ from kurbel.solver.balance.weights import Weight
 
 _Entry = tuple[Quantity, "list[float | None]"]
 _DIGITS = 4
-_NOTHING = 1e-9
+_NOTHING = 1e-6
 """Degrees by which a direction may miss another by rounding."""
 
 

@@ -57,6 +57,16 @@ class BalanceColumns:
         return None if self._F is None else self._F.imag
 
     @property
+    def F_free(self) -> Array | None:
+        """Magnitude of the free force in N."""
+        return None if self._F is None else np.abs(self._F)
+
+    @property
+    def M_free(self) -> Array | None:
+        """Magnitude of the free moment in N m."""
+        return None if self._M is None else np.abs(self._M)
+
+    @property
     def M_x(self) -> Array | None:
         """Free moment in N m: of the forces F_x, times their places."""
         return None if self._M is None else self._M.real

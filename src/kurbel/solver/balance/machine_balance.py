@@ -246,3 +246,20 @@ class MachineBalance(Results):
         """What of it concerns the wheels of a locomotive; None of another machine, or at rest."""
         given = self.machine.locomotive
         return LocomotiveBalance(self, given) if given and self.omega else None
+
+
+class BookBalance:
+    """The key values by the book's acceleration of first order, which are told only where they are asked for."""
+
+    def __init__(self, balance: MachineBalance) -> None:
+        self._balance = balance
+
+    @property
+    def F_free_max_book(self) -> Extreme | None:
+        """Largest free force in N."""
+        return self._balance.largest(self._balance.book.force if self._balance.book else None)
+
+    @property
+    def M_free_max_book(self) -> Extreme | None:
+        """Largest free moment in N m."""
+        return self._balance.largest(self._balance.book.moment if self._balance.book else None)
