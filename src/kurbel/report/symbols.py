@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Keys, required
@@ -27,6 +28,7 @@ def symbols_page() -> str:
         _quantities("Columns over the crank angle", by_id(one for one in every.all_columns if one.commands)),
         _quantities("Key values", by_id(every.all_key_values)),
         _quantities("Stresses at one place of a crankshaft", STRESSES),
+        _quantities("Orders of the free force and the free moment, and weights", ORDERS | ELLIPSES | WEIGHTS),
         _quantities("Rows of Zusammenstellung 112", FACTORS),
         _sizes(),
         "## Keys of the machine file\n",
