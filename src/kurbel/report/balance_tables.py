@@ -39,7 +39,7 @@ def _alone(found: Sequence[_Entry], system: str) -> Iterator[Column]:
     """Yield the columns, those of one kind in one unit, but with a scale for every amplitude."""
     for quantity, values in found:
         alike = [abs(v) for other, each in found if other.kind == quantity.kind for v in each if v is not None]
-        column = shown_column(quantity, values, system, max(alike, default=0.0))
+        column = shown_column(quantity, values, system, beside=max(alike, default=0.0))
         yield column._replace(alone=0 if quantity.kind == "angle" else _DIGITS)
 
 

@@ -51,6 +51,9 @@ class Case:
         results: Results = getattr(self, whole or "flywheel")
         return results[name]
 
+    def __repr__(self) -> str:
+        return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
+
     def _repr_html_(self) -> str:
         from html import escape
 
@@ -72,6 +75,11 @@ class Case:
         from kurbel.solver.strength.crankshaft import CrankshaftStrength
 
         return CrankshaftStrength(self.machine, self.cylinders)
+
+    @property
+    def stress(self) -> CrankshaftStrength:
+        """What `kurbel stress` answers, by the name of the command as the others are."""
+        return self.strength
 
     @cached_property
     def balance(self) -> MachineBalance:
