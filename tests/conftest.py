@@ -13,6 +13,9 @@ from hypothesis import settings
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
+# processes that the tests start are an installed kurbel's: they find it compiled, instead of compiling it each anew
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 # a width in the environment (pytest-xdist sets one) is asked of every output, by contract
 os.environ.pop("COLUMNS", None)
 
