@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 COMMANDS = (
-    *("table", "motion", "forces", "flywheel", "stress", "plot", "report", "accuracy"),
+    *("table", "motion", "forces", "flywheel", "stress", "balance", "plot", "report", "accuracy"),
     *("friction", "check", "example", "keys", "units", "schema"),
 )
 """In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""
@@ -178,6 +178,7 @@ def kurbel() -> None:
       kurbel motion engine.yaml                 displacement, velocity, acceleration
       kurbel forces engine.yaml                 forces and key values
       kurbel flywheel engine.yaml               turning effort, flywheel, speed
+      kurbel balance engine.yaml                free forces and moments, counterweights
       kurbel plot engine.yaml                   a picture; --list says which there are
       kurbel report engine.yaml -o report.html  everything on one page
 

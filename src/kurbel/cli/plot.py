@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 @click.option("--list", "listed", is_flag=True, help="Say which pictures this machine has.")
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
 @click.option("--angles", type=Numbers(), metavar="A,B,...", help="The mechanism at these crank angles, not moving.")
-@click.option("--cylinder", metavar="NAME", help="Only of this cylinder.", shell_complete=complete_cylinder)
+@click.option(
+    "--cylinder", metavar="NAME", help="Only of this cylinder, by name or number.", shell_complete=complete_cylinder
+)
 @units_option
 @click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign.")
 @click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4 if not given.")

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
 
+from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
 
@@ -23,7 +24,7 @@ _COLUMNS = (
         "angle",
         "Crank angle from the inner dead centre, in the sense of rotation",
         "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS),
+        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "balance"),
     ),
     _motion(
         "z",
@@ -148,6 +149,7 @@ _COLUMNS = (
     ),
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
     *STRENGTH_COLUMNS,
+    *BALANCE_COLUMNS,
 )
 
 
@@ -318,6 +320,7 @@ class Lists(NamedTuple):
             *extremes(found, "flywheel"),
             *_FLYWHEEL_VALUES,
             *STRENGTH_VALUES,
+            *BALANCE_VALUES,
         )
         return cls(found, placed((*common, *key_values)))
 

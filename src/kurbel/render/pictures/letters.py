@@ -77,6 +77,10 @@ def _draw(panel: Panel, canvas: Canvas, scales: tuple[Scale, Scale], look: Look)
     # the lines to compare with first, so that curves stand over them
     for curve, number in sorted(zip(panel.curves, looks), key=lambda one: one[0].kind in ("line", "dots", "member")):
         _draw_curve(curve, number, canvas, scales)
+    for shade in panel.shades if not panel.curves else ():  # bars
+        across, down = (np.concatenate(part) for part in ((shade.x, shade.x[::-1]), (shade.high, shade.low[::-1])))
+        role = 0 if shade.gain else 1
+        canvas.line(x.place(np.append(across, across[0])), y.place(np.append(down, down[0])), role, f"curve{role}")
     for arrow in panel.arrows:
         ends = np.array([arrow.tail, arrow.head])
         canvas.line(x.place(ends[:, 0]), y.place(ends[:, 1]), 1, "curve1")

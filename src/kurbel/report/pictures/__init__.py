@@ -14,6 +14,7 @@ from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.report.pictures.picture import Panel, Picture
+from kurbel.report.tables import cylinder_meant
 
 if TYPE_CHECKING:
     from kurbel.report.pictures.source import Source
@@ -109,6 +110,27 @@ PICTURES = (
         "whole_machine:throw_stress",
     ),
     Declared(
+        "free-vectors",
+        "Massenausgleich: freie Kräfte und Momente",
+        "The way that the tip of the free force, and of the free moment, runs over a turn.",
+        "balance",
+        "balance:free_vectors",
+    ),
+    Declared(
+        "free-angle",
+        "Freie Kräfte und Momente über dem Kurbelwinkel",
+        "Free force, free moment and rolling moment on the frame over the crank angle.",
+        "balance",
+        "balance:free_over_angle",
+    ),
+    Declared(
+        "free-orders",
+        "Ordnungen der freien Kräfte und Momente",
+        "The circles of each order, with the rotation and against it.",
+        "balance",
+        "balance:free_orders",
+    ),
+    Declared(
         "motion",
         "Kolbenweg, Geschwindigkeit, Beschleunigung",
         "Way, velocity and acceleration over the crank angle (R Abb. 1047 to 1050).",
@@ -148,6 +170,7 @@ def pictures(case: Case, names: Sequence[str], wish: Wish) -> Iterator[Picture]:
     Raises UsageError for a picture that there
     is not, or that this machine does not have, NoSolutionError where the machine locks itself or stalls.
     """
+    wish = wish._replace(cylinder=wish.cylinder and cylinder_meant(wish.cylinder, _names(case)))
     with np.errstate(all="ignore"):
         for declared in _chosen(case, names, wish):
             found = list(_pictures(case, declared, wish))
@@ -187,11 +210,15 @@ def _named(name: str) -> Declared:
 
 
 def _missing(case: Case, declared: Declared, wish: Wish) -> str:
-    names = [one.drive.name for one in case.cylinders]
+    names = _names(case)
     if wish.cylinder is not None and wish.cylinder not in names:
         return f"--cylinder: there is no '{shown(wish.cylinder)}'; there are {', '.join(names)}"
     having = ", ".join(one.id for one in pictures_of(case, wish))
     return f"{case.machine.name} has no picture '{declared.id}': what it shows is left out; it has {having}"
+
+
+def _names(case: Case) -> tuple[str, ...]:
+    return tuple(one.drive.name for one in case.cylinders)
 
 
 def _has(case: Case, declared: Declared, wish: Wish) -> bool:
@@ -223,5 +250,5 @@ def _sources(case: Case, declared: Declared, wish: Wish) -> Iterator[tuple[Sourc
             yield Source(one, wish.system, wish.fineness, wish.angles), one.drive.name
 
 
-_OF_MACHINE = {"flywheel": "flywheel", "stress": "strength"}
+_OF_MACHINE = {"flywheel": "flywheel", "stress": "strength", "balance": "balance"}
 """Command -> the result of a case that its pictures are drawn from; those of others are drawn of each cylinder."""
