@@ -64,7 +64,7 @@ def free_orders(source: Source) -> Iterator[Panel]:
 
 
 def bars(
-    source: Source, orders: Sequence[Any], sizes: Sequence[Sequence[float]], name: str, kind: str, title: str
+    source: Source, orders: Sequence[float], sizes: Sequence[Sequence[float]], name: str, kind: str, title: str
 ) -> Panel:
     """Return sizes in SI of one or two sorts as bars over orders, side by side."""
     unit = source.unit(kind, np.array(sizes))

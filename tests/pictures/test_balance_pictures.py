@@ -1,0 +1,57 @@
+"""Pictures of what is free: the tips of the vectors, and their orders as bars."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from drawn import case_of, drawn, ids_of
+
+from kurbel.machine_file import loads
+from kurbel.report.pictures import Wish, pictures_of
+from kurbel.solver.case import Case
+
+
+def test_the_tip_of_the_free_force_is_the_solvers() -> None:
+    case = case_of("diesel-four-stroke")
+    panel = drawn("diesel-four-stroke", "free-vectors")[0].panels[0]
+    for piece in panel.curves[0].pieces:
+        free = case.balance.at(piece.degrees, piece.within)
+        assert (piece.x == np.asarray(free.F_x) / 1e3).all()
+        assert (piece.y == np.asarray(free.F_y) / 1e3).all()
+    (mark,) = panel.marks
+    largest = case.balance.F_free_max
+    assert largest is not None
+    assert (mark.figure.value, mark.figure.at_deg) == (largest.value / 1e3, largest.degrees)
+    assert np.hypot(mark.x, mark.y) == pytest.approx(largest.value / 1e3, rel=1e-14)
+    assert panel.equal
+
+
+def test_a_four_in_line_keeps_the_second_order_along_its_stroke_line() -> None:
+    """A vector along one line is two circles of one size; of 4 cranks at 180° order 1 is gone (Bevan, ch. 14)."""
+    panel = drawn("four-in-line", "free-orders")[0].panels[0]
+    place = panel.x.names.index("2")
+    with_, against = (
+        next(float(one.high[0]) for one in panel.shades if one.gain == gain and abs(one.x.mean() - place) < 0.5)
+        for gain in (True, False)
+    )
+    assert with_ == pytest.approx(against, rel=1e-12)
+    assert with_ > 0
+    first = [float(one.high[0]) for one in panel.shades if abs(one.x.mean() - panel.x.names.index("1")) < 0.5]
+    assert max(first) <= 1e-12 * with_
+
+
+def test_bars_stand_side_by_side_and_do_not_meet() -> None:
+    panel = drawn("v8-cross-plane", "free-orders")[0].panels[0]
+    spans = sorted((float(one.x[0]), float(one.x[-1])) for one in panel.shades)
+    assert all(end <= start + 1e-12 for (_, end), (start, _) in itertools.pairwise(spans))
+    assert len(spans) == 2 * len(panel.x.names)
+
+
+def test_what_has_no_speed_has_no_free_forces() -> None:
+    text = "{stroke: 800 mm, rod_ratio: 5, masses: {piston: 100 kg}}"
+    assert not {"free-vectors", "free-angle", "free-orders"} & {
+        one.id for one in pictures_of(Case(loads(text)), Wish())
+    }
+    assert {"free-vectors", "free-angle", "free-orders"} <= set(ids_of("boxer"))
