@@ -24,6 +24,7 @@ from kurbel.report.forces import forces_report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.columns import StrengthColumns
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
@@ -35,7 +36,7 @@ from toy_mechanism import HarmonicCam
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
     "motion": (Motion,),
-    "forces": (CylinderForces, Motion),
+    "forces": (CylinderForces, Motion, RodLoad),
     "flywheel": (MachineTurning, ElasticCoupling),
     "stress": (CrankshaftStrength,),
 }

@@ -7,6 +7,7 @@ from functools import partial
 from typing import NamedTuple
 
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
+from kurbel.declared.rod_load import ROD_COLUMNS, ROD_VALUES
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
 
 _FORCES, _FLYWHEEL, _STRESS = ("forces",), ("flywheel",), ("stress",)
@@ -147,6 +148,7 @@ _COLUMNS = (
         called="angular acceleration of the shaft",
     ),
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
+    *ROD_COLUMNS,
     *STRENGTH_COLUMNS,
 )
 
@@ -310,6 +312,7 @@ class Lists(NamedTuple):
             *_CYLINDER_VALUES,
             *extremes(found, "forces"),
             *_WORK_VALUES,
+            *ROD_VALUES,
             *extremes(found, "flywheel"),
             *_FLYWHEEL_VALUES,
             *STRENGTH_VALUES,

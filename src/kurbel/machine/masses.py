@@ -82,10 +82,16 @@ class ConnectingRod(Described):
 
 @dataclass(frozen=True, eq=False)
 class Masses(Described):
-    """Reciprocating masses in kg: the sum of piston, piston rod, crosshead and others, and the connecting rod."""
+    """Reciprocating masses in kg: the sum of piston, piston rod, crosshead and others, and the connecting rod.
+
+    crosshead: what of the sum is the crosshead's, None where that is not known; undivided: the sum was given as one and
+    has the connecting rod's share in it.
+    """
 
     parts: float
     connecting_rod: ConnectingRod | None = None
+    crosshead: float | None = None
+    undivided: bool = False
 
     KEYS: ClassVar[Keys] = {
         "reciprocating": Key(
@@ -107,13 +113,13 @@ class Masses(Described):
     @classmethod
     def of_keys(cls, connecting_rod: float | ConnectingRod | None = None, **parts: float | tuple[float, ...]) -> Masses:
         """Return the masses that these keys of a machine file describe."""
-        each = [mass for part in parts.values() for mass in (part if isinstance(part, tuple) else (part,))]
-        if not each and connecting_rod is None:
+        sums = {name: math.fsum(part) if isinstance(part, tuple) else part for name, part in parts.items()}
+        if not sums and connecting_rod is None:
             refuse(
                 Fault((), "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …")
             )
         rod = ConnectingRod(connecting_rod) if isinstance(connecting_rod, float) else connecting_rod
-        return cls(math.fsum(each), rod)
+        return cls(math.fsum(sums.values()), rod, sums.get("crosshead"), "reciprocating" in sums)
 
     @property
     def reciprocating(self) -> float:

@@ -29,7 +29,7 @@ def forces_report(
     if not machine.cylinders:
         raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
     frame = Frame("forces", rows_of(case, angles, 360.0 * machine.revolutions), columns, system, also)
-    notes = (*mechanism_notes(machine), *guide_notes(case), *_rod_notes(case))
+    notes = (*mechanism_notes(machine), *guide_notes(case), *_rod_notes(case), *_rod_load_notes(case))
     return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=notes)
 
 
@@ -38,6 +38,22 @@ def _rod_notes(case: Case) -> Iterable[str]:
         yield (
             "S of an exact rod stands between the masses at its ends and is the force along it at neither pin: "
             "S_H is that at the crosshead pin, S_Z that at the crank pin; S_max, S_min and S_peak are of both pins."
+        )
+
+
+def _rod_load_notes(case: Case) -> Iterable[str]:
+    compressors = [forces for forces in case.cylinders if not forces.rod_load.no_compressor]
+    if compressors:
+        yield (
+            "Rod load after API 618: P_G at the crosshead pin counts gas, inertia and weight of piston, piston rod, "
+            "crosshead and other parts, P_KS at the piston rod the same without the crosshead; neither has the "
+            "connecting rod's share or friction. d: in compression, z: in tension."
+        )
+    masses = [forces.drive.cylinder.masses for forces in compressors]
+    if any(one and one.undivided for one in masses):
+        yield (
+            "'reciprocating' is one sum, with the connecting rod's share: P_G counts all of it; give the parts to leave"
+            " that share out."
         )
 
 
@@ -61,11 +77,19 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
     def left() -> Iterable[LeftOut]:
         yield from left_out(case.machine, cylinder)
         yield from _no_loss(forces)
+        yield from _no_piston_rod(forces)
 
-    return Subject(cylinder.name, (forces, forces.motion), at, cylinder.mechanism, left, warnings)
+    return Subject(cylinder.name, forces.answering, at, cylinder.mechanism, left, warnings)
 
 
 def _no_loss(forces: CylinderForces) -> tuple[LeftOut, ...]:
     if forces.friction_work is None or forces.work_driving:
         return ()
     return (LeftOut("friction loss as a share", "no piston drives"),)
+
+
+def _no_piston_rod(forces: CylinderForces) -> tuple[LeftOut, ...]:
+    masses = forces.drive.cylinder.masses
+    if forces.rod_load.no_compressor or masses is None or masses.crosshead is not None:
+        return ()
+    return (LeftOut("load on the piston rod", "no mass of the crosshead given"),)

@@ -83,10 +83,12 @@ class Drive:
     @cached_property
     def weight(self) -> tuple[float, float] | None:
         """Weight of the reciprocating masses in N along the stroke line and on the guide; None where it is left out."""
+        return self.weight_of(self.mass) if self.cylinder.masses else None
+
+    def weight_of(self, mass: float) -> tuple[float, float] | None:
+        """Return the weight in N of a mass in kg along the stroke line and on the guide; None where it is left out."""
         incline = self._incline
-        if incline is None or self.cylinder.masses is None:
-            return None
-        return self.mass * GRAVITY * incline.sin, self.mass * GRAVITY * incline.cos
+        return None if incline is None else (mass * GRAVITY * incline.sin, mass * GRAVITY * incline.cos)
 
     @property
     def guide_weight(self) -> float:

@@ -24,6 +24,7 @@ from kurbel.solver.figures import Results, answered
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.declared.quantities import Lists
+    from kurbel.solver.cylinder.rod_load import RodLoad
 
 
 _SURE = 4.0
@@ -57,7 +58,14 @@ class CylinderForces(Results):
     @property
     def answering(self) -> tuple[Any, ...]:
         """What answers key values, the first that knows one."""
-        return (self, self.motion)
+        return (self, self.motion, self.rod_load)
+
+    @cached_property
+    def rod_load(self) -> RodLoad:
+        """The rod load, as compressors are judged by it."""
+        from kurbel.solver.cylinder.rod_load import RodLoad
+
+        return RodLoad(self)
 
     def __getattr__(self, id: str) -> Any:
         """Return a key value that is no attribute here: extremes, and what the motion or the mechanism has."""
@@ -94,9 +102,10 @@ class CylinderForces(Results):
     @cached_property
     def _curves(self) -> dict[str, Curve]:
         declared = quantities_of(self.drive.mechanism).all_columns
-        return self._searched(one.id for one in declared if "forces" in one.extremes)
+        return self.searched(*(one.id for one in declared if "forces" in one.extremes))
 
-    def _searched(self, columns: Iterable[str]) -> dict[str, Curve]:
+    def searched(self, *columns: str) -> dict[str, Curve]:
+        """Return the curves over the cycle of those of these columns that there are."""
         names = [name for name in columns if getattr(self._samples, name) is not None]
         return curves(self.grid, _sampled(self._samples, names), self._quantities(*names)) if names else {}
 
@@ -148,7 +157,7 @@ class CylinderForces(Results):
         """Largest gauge pressure in Pa at either end of the cylinder's own piston."""
         if not self.drive.own_gas:
             return None
-        found = [extremes_of(curve).largest for curve in self._searched(("p_head", "p_crank")).values()]
+        found = [extremes_of(curve).largest for curve in self.searched("p_head", "p_crank").values()]
         return max(found, key=lambda one: one.value)
 
     def offered(self, id: str) -> Any:
@@ -187,9 +196,17 @@ class CylinderForces(Results):
 
         Of those that are the noise of a trace alone the middle one stands for all.
         """
-        if self._reversals is None:
+        return self.reversals_of("P", self._curves.get("P") if self.drive.has_force else None)
+
+    def reversals_of(self, column: str, curve: Curve | None) -> tuple[float, ...] | None:
+        """Return the crank angles in degrees at which a force of the gas takes the other sign for longer than noise."""
+        changes = self._changes(column, curve)
+        if changes is None or curve is None:
             return None
-        return tuple(lasting(self._curves["P"], self._reversals, _SURE * self._noise).tolist())
+        return tuple(lasting(curve, changes, _SURE * self._noise).tolist())
+
+    def _changes(self, column: str, curve: Curve | None) -> Array | None:
+        return None if curve is None else sign_changes(self.grid, {column: curve}, self._quantities(column))[column]
 
     @property
     def reversals_in_noise(self) -> int:
@@ -199,8 +216,7 @@ class CylinderForces(Results):
 
     @cached_property
     def _reversals(self) -> Array | None:
-        force = self._curves.get("P") if self.drive.has_force else None
-        return None if force is None else sign_changes(self.grid, {"P": force}, self._quantities("P"))["P"]
+        return self._changes("P", self._curves.get("P") if self.drive.has_force else None)
 
     @property
     def _noise(self) -> float:

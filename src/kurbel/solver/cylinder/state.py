@@ -181,6 +181,29 @@ class State(OfPoint):
         return _sum(self.P_inertia, self.P_start)
 
     @cached_property
+    def P_rod(self) -> Any:
+        """Rod load in N: force at the crosshead pin of all but the connecting rod and friction (API 618)."""
+        masses = self.drive.cylinder.masses
+        return self._load_of(masses.parts if masses else 0.0)
+
+    @cached_property
+    def P_piston_rod(self) -> Any:
+        """The same without the crosshead, in N: force at the end of the piston rod; None where its mass is unknown."""
+        masses = self.drive.cylinder.masses
+        return None if not masses or masses.crosshead is None else self._load_of(masses.parts - masses.crosshead)
+
+    def _load_of(self, mass: float) -> Any:
+        """Return the force in N of the gas, with the inertia and the weight along the stroke line of this mass in kg.
+
+        None without a gas force, and without a connecting rod, where it would be P.
+        """
+        if self.P_gas is None or self._rod is None:
+            return None
+        weight = self.drive.weight_of(mass)
+        moved = self.P_gas - self.b * mass if self.drive.has_inertia else self.P_gas
+        return moved + weight[0] if weight else moved
+
+    @cached_property
     def _after_steady_friction(self) -> Any:
         """Force left for crosshead and rod after friction that is the same over the stroke, in N."""
         steady = self.drive.steady_friction
