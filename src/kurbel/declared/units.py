@@ -124,6 +124,7 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         **_product(_MASS, _AREA, " "),
         **{f"lbf {name} s2": (_LBF * up, down) for name, (up, down) in _LENGTH.items() if name in ("in", "ft")},
     },
+    "unbalance": lambda: _product({**_MASS, "mg": (1, 1e6)}, _LENGTH, " "),
     "gd2": lambda: {
         **_product({"kg": (1, 1), "t": (1e3, 1)}, {"m2": (1, 1), "cm2": (1, 1e4)}, " "),
         "kgf m2": (1, 1),
@@ -304,6 +305,7 @@ def _unit_example(kind: str) -> str:
         "gd2": "kgf m2",
         "spring": "mm/at",
         "inertia": "kg m2",
+        "unbalance": "kg m",
     }.get(kind, next(iter(_units_of(kind))))
 
 
