@@ -24,6 +24,7 @@ from kurbel.report.forces import forces_report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.pins import PinWorks
 from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.columns import StrengthColumns
@@ -36,7 +37,7 @@ from toy_mechanism import HarmonicCam
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
     "motion": (Motion,),
-    "forces": (CylinderForces, Motion, RodLoad),
+    "forces": (CylinderForces, Motion, RodLoad, PinWorks),
     "flywheel": (MachineTurning, ElasticCoupling),
     "stress": (CrankshaftStrength,),
 }

@@ -29,7 +29,7 @@ def case(rotation: str = "", out: str = "3 bar", back: str = "0 bar", **changed:
 
 
 def note(solved: Case) -> str:
-    (found,) = forces_report(solved, (0.0,), None, "si").notes
+    (found,) = (one for one in forces_report(solved, (0.0,), None, "si").notes if "guide" in one)
     return found
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
 
+from kurbel.declared.bearings import PIN_LOSSES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.rod_load import ROD_COLUMNS, ROD_VALUES
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
@@ -242,6 +243,7 @@ _WORK_VALUES = (
         "lam f/2",
     ),
     _forces("loss_rings", "e_R", "ratio", "Work lost at the piston rings over that of the driving pistons"),
+    *PIN_LOSSES,
     _forces(
         "energy_residual",
         "ΔA/A",

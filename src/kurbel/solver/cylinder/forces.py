@@ -24,6 +24,7 @@ from kurbel.solver.figures import Results, answered
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.declared.quantities import Lists
+    from kurbel.solver.cylinder.pins import PinWorks
     from kurbel.solver.cylinder.rod_load import RodLoad
 
 
@@ -58,7 +59,14 @@ class CylinderForces(Results):
     @property
     def answering(self) -> tuple[Any, ...]:
         """What answers key values, the first that knows one."""
-        return (self, self.motion, self.rod_load)
+        return (self, self.motion, self.rod_load, self.pin_works)
+
+    @cached_property
+    def pin_works(self) -> PinWorks:
+        """Works of friction in pins and journals."""
+        from kurbel.solver.cylinder.pins import PinWorks
+
+        return PinWorks(self)
 
     @cached_property
     def rod_load(self) -> RodLoad:
@@ -87,10 +95,18 @@ class CylinderForces(Results):
         return self._cut_at_turns(self.drive.cuts.grid())
 
     def _cut_at_turns(self, grid: Grid) -> Grid:
-        if not self.drive.crosshead_friction:
-            return grid
-        sense = self._quantities("guide_sense")
-        return grid.split_at(zeros(grid, sense(grid.degrees, grid.within), sense)["guide_sense"])
+        """Return the grid cut where the guide force changes sides, and where a force on a pin all but vanishes."""
+        pins = self.drive.pin_friction
+        if self.drive.crosshead_friction:
+            turns = zeros(grid, self._sides(grid.degrees, grid.within), self._sides)
+            grid = grid.split_at(np.concatenate(tuple(turns.values())))
+        return grid.split_at(pins.bends(grid)) if pins and self.drive.has_force else grid
+
+    def _sides(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        """Return what tells the sides of the guide force; what makes pins rub has it where they do not yet."""
+        state = self.drive.jets_at(degrees, within)
+        every = (state, state.unrubbed) if self.drive.pin_friction else (state,)
+        return {str(number): _sampled(one, ("guide_sense",))["guide_sense"] for number, one in enumerate(every)}
 
     def _quantities(self, *names: str) -> Evaluate:
         return lambda degrees, within: _sampled(self.drive.jets_at(degrees, within), names)
@@ -317,6 +333,8 @@ class CylinderForces(Results):
         """∮ f |N| |dx| in J per cycle."""
         if not self.drive.has_force or not self.drive.crosshead_friction:
             return 0.0 if self._has_crosshead else None
+        if self.drive.pin_friction:  # whose couple bends N where a load all but vanishes
+            return float(integral(self.grid, lambda pieces: np.asarray(self._on(pieces).crosshead_power)))
         return self.grid.integral(self._samples.crosshead_power.value)
 
     @property
@@ -346,7 +364,8 @@ class CylinderForces(Results):
     @cached_property
     def friction_work(self) -> float | None:
         """Work of all friction in J per cycle."""
-        given = [work for work in (self.crosshead_work, self.ring_work, self.constant_work) if work is not None]
+        every = (self.crosshead_work, self.ring_work, self.constant_work, *self.pin_works.all)
+        given = [work for work in every if work is not None]
         return math.fsum(given) if given and self.drive.has_force else None
 
     @cached_property
@@ -405,7 +424,10 @@ class CylinderForces(Results):
         return float(integral(pieces, self._torque) - self.work_left) / turnover if turnover else 0.0
 
     def _torque(self, pieces: Pieces) -> Array:
-        return np.asarray(State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond)).M)
+        return np.asarray(self._on(pieces).M)
+
+    def _on(self, pieces: Pieces) -> State:
+        return State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond))
 
 
 def _sampled(state: State, names: Iterable[str]) -> dict[str, Sampled]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,22 @@ from kurbel.numerics.search import Curve, Extremes, extremes_of
 
 if TYPE_CHECKING:
     from kurbel.solver.cylinder.forces import CylinderForces
+    from kurbel.solver.cylinder.state import State
+
+
+def rod_load(state: State, without: float = 0.0) -> Any:
+    """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft.
+
+    without: mass in kg that is left out beside the connecting rod's share. None without a gas force, and without a
+    connecting rod, where it would be P.
+    """
+    drive, masses = state.drive, state.drive.cylinder.masses
+    if state.P_gas is None or not drive.mechanism.has_rod:
+        return None
+    mass = masses.parts - without if masses else 0.0
+    weight = drive.weight_of(mass)
+    moved = state.P_gas - state.b * mass if drive.has_inertia else state.P_gas
+    return moved + weight[0] if weight else moved
 
 
 class RodLoad:
