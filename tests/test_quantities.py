@@ -21,6 +21,7 @@ from kurbel.machine.masses import Masses
 from kurbel.mechanisms import MECHANISMS, Mechanism, every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.forces import forces_report
+from kurbel.solver.bearings.bearing import Bearing, BearingColumns
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.motion import Motion
@@ -40,6 +41,7 @@ RESULTS = {
     "forces": (CylinderForces, Motion, RodLoad, PinWorks),
     "flywheel": (MachineTurning, ElasticCoupling),
     "stress": (CrankshaftStrength,),
+    "bearings": (Bearing,),
 }
 
 
@@ -53,7 +55,13 @@ def test_every_key_value_has_a_definition(command: str) -> None:
 
 @pytest.mark.parametrize(
     ("command", "results"),
-    [("motion", State), ("forces", State), ("flywheel", TurningColumns), ("stress", StrengthColumns)],
+    [
+        ("motion", State),
+        ("forces", State),
+        ("flywheel", TurningColumns),
+        ("stress", StrengthColumns),
+        ("bearings", BearingColumns),
+    ],
 )
 def test_every_common_column_has_a_definition(command: str, results: type) -> None:
     for id, column in COMMON.columns(command).items():

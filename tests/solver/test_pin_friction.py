@@ -98,7 +98,7 @@ def test_energy_balance_closes(engine: str) -> None:
     case = Case(loads(engine + RUBS))
     forces = case.cylinders[0]
     assert abs(forces.energy_residual or 0.0) <= 1e-12
-    assert pytest.approx(forces.W, rel=1e-12) == case.flywheel.W
+    assert pytest.approx(forces.W, rel=1e-10) == case.flywheel.W
     assert case.strength.equilibrium_residual <= 1e-14
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
 
-from kurbel.declared.bearings import PIN_LOSSES
+from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES, PIN_LOSSES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.rod_load import ROD_COLUMNS, ROD_VALUES
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
@@ -25,7 +25,7 @@ _COLUMNS = (
         "angle",
         "Crank angle from the inner dead centre, in the sense of rotation",
         "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS),
+        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "bearings"),
     ),
     _motion(
         "z",
@@ -151,6 +151,7 @@ _COLUMNS = (
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
     *ROD_COLUMNS,
     *STRENGTH_COLUMNS,
+    *BEARING_COLUMNS,
 )
 
 
@@ -318,6 +319,7 @@ class Lists(NamedTuple):
             *extremes(found, "flywheel"),
             *_FLYWHEEL_VALUES,
             *STRENGTH_VALUES,
+            *BEARING_VALUES,
         )
         return cls(found, placed((*common, *key_values)))
 

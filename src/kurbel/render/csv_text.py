@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from kurbel.render import Look
     from kurbel.report.tables import Column, Part, Report, Value
 
+_FIRST = {"ratios": "rod_ratio", "bearings": "bearing"}
+"""Group of the parts of a report -> head of the column that tells them apart, if not `cylinder`."""
 _FORMULA = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
 """What a formula begins with in a spreadsheet, also in wide characters."""
 
@@ -36,7 +38,7 @@ def _rows(report: Report, look: Look) -> Iterator[list[str]]:
         return
     heads = _merged([[head(column) for column in part.columns] for part in parts])
     named = report.group == "ratios" or len(parts) > 1
-    first = "rod_ratio" if report.group == "ratios" else "cylinder"
+    first = _FIRST.get(report.group, "cylinder")
     yield [*([first] if named else []), *heads]
     for part in parts:
         columns = {head(column): column for column in part.columns}
@@ -61,7 +63,7 @@ def _merged(orders: list[list[str]]) -> list[str]:
 
 def _key_value_rows(report: Report, look: Look) -> Iterator[list[str]]:
     named = len(report.all_parts) > 1
-    yield [*(["cylinder"] if named else []), "key_value", "unit", "value", "at_deg"]
+    yield [*([_FIRST.get(report.group, "cylinder")] if named else []), "key_value", "unit", "value", "at_deg"]
     for part in report.all_parts:
         for one in part.key_values:
             for value in one.value if isinstance(one.value, tuple) else (one.value,):

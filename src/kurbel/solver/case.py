@@ -14,6 +14,7 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Figure, Results
 
 if TYPE_CHECKING:
+    from kurbel.solver.bearings.shaft_bearings import ShaftBearings
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
     from kurbel.solver.turning.flywheel import MachineTurning
 
@@ -42,6 +43,8 @@ class Case:
             return self.cylinders[0][name]
         if "forces" in commands and not commands & {"flywheel", "stress"}:
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
+        if "bearings" in commands:
+            raise UsageError(f"each pin and main bearing has its own {name}: ask one of case.bearings.parts")
         return (self.strength if "stress" in commands else self.flywheel)[name]
 
     def _repr_html_(self) -> str:
@@ -65,6 +68,13 @@ class Case:
         from kurbel.solver.strength.crankshaft import CrankshaftStrength
 
         return CrankshaftStrength(self.machine, self.cylinders)
+
+    @cached_property
+    def bearings(self) -> ShaftBearings:
+        """Loads on pins and main bearings. Raises UsageError where nothing loads them."""
+        from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+
+        return ShaftBearings(self.machine, self.cylinders)
 
     @cached_property
     def flywheel(self) -> MachineTurning:
