@@ -81,7 +81,8 @@ class Bearing(Results):
         """Return the load at angles (n,) of crank 1 in degrees, just after a jump."""
         angles = np.asarray(degrees, dtype=float)
         found = self._evaluate(angles, angles)
-        directions = (found[frame].value if frame in found else None for frame in FRAMES)
+        # of the two names of one direction the positive one
+        directions = (np.where(one.value == -180, 180.0, one.value) if one else None for one in map(found.get, FRAMES))
         return BearingColumns(angles, found["load"].value, *directions)
 
     # the cycle
