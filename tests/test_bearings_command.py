@@ -5,6 +5,9 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -104,3 +107,11 @@ def test_a_machine_without_loads_is_refused() -> None:
     result = run("bearings", "-", file="crank: 100 mm\nrod: 500 mm\n")
     assert result.exit_code == 2
     assert "nothing loads a bearing" in result.stderr
+
+
+def test_ascii_has_names_for_the_directions() -> None:
+    environment = {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"}
+    command = [sys.executable, "-m", "kurbel", "bearings", str(CONFIGS / "gas-engine.yaml"), "--step", "180"]
+    text = subprocess.run(command, capture_output=True, env={**os.environ, **environment}, check=True).stdout
+    assert b"eps_K  deg" in text
+    assert b"eps_S from the rod's line" in text

@@ -165,6 +165,21 @@ def test_what_a_constant_force_never_loads() -> None:
         assert load == pytest.approx(1e6 * math.pi / 400, rel=1e-14)
 
 
+def test_a_weight_alone_has_directions_too() -> None:
+    """Along the stroke line nothing varies, across it does."""
+    only = "crank: 100 mm\nrod: 400 mm\ninclination: 30 deg\nmasses: {piston: 10 kg}\n"
+    _, crosshead = Case(loads(only)).bearings.parts
+    largest = 10 * 9.80665 * 0.5 / math.sqrt(1 - 1 / 16)
+    assert crosshead.load_max.value == pytest.approx(largest, rel=1e-14)
+    assert crosshead.unloaded_arc == pytest.approx(240 - 2 * math.degrees(math.asin(0.25)), abs=1e-9)
+
+
+def test_no_load_has_no_direction_and_no_unloaded_arc() -> None:
+    pin, _ = Case(loads(PLAIN.replace("10 bar", "0 bar"))).bearings.parts
+    assert pin.load_max.value == 0
+    assert (pin.unloaded_arc, pin.unloaded_arc_shell) == (None, None)
+
+
 def test_unloaded_arcs_against_many_samples() -> None:
     """Of the gas engine, by marking every hundredth of a degree that any of 36 000 loads reaches."""
     for part in Case(loads(ENGINE)).bearings.parts:

@@ -41,7 +41,8 @@ class Plane(NamedTuple):
     @property
     def direction(self) -> Any:
         """Direction in degrees from the axis of the frame, from −180 to 180."""
-        return bearing(self.across, self.along)
+        # each with the slopes of both: of a jet and what does not vary, both must be jets
+        return bearing(self.across + self.along * 0.0, self.along + self.across * 0.0)
 
 
 class Unloaded(NamedTuple):
