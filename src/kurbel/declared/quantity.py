@@ -28,6 +28,7 @@ class Quantity(NamedTuple):
     `peak`: a column with extremes that has, besides, its largest magnitude as key value `<id>_peak`.
     `on_request`: the commands that print it only where it is asked for by name.
     `wanted_large`: a bound on it is one from below, as on every smallest value.
+    `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
     """
 
     id: str
@@ -46,6 +47,8 @@ class Quantity(NamedTuple):
     peak: bool = False
     on_request: tuple[str, ...] = ()
     wanted_large: bool = False
+    gauge: bool = False
+    mark: str = ""
 
     @property
     def bounded_below(self) -> bool:
@@ -60,6 +63,15 @@ class Quantity(NamedTuple):
     def is_noise(self, value: float) -> bool:
         """Whether this value is a residual of rounding alone."""
         return self.residual and abs(value) < 10.0**NOISE_POWER
+
+    def absolute(self) -> Quantity:
+        """Return the quantity of a machine whose pressures are absolute."""
+        text = self.text.replace("Gauge", "Absolute").replace("gauge", "absolute")
+        return self._replace(text=text, mark="abs") if self.gauge else self
+
+    def marked(self, unit: str) -> str:
+        """Return the unit as it is shown."""
+        return f"{unit} {self.mark}".rstrip()
 
     def extreme(self, word: str, end: str, commands: tuple[str, ...]) -> Quantity:
         """Return the key value that is the largest (`max`), smallest (`min`), or largest magnitude of this column.
