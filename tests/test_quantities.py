@@ -25,7 +25,7 @@ from kurbel.solver.bearings.bearing import Bearing, BearingColumns
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.motion import Motion
-from kurbel.solver.cylinder.pins import PinWorks
+from kurbel.solver.cylinder.pin_works import PinWorks
 from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.columns import StrengthColumns

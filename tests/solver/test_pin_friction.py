@@ -13,7 +13,8 @@ from kurbel.errors import MachineFileError
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.cylinder.pins import PinWorks, on_crosshead_pin, on_pin
+from kurbel.solver.cylinder.pin_works import PinWorks
+from kurbel.solver.cylinder.pins import on_crosshead_pin, on_pin
 
 ENGINE = (Path(__file__).parents[2] / "configs" / "gas-engine.yaml").read_text("utf-8")
 RUBS = """friction: {crosshead: 0.05, crank_pin: 0.05, crosshead_pin: 0.06, crosshead_pin_diameter: 180 mm,

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.declared.quantities import Lists
     from kurbel.numerics.where import Where
-    from kurbel.solver.cylinder.pins import PinWorks
+    from kurbel.solver.cylinder.pin_works import PinWorks
     from kurbel.solver.cylinder.rod_load import RodLoad
 
 
@@ -64,7 +64,7 @@ class CylinderForces(Results):
     @cached_property
     def pin_works(self) -> PinWorks:
         """Works of friction in pins and journals."""
-        from kurbel.solver.cylinder.pins import PinWorks
+        from kurbel.solver.cylinder.pin_works import PinWorks
 
         return PinWorks(self)
 
@@ -259,7 +259,7 @@ class CylinderForces(Results):
     @property
     def wear_max(self) -> Extreme | None:
         """Largest value of the wear line f |N| |c| in W."""
-        return max((extremes_of(curve).largest for curve in self._searched(("wear",)).values()), default=None)
+        return max((extremes_of(curve).largest for curve in self.searched("wear").values()), default=None)
 
     @property
     def wear_mean(self) -> float | None:

@@ -9,7 +9,6 @@ friction: what it changes in them is of second order in f, as with the friction 
 from __future__ import annotations
 
 import math
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,17 +16,16 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.mechanisms import fan
-from kurbel.numerics.grid import Grid, Pieces, integral
+from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import once_each
 from kurbel.numerics.search import Sampled, curves
-from kurbel.solver.cylinder.state import State
 from kurbel.solver.shaft.line import ShaftLine, shaft_obstacle
 from kurbel.solver.shaft.statics import Vector, norm
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.cylinder.drive import Drive
-    from kurbel.solver.cylinder.forces import CylinderForces
+    from kurbel.solver.cylinder.state import State
 
 
 class Rubbing(NamedTuple):
@@ -140,45 +138,6 @@ class PinFriction:
         pin = Vector(*(force * count for force in on_pin(state)))
         found = self._line.carried(throw, pin, own, state.angle)
         return tuple(Vector(force.D / count, force.T / count) for force in found)
-
-
-class PinWorks:
-    """Works of friction in pins and journals of a cylinder. Attributes are named by the ids of the key values, in SI.
-
-    None without the coefficient, or without a force.
-    """
-
-    def __init__(self, forces: CylinderForces) -> None:
-        self._forces = forces
-        friction = forces.drive.cylinder.friction
-        self._given = friction.of_pins if friction and forces.drive.has_force else ()
-
-    @cached_property
-    def _works(self) -> dict[str, float]:
-        """Work in J per cycle by the key of the coefficient."""
-        if not self._given or self._forces.drive.pin_friction is None:
-            return dict.fromkeys(self._given, 0.0)
-        found = integral(self._forces.grid, self._moments)
-        return dict(zip(self._given, found.tolist()))
-
-    def _moments(self, pieces: Pieces) -> Array:
-        rubbing = State(self._forces.drive, CrankAngle.of(pieces.degrees, pieces.beyond)).rubbing
-        every = [np.broadcast_to(getattr(rubbing, name), pieces.degrees.shape) for name in self._given]
-        return np.stack(every)
-
-    @property
-    def all(self) -> tuple[float, ...]:
-        """Works in J per cycle of those whose coefficient is given."""
-        return tuple(self._works.values())
-
-    def work_of(self, name: str) -> float | None:
-        """Return the work in J per cycle of `crank_pin`, `crosshead_pin` or `journals`."""
-        return self._works.get(name)
-
-    def loss_of(self, name: str) -> float | None:
-        """Return the same over the work of the driving pistons; None where none drives."""
-        work, driving = self.work_of(name), self._forces.work_driving
-        return None if work is None or not driving else work / driving
 
 
 def on_pin(state: State) -> Vector:

@@ -23,11 +23,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.jet import Jet
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.machine.crankshaft import Crankshaft
 
 
 class Vector(NamedTuple):
