@@ -54,7 +54,7 @@ def test_csv_tells_the_bearings_apart() -> None:
 def test_one_bearing_alone() -> None:
     text = run("bearings", "-", "--cylinder", "bearing B", "--key-values").stdout
     assert "Lagerkräfte: bearing B" in text
-    assert "F_max" in text
+    assert "F_L,max" in text
     wrong = run("bearings", "-", "--cylinder", "cylinder 1")
     assert wrong.exit_code == 2
     assert "it has those of crank pin, crosshead pin, bearing A, bearing B" in wrong.stderr

@@ -21,6 +21,9 @@ from kurbel.machine.masses import Masses
 from kurbel.mechanisms import MECHANISMS, Mechanism, every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.forces import forces_report
+from kurbel.solver.balance.columns import BalanceColumns
+from kurbel.solver.balance.locomotive import LocomotiveBalance
+from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.bearings.bearing import Bearing, BearingColumns
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
@@ -41,6 +44,7 @@ RESULTS = {
     "forces": (CylinderForces, Motion, RodLoad, PinWorks),
     "flywheel": (MachineTurning, ElasticCoupling),
     "stress": (CrankshaftStrength,),
+    "balance": (MachineBalance, LocomotiveBalance, BookBalance),
     "bearings": (Bearing,),
 }
 
@@ -60,6 +64,7 @@ def test_every_key_value_has_a_definition(command: str) -> None:
         ("forces", State),
         ("flywheel", TurningColumns),
         ("stress", StrengthColumns),
+        ("balance", BalanceColumns),
         ("bearings", BearingColumns),
     ],
 )

@@ -42,7 +42,7 @@ _LOAD_COLUMNS = (
 """Frame, index of the symbol, and from where directions count in it."""
 
 BEARING_COLUMNS = (
-    _bearing("load", "F", "force", "Load of a rod on its pin, or of the shaft on a main bearing"),
+    _bearing("load", "F_L", "force", "Load of a rod on its pin, or of the shaft on a main bearing"),
     *(
         _bearing(f"load_{frame}", f"ε_{index}", "angle", f"Direction of the load {whence}", f"eps_{index}")
         for frame, index, whence in _LOAD_COLUMNS
@@ -50,10 +50,10 @@ BEARING_COLUMNS = (
 )
 
 BEARING_VALUES = (
-    _bearing("load_max", "F_max", "force", "Largest load"),
-    _bearing("load_min", "F_min", "force", "Smallest load"),
-    _bearing("load_mean", "F_m", "force", "Mean load over time"),
-    _bearing("load_high", "F_m,½", "force", "Mean load over the time in which it exceeds half the largest", "F_m,1/2"),
+    _bearing("load_max", "F_L,max", "force", "Largest load"),
+    _bearing("load_min", "F_L,min", "force", "Smallest load"),
+    _bearing("load_mean", "F_L,m", "force", "Mean load over time"),
+    _bearing("load_high", "F_L,m,½", "force", "Mean load while it exceeds half the largest", "F_L,m,1/2"),
     _bearing("unloaded_arc", "Δε_Z", "angle", "Arc of the pin or journal that is never loaded", "deps_Z"),
     _bearing("unloaded_middle", "ε_Z", "angle", "Middle of its widest piece, in the frame of the pin", "eps_Z"),
     _bearing("unloaded_arc_shell", "Δε_L", "angle", "Arc of the shell that is never loaded", "deps_L"),

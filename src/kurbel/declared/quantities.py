@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
 
+from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES, PIN_LOSSES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.rod_load import ROD_COLUMNS, ROD_VALUES
@@ -25,7 +26,7 @@ _COLUMNS = (
         "angle",
         "Crank angle from the inner dead centre, in the sense of rotation",
         "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "bearings"),
+        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "bearings", "balance"),
     ),
     _motion(
         "z",
@@ -152,6 +153,7 @@ _COLUMNS = (
     *ROD_COLUMNS,
     *STRENGTH_COLUMNS,
     *BEARING_COLUMNS,
+    *BALANCE_COLUMNS,
 )
 
 
@@ -325,6 +327,7 @@ class Lists(NamedTuple):
             *_FLYWHEEL_VALUES,
             *STRENGTH_VALUES,
             *BEARING_VALUES,
+            *BALANCE_VALUES,
         )
         return cls(found, placed((*common, *key_values)))
 

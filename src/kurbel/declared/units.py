@@ -194,7 +194,9 @@ def unit_factor(unit: str, kind: str) -> Factor:
 
 
 def _kind_name(kind: str) -> str:
-    return {"gd2": "GD²", "speed": "speed of rotation"}.get(kind, kind.replace("_", " "))
+    return {"gd2": "GD²", "speed": "speed of rotation", "unbalance": "mass-times-radius"}.get(
+        kind, kind.replace("_", " ")
+    )
 
 
 def _known_text(kind: str) -> str:

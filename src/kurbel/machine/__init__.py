@@ -29,7 +29,7 @@ from kurbel.declared.forms import (
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, refuse
 from kurbel.machine.angle_points import CYCLES
-from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder
+from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder, crowded
 
 if TYPE_CHECKING:
     from kurbel.declared.forms.figures import Expected
@@ -228,6 +228,7 @@ class Machine(Described):
         for index, cylinder in enumerate(self.cylinders):
             rubbing = cylinder.friction.faults_beside(self.crankshaft) if cylinder.friction else ()
             faults += [fault.below(("cylinders", index, "friction")) for fault in rubbing]
+        faults += crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
                 faults.append(Fault((key, getattr(diagram, "key", "points")), message))

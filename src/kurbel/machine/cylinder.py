@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -142,6 +142,20 @@ class Cylinder(Described):
         at_point = self.point.faults_on(self.mechanism) if self.point else ()
         refuse(*(fault.below(("point",)) for fault in at_point))
         refuse(*_of_output(self), *(_of_rod(self) if self.mechanism.slides else ()))
+
+
+def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Fault]:
+    """Yield a fault for every cylinder that stands where another one does, on one stroke line and at one place."""
+    first: dict[tuple[float, float], str] = {}
+    for index, one in enumerate(cylinders):
+        if one.axial_position is None:
+            continue
+        where = round(one.axial_position, 9), round(one.bank_angle % 360.0, 6) % 360.0
+        if where in first:
+            place = f"{show(one.axial_position, 'length')} along the shaft, on the same stroke line"
+            message = f"stands where '{first[where]}' does, {place}; give another 'axial_position' or 'bank_angle'"
+            yield Fault(("cylinders", index, "axial_position"), message)
+        first.setdefault(where, one.name)
 
 
 def may_lock(cylinder: Cylinder) -> bool:
