@@ -414,3 +414,13 @@ def test_the_smallest_circle() -> None:
     assert abs(circle.centre) < 1e-14
     assert circle.radius == pytest.approx(1)
     assert smallest_circle([1j, 1j])[:2] == (1j, 0.0)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_carriers_alone_have_the_same_smallest_circle(seed: int) -> None:
+    """Also where four or more points, mirror images, stand on it: no point may be dropped that holds it."""
+    angles = np.random.default_rng(seed).uniform(0, 2 * math.pi, 4)
+    points = [complex(math.cos(a), sign * math.sin(a)) for a in angles for sign in (1, -1)]
+    circle = smallest_circle(points)
+    assert max(abs(one - circle.centre) for one in points) == pytest.approx(circle.radius, rel=1e-12)
+    assert smallest_circle(list(circle.carriers)).radius == pytest.approx(circle.radius, rel=1e-12)
