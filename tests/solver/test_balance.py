@@ -374,6 +374,7 @@ def test_moments_about_another_place() -> None:
     ("text", "message"),
     [
         ("{speed: 600 rpm, crank: 50 mm, rod_ratio: 4}", "nothing moves that could be balanced"),
+        (single().replace("2 kg", "0 kg"), "nothing moves that could be balanced"),
         (single(1.00000000001), "so short a connecting rod do not settle"),
         ("{crank: 1 m, frame: 2 m, lever: 4 m, mechanism: slotted-lever, masses: {other: 1 kg}}", "are not known"),
         (
@@ -424,3 +425,10 @@ def test_the_carriers_alone_have_the_same_smallest_circle(seed: int) -> None:
     circle = smallest_circle(points)
     assert max(abs(one - circle.centre) for one in points) == pytest.approx(circle.radius, rel=1e-12)
     assert smallest_circle(list(circle.carriers)).radius == pytest.approx(circle.radius, rel=1e-12)
+
+
+def test_wheels_need_to_know_where_the_cylinders_stand() -> None:
+    found = balance_of(single(4, ", locomotive: {wheel_distance: 1 m}"))
+    assert found.locomotive is not None
+    with pytest.raises(UsageError, match="cylinder 1: weights in two planes need its 'axial_position'"):
+        _ = found.locomotive.hammer_blow
