@@ -22,7 +22,9 @@ from kurbel.mechanisms import MECHANISMS, Mechanism, every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.forces import forces_report
 from kurbel.solver.case import Case
+from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.indicated import Indicated
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.columns import StrengthColumns
@@ -35,8 +37,8 @@ from toy_mechanism import HarmonicCam
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
     "motion": (Motion,),
-    "forces": (CylinderForces, Motion),
-    "flywheel": (MachineTurning, ElasticCoupling),
+    "forces": (CylinderForces, Motion, Indicated, Brake),
+    "flywheel": (MachineTurning, ElasticCoupling, Brake),
     "stress": (CrankshaftStrength,),
 }
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
 
+from kurbel.declared.indicated import INDICATED_COLUMNS, INDICATED_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
 
@@ -52,6 +53,7 @@ _COLUMNS = (
     ),
     _forces("p_head", "p_H", "pressure", "Gauge pressure in the head-end chamber, just after a jump"),
     _forces("p_crank", "p_C", "pressure", "Gauge pressure in the crank-end chamber, just after a jump"),
+    *INDICATED_COLUMNS,
     _forces("P_gas", "P_gas", "force", "Force of gas, steam or water on all pistons of the rod"),
     _forces(
         "P_gas_book",
@@ -223,6 +225,7 @@ _WORK_VALUES = (
     _forces("resistance_work", "A_r", "energy", "Work per cycle of what the ram or rocker works against, negative"),
     _forces("power", "N_i", "power", "Indicated power"),
     _forces("mean_pressure", "p_i", "pressure", "Mean indicated pressure of the cylinder's own piston"),
+    *INDICATED_VALUES,
     _forces(
         "work_sensitivity",
         "dA_i/A_i",
