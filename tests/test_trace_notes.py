@@ -134,7 +134,7 @@ def test_what_it_would_change_is_the_true_figure(tmp_path: Path) -> None:
 
 def test_four_strokes_told_as_two(tmp_path: Path) -> None:
     """The angle begins anew in every turn and 'cycle: four-stroke' is forgotten: the turns differ by twos."""
-    angles, each = cycles(ENGINE, 3, 0.5, noise=0.05)
+    _, each = cycles(ENGINE, 3, 0.5, noise=0.05)
     file = written(tmp_path, np.tile(np.arange(0.0, 360.0, 0.5), 6), each.ravel())
     (note,) = notes_of(machine_text(file, cycle="two-stroke"))
     assert "its turns differ by twos" in note

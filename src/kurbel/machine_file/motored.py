@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 _HALF = 6.0
 """Degrees on either side of the peak through which the parabola goes."""
-_FEET = 40.0
-"""Degrees from the peak at which both sides are compared: where something burnt, they are not alike."""
-_ALIKE = 0.7, 1.1
+_SIDES = 20.0, 40.0, 60.0, 80.0
+"""Degrees from the peak at which both its sides are compared: where something burnt, they are not alike."""
+_ALIKE = 0.5, 1.15
 
 
 @dataclass(frozen=True)
@@ -88,17 +88,13 @@ def _one_cycle(angles: Array, laps: Array) -> tuple[Array, Array]:
 
 
 def _refuse_fired(angles: Array, pressures: Array) -> None:
-    top = float(angles[len(angles) // 2])
-    low = float(pressures.min())
-    before, after = (np.interp(top + side, angles, pressures) - low for side in (-_FEET, _FEET))
-    if not _ALIKE[0] * before <= after <= _ALIKE[1] * before:
-        refuse(
-            Fault(
-                (),
-                f"is no motored trace: {_FEET:g} deg after its peak the pressure is {after / before:.2g} times that "
-                f"{_FEET:g} deg before; name one without combustion",
-            )
-        )
+    top, low = float(angles[len(angles) // 2]), float(pressures.min())
+    for side in _SIDES:
+        before, after = (float(np.interp(top + way, angles, pressures)) - low for way in (-side, side))
+        if not _ALIKE[0] * before <= after <= _ALIKE[1] * before:
+            times = f"{after / before:.2g} times that" if before > 0 else "not that"
+            message = f"is no motored trace: {side:g} deg after its peak the pressure rises to {times} before it"
+            refuse(Fault((), f"{message}; name one without combustion"))
 
 
 def _vertex(angles: Array, pressures: Array, width: float) -> _Vertex:
