@@ -15,6 +15,7 @@ from indicated import Engine, absolute, cycles, indicated
 from kurbel.cli import kurbel
 from kurbel.machine_file import loads
 from kurbel.report.notes import machine_notes
+from kurbel.solver.case import Case
 
 AMBIENT = 1.01325
 ENGINE = Engine()
@@ -36,8 +37,8 @@ def machine_text(file: Path, keys: str = "", pressures: str = "absolute", cycle:
 
 
 def notes_of(text: str) -> list[str]:
-    """All notes, but for those on how the file was tidied up."""
-    return [note.text for note in machine_notes(loads(text)) if "closing sample" not in note.text]
+    """All notes on a machine."""
+    return [note.text for note in machine_notes(loads(text))]
 
 
 def test_good_noisy_cycles_are_not_accused(tmp_path: Path) -> None:
@@ -173,3 +174,48 @@ def test_every_command_shows_the_same_notes_once(tmp_path: Path, command: str) -
         parts = found.get("cylinders", []) if command == "forces" else []
         said = [text for part in parts for text in part["warnings"]] or found.get("machine_warnings", [])
     assert sum(note in text for text in said) == 1
+
+
+def test_cycles_told_by_a_wrong_speed(tmp_path: Path) -> None:
+    """At 1500 rpm, told as 1515: the cycles wander; with the speed that the note asks for nothing is left to say."""
+    _, each = cycles(ENGINE, 12, 0.5, noise=0.05)
+    file = written(tmp_path, np.arange(12 * 1440) * 0.5 / 9000, each.ravel())
+    keys = ", angle_unit: s, recorded_speed: {:.7g} rpm"
+    (note,) = [one for one in notes_of(machine_text(file, keys.format(1515))) if "left out" not in one]
+    assert "the cycles wander" in note
+    change = float(re.findall(r"A 'recorded_speed' about ([0-9.]+)% lower", note)[0])
+    assert change == pytest.approx(100 * (1 - 1500 / 1515), rel=0.1)
+    assert notes_of(machine_text(file, keys.format(1515 * (1 - change / 100)))) == []
+
+
+STIRLING = Path(__file__).resolve().parents[2] / "shared" / "data" / "stirling_mpxv7002_gauge_kPa_cm3.csv"
+
+
+@pytest.mark.skipif(not STIRLING.is_file(), reason="the measured Stirling engine is not here")
+def test_a_measured_stirling_engine(tmp_path: Path) -> None:
+    """clnbtlr/StirlingEngine (MIT): gauge kPa over time, with the volume; the speed falls from 151 to 143 rpm.
+
+    Of eight turns at an even speed p_i is the loop of p over the measured V; of all the note tells that they wander.
+    """
+    rows = STIRLING.read_text().splitlines()
+    t, p, v = np.loadtxt(rows[1:302], delimiter=",").T
+    up = np.flatnonzero((v[:-1] < 0) & (v[1:] >= 0))
+    upward = t[up] - v[up] * (t[up + 1] - t[up]) / (v[up + 1] - v[up])
+    period = float(upward[-1] - upward[0]) / (len(upward) - 1)
+    stroke = float(np.ptp(v))
+    whole = slice(up[0], up[-1] + 1)
+    loop = float(np.sum(((p[1:] + p[:-1]) / 2 * np.diff(v))[whole])) / (len(up) - 1) / stroke
+    (tmp_path / "s.csv").write_text("\n".join(rows[:302]))
+    wave = np.exp(-2j * np.pi * t[whole] / period) @ v[whole]
+    zero = float((180 - np.degrees(np.angle(wave))) % 360)  # where the first harmonic of V is smallest
+    text = (
+        f"speed: {60 / period!r} rpm\nstroke: 10 mm\nrod_ratio: inf\nbore: 14.3 mm\nindicator: {{head_end: {{trace: "
+        "{file: '%s', unit: kPa, skip_rows: 1, angle_unit: s, recorded_speed: %r rpm, angle_zero: %r deg}}}\n"
+    )
+    text = text.replace("rod_ratio: inf", "rod: 1 m")
+    machine = loads(text % (tmp_path / "s.csv", 60 / period, zero))
+    found = Case(machine).cylinders[0]
+    assert found["mean_pressure"].value / 1e3 == pytest.approx(loop, rel=0.05)
+    assert [note.text for note in machine_notes(machine) if "left out" not in note.text] == []
+    notes = [note.text for note in machine_notes(loads(text % (STIRLING, 60 / period, zero)))]
+    assert any("the cycles wander" in note for note in notes)

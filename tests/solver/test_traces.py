@@ -292,8 +292,7 @@ def test_the_missing_closing_sample_is_taken_from_the_first(tmp_path: Path) -> N
     machine = machine_of(tmp_path, "\n".join(GOOD[:-1]))
     angles, pressures = columns_of(machine)
     assert (angles[-1], pressures[-1]) == (360, pressures[0])
-    (note,) = machine.cylinders[0].pistons[0].indicator.head_end.notes  # type: ignore[union-attr]
-    assert note == "the closing sample at 360 deg is missing; that at 0 deg closes the cycle"
+    assert notes_of(machine) == ()  # as loggers write them; a drift would be seen all the same
 
 
 def test_gaps_are_told(tmp_path: Path) -> None:

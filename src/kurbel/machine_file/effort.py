@@ -77,7 +77,8 @@ def _from_file(unit: Factor, file: str, angle_zero: float = 0.0, **layout: Any) 
         lap = samples.angles[-1] - samples.angles[0]
         refuse(Fault(("file",), f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle"))
     angles, torques = _from_zero(samples, angle_zero)
-    return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), samples.notes)
+    closed = ("the closing sample is missing; the first one closes the cycle",) if samples.completed else ()
+    return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed))
 
 
 def _from_zero(samples: Samples, angle_zero: float) -> tuple[Array, Array]:

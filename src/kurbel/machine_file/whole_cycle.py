@@ -133,7 +133,6 @@ def _closed(record: Record, period: float, notes: tuple[str, ...], named: Named)
         raise RuleError(said(place(len(angles) - 1), hole(float(angles[-1]), end)))
     completed = missing > 1e-9 * period
     if completed:
-        notes += (f"the closing sample at {end:.10g} deg is missing; that at {angles[0]:.10g} deg closes the cycle",)
         angles, values = np.append(angles, end), np.append(values, values[:, :1], axis=1)
     else:
         angles = np.append(angles[:-1], end)

@@ -52,7 +52,7 @@ def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
     if cycles := forces.indicated.cycles:
         names = tuple((str(number),) for number in range(1, len(cycles.p_max) + 1))
         columns = [shown_column(one, getattr(cycles, one.id).tolist(), system) for one in CYCLE_VALUES]
-        yield PlaceTable("cycles", "Measured cycles", ("cycle",), names, tuple(columns))
+        yield PlaceTable("cycles", "Measured cycles", ("cycle",), names, tuple(columns), headed=True)
 
 
 def _rod_notes(case: Case) -> Iterable[str]:

@@ -15,6 +15,8 @@ _WORK = 0.01
 """Share of p_i below which a drift is not worth a word."""
 _SURE = 6.0
 """Standard deviations of the noise that a drift must stand out by."""
+_WANDERED = 10.0
+"""Degrees by which the cycles of one engine never move from the first to the last."""
 _TWICE = 0.25
 """Share of samples that stand at the angle of the one before, from which on angles are rounded."""
 _OTHER = 0.2
@@ -22,10 +24,11 @@ _OTHER = 0.2
 
 
 def sample_notes(reading: Reading) -> Iterable[str]:
-    """Yield what looks wrong with the samples."""
-    yield from _of_turns(reading)
-    yield from _of_twins(reading)
-    yield from _of_drift(reading)
+    """Yield the one note on the samples, if any; what is judged later may only look wrong by what comes before."""
+    for judge in (_of_turns, _of_speed, _of_twins, _of_drift):
+        if found := tuple(judge(reading)):
+            yield from found
+            return
 
 
 def _of_turns(reading: Reading) -> Iterable[str]:
@@ -41,6 +44,26 @@ def _of_turns(reading: Reading) -> Iterable[str]:
             f"cycle? write 'cycle: four-stroke' at the top; p_i is then {in_bar(2 * pressure.area)} instead of "
             f"{in_bar(pressure.area)}"
         )
+
+
+def _of_speed(reading: Reading) -> Iterable[str]:
+    """Cycles of one engine do not wander against each other; those that are told by time and a wrong speed do."""
+    pressure = reading.pressure
+    each, trace = pressure.each, pressure.trace
+    if len(each) < 3:
+        return
+    wave = np.exp(-2j * np.pi * trace.angles / trace.period) * np.gradient(trace.angles)
+    phases = np.unwrap(np.angle(each[:, :-1] @ wave[:-1]))
+    wandered = float(phases[0] - phases[-1]) * trace.period / (2 * np.pi)
+    if abs(wandered) <= _WANDERED:
+        return
+    off = wandered / (trace.period * (len(each) - 1))
+    first, last = (float(pressure.weights @ one) for one in (each[0], each[-1]))
+    yield (
+        f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last, "
+        f"and p_i goes from {in_bar(first)} to {in_bar(last)}: was the speed another, or not constant? A "
+        f"'recorded_speed' about {abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'} brings both together"
+    )
 
 
 def _of_twins(reading: Reading) -> Iterable[str]:
