@@ -16,6 +16,10 @@ _ALIKE = 1e-3
 """Of a step: what the angles of two laps may differ by and still be the same, rounded."""
 
 
+_REST = 0.05
+"""Share of a lap from which on what follows the last whole one is told."""
+
+
 class Record(NamedTuple):
     """Samples in the order of time: angles (n,) in degrees, values (k, n), and of which row each is (n,)."""
 
@@ -42,7 +46,7 @@ def lapped(record: Record, named: Named) -> tuple[Record, tuple[str, ...]]:
         return unwrapped, ()
     refuse_large_holes(angles, lambda index: named(int(unwrapped.rows[index])))
     left = len(angles) - int(bounds[-1])
-    told = (f"the {left} samples after lap {laps} of {lap:g} deg are left out",) if left > 1 else ()
+    told = (f"the {left} samples after lap {laps} of {lap:g} deg are left out",) if left > _REST * bounds[1] else ()
     return _laid_over(unwrapped, bounds.tolist(), lap), told
 
 

@@ -97,9 +97,10 @@ def _of_level(reading: Reading) -> str:
         return f"{said} absolute: these look like gauge pressures; write 'pressures: gauge'; {stays}"
     if not setting.absolute and low < -setting.ambient:
         return f"{said}, the perfect vacuum being at {in_bar(-setting.ambient)}; write 'pegging: ambient'; {stays}"
+    known = "" if reading.pressure.trace.clearance else "; a 'compression_ratio' would tell by the compression"
     near = _NEAR_AMBIENT[0] < low / max(setting.ambient, 1.0) < _NEAR_AMBIENT[1]
     if not setting.absolute and near and not _sensible(reading):
-        return f"{said} gauge, about the ambient: absolute? Then write 'pressures: absolute'; {stays}"
+        return f"{said} gauge, about the ambient: absolute? Then write 'pressures: absolute'; {stays}{known}"
     return ""
 
 

@@ -35,8 +35,8 @@ def place_notes(reading: Reading) -> Iterable[str]:
 def _backward(reading: Reading) -> str:
     pressure = reading.pressure
     judged = reading.engine and (pressure.setting.cycle == 720 or pressure.trace.clearance is not None)
-    low = -60.0
-    if not judged or not low < reading.peak_at < -_MOTORED_LEAD or pressure.area >= 0 or motored(pressure, reading.top):
+    early = -60.0 < reading.peak_at < -_MOTORED_LEAD - reading.step
+    if not judged or not early or pressure.area >= 0 or motored(pressure, reading.top):
         return ""
     other = reading.reversed()
     if other.pressure.area <= 0 or not _stands_well(other):

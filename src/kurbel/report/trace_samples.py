@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from kurbel.report.trace_readings import Reading, in_bar
-from kurbel.solver.pressure.corrected import drift_of
+from kurbel.solver.pressure.corrected import LAST, drift_of
 
 _RANGE = 0.02
 """Share of the range of a trace that the ends of its cycle may differ by."""
@@ -102,6 +102,6 @@ def _doubt(reading: Reading) -> float:
     if not pressure.trace.completed:
         return _SURE * pressure.noise
     p = pressure.pressures[:-1]
-    bends = np.abs(np.diff(np.concatenate((p[-4:], p[:4])), 2))
-    middle = np.sort(bends)[len(bends) // 2]  # that across the ends is a jump itself
-    return max(_SURE * pressure.noise, 3.0 * float(middle))
+    bends = np.sort(np.abs(np.concatenate((np.diff(p[-4:], 2), np.diff(p[:4], 2)))))
+    coarse = pressure.trace.angles[-1] - pressure.trace.angles[-4] > LAST
+    return max(_SURE * pressure.noise, 3.0 * float(bends[-1] if coarse else bends[len(bends) // 2]))

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _AROUND = 2.5
 """Degrees on either side of the pegging angle over which a cycle's level is the mean: one sample is noise."""
-_LAST = 2.0
+LAST = 2.0
 """Degrees at either end of the cycle through which lines go, as far as there are three samples in them."""
 
 
@@ -40,8 +40,8 @@ def drift_of(trace: Trace, samples: Array) -> Array:
     if not trace.completed:
         return np.asarray(samples[:, 0] - samples[:, -1])
     angles, end = trace.angles, trace.angles[-1]
-    last = max(3, int(np.searchsorted(-angles[:-1][::-1], _LAST - end)))
-    first = max(3, int(np.searchsorted(angles, angles[0] + _LAST, side="right")))
+    last = max(3, int(np.searchsorted(-angles[:-1][::-1], LAST - end)))
+    first = max(3, int(np.searchsorted(angles, angles[0] + LAST, side="right")))
     before = _line_at(angles[-1 - last : -1] - end, samples[:, -1 - last : -1])
     after = _line_at(angles[:first] - angles[0], samples[:, :first])
     return np.asarray(after - before)
