@@ -190,3 +190,32 @@ def test_effort_holds_one_cycle(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text("effort: {unit: N m, file: e.csv}\n")
     with pytest.raises(MachineFileError, match="holds 3 laps of 360 deg; keep one cycle"):
         load(tmp_path / "m.yaml")
+
+
+def test_sample_numbers_are_no_angles(tmp_path: Path) -> None:
+    """Samples at every tenth of a degree, numbered: read as angles they would be ten cycles, none like the other."""
+    fine = np.arange(0.0, 720.0, 0.1)
+    content = rows(np.arange(7200), absolute(ENGINE, fine))
+    with pytest.raises(MachineFileError, match=r"turns that are not alike; .* such as 'angle_step: 0.1 deg'"):
+        machine(tmp_path, content)
+    assert trace_of(machine(tmp_path, content, ", angle_step: 0.1 deg")).angles[:-1] == pytest.approx(fine)
+
+
+@pytest.mark.parametrize(
+    ("angles", "advice", "keys"),
+    [
+        (np.radians(ANGLES), "are these radians? Then write 'angle_unit: rad'", ", angle_unit: rad"),
+        (ANGLES / 9000, "are these times? Then write 'angle_unit: s'", ", angle_unit: s, recorded_speed: 1500 rpm"),
+    ],
+)
+def test_what_counts_no_degrees(tmp_path: Path, angles: Any, advice: str, keys: str) -> None:
+    with pytest.raises(MachineFileError, match=re.escape(advice)):
+        machine(tmp_path, rows(angles))
+    meant(machine(tmp_path, rows(angles), keys))
+
+
+def test_figures_beyond_all_numbers(tmp_path: Path) -> None:
+    with pytest.raises(MachineFileError, match="line 2: the pressure is inf"):
+        machine(tmp_path, "0,1\n100,1e300\n720,1\n", ", scale: 1e15")
+    with pytest.raises(MachineFileError, match="motored: has 0 samples only"):
+        machine(tmp_path, "0,1\n720,1\n", ", angle_zero: {motored: p.csv, loss_angle: 0.5 deg}")

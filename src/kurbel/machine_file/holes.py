@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -29,11 +30,23 @@ def hole(begin: float, end: float) -> str:
 def usual_step(angles: Array) -> float:
     """Return the step in degrees such that no wider ones cover half of the angle: a denser stretch is no rule."""
     steps = np.sort(np.diff(angles))
-    return float(steps[np.searchsorted(np.cumsum(steps), steps.sum() / 2)])
+    passed = np.cumsum(steps)
+    return float(steps[np.searchsorted(passed, passed[-1] / 2)])
 
 
 _LARGE_HOLES = ((20.0, 10.0), (45.0, 3.0))
 """(degrees, times the median step) beyond both of which no straight line stands for what was not measured."""
+
+
+def counted_otherwise(span: float) -> str:
+    """Return what to write if angles that run over so few degrees are none; '' where they are too many for that.
+
+    >>> counted_otherwise(12.56)
+    "; are these radians? Then write 'angle_unit: rad'"
+    """
+    if any(abs(span / turns - 2 * math.pi) < 0.2 for turns in (1, 2)):
+        return "; are these radians? Then write 'angle_unit: rad'"
+    return "; are these times? Then write 'angle_unit: s' and 'recorded_speed: 1500 rpm', say" if span < 10 else ""
 
 
 def refuse_large_holes(angles: Array, named: Named) -> None:

@@ -22,6 +22,7 @@ _HALF = 6.0
 """Degrees on either side of the peak through which the parabola goes."""
 _SIDES = 20.0, 40.0, 60.0, 80.0
 """Degrees from the peak at which both its sides are compared: where something burnt, they are not alike."""
+_FEWEST = 36
 _ALIKE = 0.5, 1.15
 
 
@@ -88,6 +89,8 @@ def _one_cycle(angles: Array, laps: Array) -> tuple[Array, Array]:
 
 
 def _refuse_fired(angles: Array, pressures: Array) -> None:
+    if len(angles) < _FEWEST:
+        refuse(Fault((), f"has {len(angles)} samples only; measure it finer"))
     top, low = float(angles[len(angles) // 2]), float(pressures.min())
     for side in _SIDES:
         before, after = (float(np.interp(top + way, angles, pressures)) - low for way in (-side, side))

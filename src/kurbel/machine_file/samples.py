@@ -98,8 +98,11 @@ def samples_of(file: str, layout: Layout, what: str, base: Callable[[Array], Arr
 
     between = DELIMITERS.get(layout.delimiter, layout.delimiter)
     angle = None if layout.angle_step else layout.angle_column
+    import numpy as np
+
     table = read_columns(file, Columns(angle, layout.columns, layout.skip_rows, between, _DECIMALS[layout.decimal]))
-    angles, values = layout.degrees(table.angles, table.values.shape[1]), base(table.values)
+    with np.errstate(over="ignore"):  # what is beyond all numbers is told with its line
+        angles, values = layout.degrees(table.angles, table.values.shape[1]), base(table.values)
 
     def named(index: int) -> Fault:
         return Fault(("file",), table.line(index))

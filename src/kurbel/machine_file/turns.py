@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kurbel.errors import RuleError
 from kurbel.machine.trace import PERIODS
-from kurbel.machine_file.holes import Named, refuse_large_holes, usual_step
+from kurbel.machine_file.holes import Named, refuse_large_holes, said, usual_step
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
@@ -16,6 +17,8 @@ _ALIKE = 1e-3
 """Of a step: what the angles of two laps may differ by and still be the same, rounded."""
 
 
+_LEAST_ALIKE = 0.2
+"""Likeness below which laps are none, even where a wrong speed lets them wander."""
 _REST = 0.05
 """Share of a lap from which on what follows the last whole one is told."""
 
@@ -36,6 +39,7 @@ def lapped(record: Record, named: Named) -> tuple[Record, tuple[str, ...]]:
     """
     lap = _lap_of(record.angles)
     if not lap:
+        _refuse_other_turns(record.angles, named)
         return record, ()
     unwrapped = _unwrapped(record, lap)
     angles = unwrapped.angles
@@ -47,7 +51,39 @@ def lapped(record: Record, named: Named) -> tuple[Record, tuple[str, ...]]:
     refuse_large_holes(angles, lambda index: named(int(unwrapped.rows[index])))
     left = len(angles) - int(bounds[-1])
     told = (f"the {left} samples after lap {laps} of {lap:g} deg are left out",) if left > _REST * bounds[1] else ()
-    return _laid_over(unwrapped, bounds.tolist(), lap), told
+    found = _laid_over(unwrapped, bounds.tolist(), lap)
+    if not (np.diff(record.angles) < 0).any():
+        _refuse_unlike(found, len(angles), named)
+    return found, told
+
+
+def _refuse_unlike(laps: Record, samples: int, named: Named) -> None:
+    """Raise RuleError for turns of an angle that counts on which are no turns of an engine: it may count samples."""
+    if len(laps.values) > 2 and _likeness(laps.values) < _LEAST_ALIKE:
+        whole = PERIODS[-1]
+        message = (
+            f"the angle counts on over {len(laps.values)} turns that are not alike; if it numbers samples, write how far "
+            f"apart they are, such as 'angle_step: {whole / samples:.4g} deg' for one cycle of {whole:g} deg"
+        )
+        raise RuleError(said(named(0), message))
+
+
+def _likeness(laps: Array) -> float:
+    """Return how alike every lap and the next but one are: 1 for the same again, about 0 for others."""
+    swing = laps - laps.mean()
+    whole = float((swing**2).mean())
+    return float((swing[2:] * swing[:-2]).mean()) / whole if whole else 1.0
+
+
+def _refuse_other_turns(angles: Array, named: Named) -> None:
+    """Raise RuleError for an angle that begins anew after more than two turns."""
+    back = np.flatnonzero(np.diff(angles) < 0)
+    if len(back):
+        span = float(np.ptp(angles))
+        message = (
+            f"the angle begins anew after {span:.10g} deg; a turn has 360, a four-stroke cycle 720 deg: other units?"
+        )
+        raise RuleError(said(named(int(back[0]) + 1), message))
 
 
 def _lap_of(angles: Array) -> float:

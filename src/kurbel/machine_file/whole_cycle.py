@@ -9,7 +9,7 @@ import numpy as np
 from kurbel.declared.bounds import MOST_POINTS, out_of_size
 from kurbel.errors import Fault, RuleError
 from kurbel.machine.trace import PERIODS
-from kurbel.machine_file.holes import Named, hole, hole_notes, refuse_large_holes, said, usual_step
+from kurbel.machine_file.holes import Named, counted_otherwise, hole, hole_notes, refuse_large_holes, said, usual_step
 from kurbel.machine_file.turns import Record, lapped
 
 if TYPE_CHECKING:
@@ -130,7 +130,8 @@ def _closed(record: Record, period: float, notes: tuple[str, ...], named: Named)
     end = float(angles[0]) + period
     missing = end - float(angles[-1])
     if missing > 1.5 * usual_step(angles):
-        raise RuleError(said(place(len(angles) - 1), hole(float(angles[-1]), end)))
+        message = hole(float(angles[-1]), end) + counted_otherwise(float(angles[-1] - angles[0]))
+        raise RuleError(said(place(len(angles) - 1), message))
     completed = missing > 1e-9 * period
     if completed:
         angles, values = np.append(angles, end), np.append(values, values[:, :1], axis=1)
