@@ -94,16 +94,16 @@ class Measured(Described):
         return Trace(
             samples.angles,
             samples.values,
-            -zero if against else zero,
-            (*((file,) if file else ()), *files),
-            (*samples.notes, *notes),
-            samples.completed,
-            1 / (compression_ratio - 1) if compression_ratio else clearance,
-            drift == "linear",
-            Pegging() if isinstance(pegging, str) else pegging,
-            against,
-            1.0 if scale is None else scale,
-            offset or 0.0,
+            angle_zero=-zero if against else zero,
+            files=(*((file,) if file else ()), *files),
+            notes=(*samples.notes, *notes),
+            completed=samples.completed,
+            clearance=1 / (compression_ratio - 1) if compression_ratio else clearance,
+            level=drift == "linear",
+            pegging=Pegging() if isinstance(pegging, str) else pegging,
+            against=against,
+            scale=1.0 if scale is None else scale,
+            offset=offset or 0.0,
         )
 
 

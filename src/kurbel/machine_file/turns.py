@@ -62,8 +62,8 @@ def _refuse_unlike(laps: Record, samples: int, named: Named) -> None:
     if len(laps.values) > 2 and _likeness(laps.values) < _LEAST_ALIKE:
         whole = PERIODS[-1]
         message = (
-            f"the angle counts on over {len(laps.values)} turns that are not alike; if it numbers samples, write how far "
-            f"apart they are, such as 'angle_step: {whole / samples:.4g} deg' for one cycle of {whole:g} deg"
+            f"the angle counts on over {len(laps.values)} turns that are not alike; if it numbers samples, write how "
+            f"far apart they are, such as 'angle_step: {whole / samples:.4g} deg' for one cycle of {whole:g} deg"
         )
         raise RuleError(said(named(0), message))
 
