@@ -14,6 +14,7 @@ PAGES = [*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
 FILE = re.compile(r"(?<![\w/.])[\w./-]*\w\.(?:md|py|yaml|svg|csv|json|toml|txt|expected)\b")
 NAME = re.compile(r"\bkurbel(?:\.[A-Za-z_]\w*)+")
 READERS = {"engine.yaml", "MACHINE.yaml", "m.yaml", "demo.yaml", "broken.yaml", "run7.csv", "kurbel.schema.json"}
+READERS |= {"run8.csv", "motored.csv", "many.yaml", "diagram.csv", "p.csv"}
 ELSEWHERE = READERS | {"examples/ICE_example.py", "kurbel.mechanisms.harmonic_cam"}
 """Files of the reader's own, one of opentorsion, and the mechanism that the pages add as an example."""
 
