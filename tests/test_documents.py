@@ -18,7 +18,8 @@ from pathlib import Path
 
 import pytest
 
-from kurbel.report.symbols import symbols_page
+import reference  # docs/reference.py
+import shipped  # docs/shipped.py
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
@@ -110,5 +111,17 @@ def test_the_readme_has_commands() -> None:
     assert len(COMMAND.findall(text_of(README))) >= 4
 
 
-def test_the_page_of_symbols_is_current(kept: Callable[[Path, str], str]) -> None:
-    assert kept(ROOT / "docs" / "symbols.md", symbols_page()) == symbols_page()
+GENERATED = {
+    "machines.md": shipped.page,
+    "reference/keys.md": reference.keys,
+    "reference/units.md": reference.units,
+    "reference/columns.md": reference.columns,
+    "reference/key-values.md": reference.key_values,
+    "reference/commands.md": reference.commands,
+}
+
+
+@pytest.mark.parametrize("name", GENERATED)
+def test_a_generated_page_is_current(name: str, kept: Callable[[Path, str], str]) -> None:
+    text = GENERATED[name]()
+    assert kept(ROOT / "docs" / name, text) == text

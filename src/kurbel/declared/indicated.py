@@ -27,9 +27,9 @@ INDICATED_VALUES = (
     _forces("cycles_measured", "Z", "ratio", "Number of measured cycles, of whose mean the forces are"),
     _forces("mean_pressure_std", "s_p_i", "pressure", "Standard deviation of p_i over the cycles", "s_p_i"),
     _forces("mean_pressure_cov", "COV", "ratio", "Coefficient of variation of p_i: standard deviation over mean"),
-    _forces("p_max_mean", "p_max,m", "pressure", "Mean of the largest pressures of the cycles"),
+    _forces("p_max_mean", "p_max,m", "pressure", "Mean of the largest gauge pressures of the cycles", gauge=True),
     _forces("p_max_std", "s_p_max", "pressure", "Standard deviation of the largest pressures of the cycles"),
-    _forces("p_max_most", "p_max,Z", "pressure", "Largest pressure of any cycle"),
+    _forces("p_max_most", "p_max,Z", "pressure", "Largest gauge pressure of any cycle", gauge=True),
     _forces("cycle_worst", "Z_min", "ratio", "Number of the cycle with the smallest p_i, counted from 1"),
     _brake("mean_pressure_brake", "p_e", "pressure", "Mean effective pressure: brake work over the swept volume"),
     _brake("mean_pressure_friction", "p_r", "pressure", "Friction mean pressure, p_i less p_e"),
@@ -37,7 +37,7 @@ INDICATED_VALUES = (
 )
 CYCLE_VALUES = (
     Quantity("mean_pressure", "p_i", "pressure", "Mean indicated pressure of the cycle"),
-    Quantity("p_max", "p_max", "pressure", "Largest gauge pressure of the cycle"),
+    Quantity("p_max", "p_max", "pressure", "Largest gauge pressure of the cycle", gauge=True),
     Quantity("phi_p_max", "φ_p,max", "angle", "Crank angle of the largest pressure", "phi_p,max"),
     Quantity("p_rise_max", "dp/dφ_max", "pressure_rise", "Largest rise of pressure over 1 deg", "dp/dphi_max"),
 )

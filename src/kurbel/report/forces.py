@@ -8,7 +8,7 @@ from typing import Any
 
 from kurbel.declared.indicated import CYCLE_VALUES
 from kurbel.errors import UsageError
-from kurbel.report.frame import Answer, Frame, Rows, Subject, of_state, rows_of
+from kurbel.report.frame import Answer, Frame, Rows, Subject, of_state, refuse_without_cylinder, rows_of
 from kurbel.report.guide import guide_notes
 from kurbel.report.left_out import left_out
 from kurbel.report.motion import mechanism_notes
@@ -28,9 +28,8 @@ def forces_report(
 ) -> Report:
     """Return the forces of every cylinder; angles: crank angles, or what finds them; see `Frame`."""
     machine = case.machine
-    if not machine.cylinders:
-        raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
-    frame = Frame("forces", rows_of(case, angles, 360.0 * machine.revolutions), columns, system, also)
+    refuse_without_cylinder(machine, "forces")
+    frame = Frame("forces", rows_of(angles, 360.0 * machine.revolutions), columns, system, also)
     notes = (*mechanism_notes(machine), *guide_notes(case), *_rod_notes(case))
     return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=notes)
 
@@ -50,8 +49,11 @@ def cycles_report(case: Case, system: str) -> Report:
 
 def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
     if cycles := forces.indicated.cycles:
+        shown = [
+            one.absolute() if forces.drive.own_gas and forces.drive.own_gas.absolute else one for one in CYCLE_VALUES
+        ]
         names = tuple((str(number),) for number in range(1, len(cycles.p_max) + 1))
-        columns = [shown_column(one, getattr(cycles, one.id).tolist(), system) for one in CYCLE_VALUES]
+        columns = [shown_column(one, getattr(cycles, one.id).tolist(), system) for one in shown]
         yield PlaceTable("cycles", "Measured cycles", ("cycle",), names, tuple(columns), headed=True)
 
 
@@ -87,7 +89,7 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
             why = "are within the noise of the trace and no Druckwechsel"
             yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
 
-    return Subject(cylinder.name, forces.answering, at, cylinder.mechanism, left, warnings)
+    return Subject(cylinder.name, forces.answering, at, forces.lists, left, warnings, source=forces)
 
 
 def _no_loss(forces: CylinderForces) -> tuple[LeftOut, ...]:

@@ -44,6 +44,9 @@ class Case:
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
         return (self.strength if "stress" in commands else self.flywheel)[name]
 
+    def __repr__(self) -> str:
+        return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
+
     def _repr_html_(self) -> str:
         from html import escape
 
@@ -65,6 +68,11 @@ class Case:
         from kurbel.solver.strength.crankshaft import CrankshaftStrength
 
         return CrankshaftStrength(self.machine, self.cylinders)
+
+    @property
+    def stress(self) -> CrankshaftStrength:
+        """What `kurbel stress` answers, by the name of the command as the others are."""
+        return self.strength
 
     @cached_property
     def flywheel(self) -> MachineTurning:

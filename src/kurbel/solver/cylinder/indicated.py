@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 
 class Cycles(NamedTuple):
-    """The measured cycles, each (m,): p_i in Pa, largest gauge pressure in Pa with its angle in degrees, its rise."""
+    """The measured cycles, each (m,): p_i in Pa, largest pressure in Pa, gauge or
+    absolute as the file says, with its angle in degrees, its rise."""
 
     mean_pressure: Array
     p_max: Array
@@ -139,7 +140,7 @@ class Indicated:
 
     @property
     def p_max_most(self) -> Extreme | None:
-        """Largest gauge pressure of any cycle in Pa."""
+        """Largest pressure of any cycle in Pa."""
         if self.cycles is None:
             return None
         top = int(np.argmax(self.cycles.p_max))
@@ -156,7 +157,5 @@ def _of_cycles(pressure: TracePressure, count: int) -> Cycles:
     each = pressure.each
     at = np.mod(pressure.trace.angles + pressure.shift, pressure.setting.cycle)
     top = np.argmax(each, axis=1)
-    found = Cycles(
-        each @ pressure.weights, each.max(axis=1) - pressure.setting.base, at[top], pressure.rises(each).max(axis=1)
-    )
+    found = Cycles(each @ pressure.weights, each.max(axis=1), at[top], pressure.rises(each).max(axis=1))
     return Cycles(*(np.broadcast_to(part, (count,)) for part in found))
