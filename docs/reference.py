@@ -12,10 +12,11 @@ from importlib import import_module
 import click
 
 from kurbel.cli import COMMANDS
+from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
+from kurbel.declared.factors import FACTORS
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Key, Keys, required
-from kurbel.declared.quantities import FACTORS
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.shaft import STRESSES
 from kurbel.declared.unit_systems import SYSTEMS
@@ -90,6 +91,8 @@ def _by_command(declared: Iterable[Quantity]) -> Iterator[str]:
 
 def _others() -> Iterator[str]:
     yield f"## Stresses at one place of a crankshaft\n\n{_quantities(STRESSES.values())}"
+    tables = (ORDERS | ELLIPSES | WEIGHTS).values()
+    yield f"## Orders of free forces and moments, and weights\n\n{_quantities(tables)}"
     yield f"## Rows of Zusammenstellung 112 (kurbel table)\n\n{_quantities(FACTORS.values())}"
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
 
+from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.indicated import INDICATED_COLUMNS, INDICATED_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
@@ -24,7 +25,7 @@ _COLUMNS = (
         "angle",
         "Crank angle from the inner dead centre, in the sense of rotation",
         "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS),
+        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "balance"),
     ),
     _motion(
         "z",
@@ -150,6 +151,7 @@ _COLUMNS = (
     ),
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
     *STRENGTH_COLUMNS,
+    *BALANCE_COLUMNS,
 )
 
 
@@ -321,6 +323,7 @@ class Lists(NamedTuple):
             *extremes(found, "flywheel"),
             *_FLYWHEEL_VALUES,
             *STRENGTH_VALUES,
+            *BALANCE_VALUES,
         )
         return cls(found, placed((*common, *key_values)))
 
@@ -345,16 +348,3 @@ class Lists(NamedTuple):
 COMMON = Lists.of()
 """What every machine may have; a mechanism adds its own (`kurbel.mechanisms.every_quantity`)."""
 COLUMNS = by_id(one for one in COMMON.all_columns if one.commands)
-
-FACTORS = by_id(
-    (
-        Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R", "cos phi + R/L cos 2phi"),
-        Quantity("velocity_factor", "sin(φ+ψ)/cos ψ", "ratio", "c over v, and T over P", "sin(phi+psi)/cos psi"),
-        Quantity("displacement_factor", "x/R", "ratio", "x over R"),
-        Quantity("psi", "ψ", "angle", "Angle between connecting rod and stroke line", "psi"),
-        Quantity("rod_force_factor", "S/P", "ratio", "Rod force over piston force, 1/cos ψ (R 300)"),
-        Quantity("guide_force_factor", "N/P", "ratio", "Guide force over piston force, tan ψ (R 301)"),
-        Quantity("radial_force_factor", "D/P", "ratio", "Radial over piston force, cos(φ+ψ)/cos ψ (R 302)"),
-    )
-)
-"""Rows of Zusammenstellung 112, by id."""
