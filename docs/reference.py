@@ -14,9 +14,9 @@ import click
 from kurbel.cli import COMMANDS, kurbel
 from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
+from kurbel.declared.factors import FACTORS
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Key, Keys, required
-from kurbel.declared.quantities import FACTORS
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.shaft import STRESSES
 from kurbel.declared.unit_systems import SYSTEMS

@@ -26,7 +26,9 @@ from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.bearings.bearing import Bearing, BearingColumns
 from kurbel.solver.case import Case
+from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.indicated import Indicated
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.pin_works import PinWorks
 from kurbel.solver.cylinder.rod_load import RodLoad
@@ -41,8 +43,8 @@ from toy_mechanism import HarmonicCam
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
     "motion": (Motion,),
-    "forces": (CylinderForces, Motion, RodLoad, PinWorks),
-    "flywheel": (MachineTurning, ElasticCoupling),
+    "forces": (CylinderForces, Motion, RodLoad, PinWorks, Indicated, Brake),
+    "flywheel": (MachineTurning, ElasticCoupling, Brake),
     "stress": (CrankshaftStrength,),
     "balance": (MachineBalance, LocomotiveBalance, BookBalance),
     "bearings": (Bearing,),

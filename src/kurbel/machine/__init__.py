@@ -271,8 +271,7 @@ class Machine(Described):
             piston.indicator for cylinder in self.cylinders for piston in cylinder.pistons if piston.indicator
         ]
         measured = (*(end for one in indicators for end in (one.head_end, one.crank_end)), self.effort)
-        files = (getattr(one, "file", None) for one in measured)
-        return tuple(dict.fromkeys(file for file in files if file))
+        return tuple(dict.fromkeys(file for one in measured for file in getattr(one, "files", ())))
 
     def lean_of(self, cylinder: Cylinder) -> float | None:
         """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""

@@ -22,11 +22,6 @@ def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
     def found() -> Iterable[str]:
         forces.refuse_locking()  # first, with an angle that does not depend on the step
         yield from _balance_warnings(forces)
-        if forces.reversals_in_noise:
-            yield (
-                f"{forces.reversals_in_noise} changes of the sign of P are within the noise of the trace and are not "
-                "counted as Druckwechsel"
-            )
         yield from _bound_warnings(forces)
         yield from _reversal_warnings(forces)
         yield from guide_warnings(forces)

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.declared.quantities import Lists
     from kurbel.numerics.where import Where
+    from kurbel.solver.cylinder.brake import Brake
+    from kurbel.solver.cylinder.indicated import Indicated
     from kurbel.solver.cylinder.pin_works import PinWorks
     from kurbel.solver.cylinder.rod_load import RodLoad
 
@@ -59,7 +61,7 @@ class CylinderForces(Results):
     @property
     def answering(self) -> tuple[Any, ...]:
         """What answers key values, the first that knows one."""
-        return (self, self.motion, self.rod_load, self.pin_works)
+        return (self, self.motion, self.rod_load, self.pin_works, self.indicated, self.brake)
 
     @cached_property
     def pin_works(self) -> PinWorks:
@@ -74,6 +76,21 @@ class CylinderForces(Results):
         from kurbel.solver.cylinder.rod_load import RodLoad
 
         return RodLoad(self)
+
+    @cached_property
+    def indicated(self) -> Indicated:
+        """What the traces of the cylinder's own piston tell."""
+        from kurbel.solver.cylinder.indicated import Indicated
+
+        return Indicated(self.drive.own_gas)
+
+    @cached_property
+    def brake(self) -> Brake | None:
+        """What the brake tells, where this is the only cylinder."""
+        from kurbel.solver.cylinder.brake import Brake
+
+        machine = self.drive.machine
+        return Brake(machine, (self,)) if len(machine.cylinders) == 1 else None
 
     def __getattr__(self, id: str) -> Any:
         """Return a key value that is no attribute here: extremes, and what the motion or the mechanism has."""
@@ -325,6 +342,12 @@ class CylinderForces(Results):
         """Mean indicated pressure p_i of the cylinder's own piston in Pa: its work over the volume it sweeps."""
         gas = self.drive.own_gas
         return None if gas is None else gas.work / gas.swept_volume
+
+    @property
+    def swept_rate(self) -> float | None:
+        """Volume in m³ per turn that the cylinder's own piston sweeps against its pressures, once in a cycle."""
+        gas = self.drive.own_gas
+        return None if gas is None else gas.swept_volume / self.drive.revolutions
 
     @cached_property
     def work_sensitivity(self) -> float | None:

@@ -14,6 +14,7 @@ from kurbel.errors import NoSolutionError
 from kurbel.mechanisms import every_quantity
 from kurbel.numerics.arithmetic import bearing
 from kurbel.numerics.jet import once_each
+from kurbel.solver.cylinder.chamber import OfChamber
 from kurbel.solver.cylinder.rod_load import rod_load
 from kurbel.solver.cylinder.rod_point import OfPoint
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from kurbel.solver.cylinder.pins import Rubbing
 
 
-class State(OfPoint):
+class State(OfPoint, OfChamber):
     """A cylinder at crank angles (n,); its attributes are named by the ids of the columns, in SI, each of shape (n,).
 
     angle: the crank angles; with jets for sine and cosine every quantity becomes a jet with its slope by φ.
