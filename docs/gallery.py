@@ -16,7 +16,13 @@ from kurbel.solver.case import Case
 
 FOLDER = Path(__file__).parent
 CONFIGS = FOLDER.parent / "configs"
-MACHINES = {"effort": "waterworks-two-cranks", "throw-stress": "gas-engine", "card-volume": "compressor"}
+MACHINES = {
+    "free-orders": "v8-cross-plane",
+    "effort": "waterworks-two-cranks",
+    "throw-stress": "gas-engine",
+    "card-volume": "compressor",
+    "bearing-loads": "gas-engine",
+}
 """Picture -> the shipped machine that shows it best; the others are of the waterworks engine."""
 USUAL = "waterworks"
 MOVING = ("scotch-yoke-pump", "shaper", "crank-rocker", "coupled-axle", "yoke-frame-pump")

@@ -55,3 +55,20 @@ def test_what_has_no_speed_has_no_free_forces() -> None:
         one.id for one in pictures_of(Case(loads(text)), Wish())
     }
     assert {"free-vectors", "free-angle", "free-orders"} <= set(ids_of("boxer"))
+
+
+def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:
+    """A point stands as far from the middle as its load is large, in the direction that the column tells."""
+    case, pictures_ = case_of("gas-engine"), drawn("gas-engine", "bearing-loads")
+    assert [one.of for one in pictures_] == [part.name for part in case.bearings.parts]
+    for picture, part in zip(pictures_, case.bearings.parts):
+        for panel in picture.panels:
+            frame = f"load_{panel.title.partition(':')[0]}"
+            for piece in panel.curves[0].pieces:
+                columns = part.at(piece.degrees, piece.within)
+                load, direction = np.asarray(columns.load) / 1e3, np.radians(getattr(columns, frame))
+                assert np.allclose(piece.x, load * np.cos(direction), atol=1e-12 * load.max())
+                assert np.allclose(piece.y, load * np.sin(direction), atol=1e-12 * load.max())
+            (mark,) = panel.marks
+            assert mark.figure.value == part.load_max.value / 1e3
+            assert np.hypot(mark.x, mark.y) == pytest.approx(part.load_max.value / 1e3, rel=1e-9)

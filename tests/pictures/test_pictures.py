@@ -143,10 +143,10 @@ def test_the_card_encloses_the_indicated_work() -> None:
     """∮ p dV of the drawn card over the volume is the indicated work of the piston, head end and crank end."""
     case = case_of("compressor")
     panel = drawn("compressor", "card-volume")[0].panels[0]
-    assert panel.x.unit == "l"
+    assert panel.x.unit == "cm^3"
     work = 0.0
     for curve in (one for one in panel.curves if one.kind == "line"):
-        V = np.concatenate([piece.x for piece in curve.pieces]) / 1e3
+        V = np.concatenate([piece.x for piece in curve.pieces]) / 1e6
         p = np.concatenate([piece.y for piece in curve.pieces]) * 1e5
         work += float(np.trapezoid(p, V))
     assert work == pytest.approx(case.cylinders[0].work, rel=1e-3)

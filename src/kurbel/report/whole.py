@@ -40,6 +40,7 @@ COMMANDS = (
     Command("forces", "Forces", "forces:forces_report"),
     Command("flywheel", "Turning effort and flywheel", "flywheel:flywheel_report"),
     Command("stress", "Strength of the crankshaft", "stress:stress_report"),
+    Command("bearings", "Bearings", "bearings:bearings_report"),
     Command("balance", "Balance of the masses", "balance:balance_report"),
 )
 """In the order in which a report has them."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kurbel.render.pictures.labels import Box, figure_text, symbol
 from kurbel.render.pictures.panel_items import panel_items
-from kurbel.render.pictures.scale import Scale, scale_of
+from kurbel.render.pictures.scale import Scale, scale_of, taller
 from kurbel.render.pictures.scene import Dots, Item, Scene, Text
 from kurbel.render.pictures.style import LOOKS, SHAPES
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 WIDTH = 720.0
 _HEIGHT, _SHORT = 250.0, 170.0
-_TALLEST = 460.0
+_TALLEST, _LEAST = 460.0, 110.0
 _TITLE = 24.0
 SECONDS = 6.0
 """How long a moving mechanism takes for one cycle."""
@@ -51,6 +51,7 @@ def _placed(panel: Panel, room: Box, count: int) -> tuple[Panel, Box, tuple[Scal
     across = room.right - room.left - left - right
     tall = _HEIGHT if count < 3 else _SHORT
     if panel.equal:
+        y = taller(y, _LEAST / across * (x.high - x.low))
         tall = min(_TALLEST, across * (y.high - y.low) / (x.high - x.low))
         spare = across - tall * (x.high - x.low) / (y.high - y.low)
         left, across = left + spare / 2, across - spare

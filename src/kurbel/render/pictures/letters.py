@@ -13,7 +13,7 @@ from kurbel.render.lines import BLANK, Line, line
 from kurbel.render.pictures.canvas import Canvas
 from kurbel.render.pictures.labels import axis_text, figure_text, symbol
 from kurbel.render.pictures.panel_items import looks_of
-from kurbel.render.pictures.scale import Scale, scale_of, tick_text, ticks
+from kurbel.render.pictures.scale import Scale, scale_of, taller, tick_text, ticks
 from kurbel.render.prose import folded
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ _WIDTH = 80
 _WIDEST = 160
 _LEAST = 24
 _TALL, _SHORT = 16, 10
+_LEAST_ROWS = 7
 
 
 def letters(picture: Picture, look: Look) -> Iterator[Line]:
@@ -37,6 +38,8 @@ def letters(picture: Picture, look: Look) -> Iterator[Line]:
 
 def _panel(panel: Panel, look: Look, width: int, rows: int) -> Iterator[Line]:
     y, x = scale_of(panel, "y"), scale_of(panel, "x")
+    if panel.equal:
+        y = taller(y, 2 * _LEAST_ROWS / width * (x.high - x.low))
     up = [] if panel.plain else ticks(y, panel.y, rows // 2)
     texts = [panel.y.names[int(v)] if panel.y.names else _tick(v, up, panel.y.log, look) for v in up]
     side = max(map(cells, texts), default=-1) + 1
@@ -59,7 +62,7 @@ def _panel(panel: Panel, look: Look, width: int, rows: int) -> Iterator[Line]:
 
 def _rows_of_equal(x: Scale, y: Scale, columns: int) -> int:
     """Return the rows in which both axes have one scale, a character being twice as high as wide."""
-    return max(6, min(30, round(columns / 2 * abs((y.high - y.low) / (x.high - x.low)))))
+    return max(_LEAST_ROWS, min(30, round(columns / 2 * abs((y.high - y.low) / (x.high - x.low)))))
 
 
 def _tick(value: float, values: list[float], log: bool, look: Look) -> str:

@@ -56,6 +56,12 @@ def scale_of(panel: Panel, part: str) -> Scale:
     return Scale(high, low, 0.0, 1.0, axis.log) if axis.falling else Scale(low, high, 0.0, 1.0, axis.log)
 
 
+def taller(scale: Scale, height: float) -> Scale:
+    """Return a scale that reaches at least so far, its middle where it was."""
+    spare = (height - (scale.high - scale.low)) / 2
+    return scale if spare <= 0 else scale._replace(low=scale.low - spare, high=scale.high + spare)
+
+
 def _extent(panel: Panel, part: str) -> tuple[float, float]:
     """Return the smallest and the largest value on an axis."""
     drawn = [getattr(piece, part) for curve in panel.curves for piece in curve.pieces]

@@ -28,7 +28,8 @@ class Declared(NamedTuple):
     """A picture: its word, its German title, and a sentence; command: whose results it shows.
 
     panels: the function that yields its panels from a source, as `module:function` below this package. rows: instead of
-    that, columns over `over`, one panel for each group of those that the machine has.
+    that, columns over `over`, one panel for each group of those that the machine has. across: how many panels
+    stand side by side.
     """
 
     id: str
@@ -38,6 +39,7 @@ class Declared(NamedTuple):
     panels: str = ""
     rows: tuple[tuple[str, ...], ...] = ()
     over: str = "phi"
+    across: int = 1
 
     def drawn(self, source: Source) -> Iterable[Panel]:
         """Return the panels; none where the machine does not have what they show."""
@@ -110,6 +112,14 @@ PICTURES = (
         "whole_machine:throw_stress",
     ),
     Declared(
+        "bearing-loads",
+        "Lagerkräfte in polarer Darstellung",
+        "The way of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod.",
+        "bearings",
+        "bearings:polar_loads",
+        across=2,
+    ),
+    Declared(
         "free-vectors",
         "Massenausgleich: freie Kräfte und Momente",
         "The way that the tip of the free force, and of the free moment, runs over a turn.",
@@ -146,7 +156,12 @@ PICTURES = (
         over="x",
     ),
     Declared(
-        "mechanism", "Getriebe", "The mechanism to scale, with the forces on it.", "motion", "mechanism:mechanism"
+        "mechanism",
+        "Getriebe",
+        "The mechanism to scale, with the forces on it.",
+        "motion",
+        "mechanism:mechanism",
+        across=2,
     ),
 )
 """The pictures, the one that says most of a machine first."""
@@ -230,24 +245,26 @@ def _has(case: Case, declared: Declared, wish: Wish) -> bool:
 def _pictures(case: Case, declared: Declared, wish: Wish) -> Iterator[Picture]:
     for source, name in _sources(case, declared, wish):
         if panels := tuple(declared.drawn(source)):
-            of = name if len(case.machine.cylinders) > 1 else ""
-            across = 2 if declared.id == "mechanism" and len(panels) > 1 else 1
-            yield Picture(declared.id, declared.title, declared.text, panels, case.machine.name, of, across)
+            across = min(declared.across, len(panels))
+            yield Picture(declared.id, declared.title, declared.text, panels, case.machine.name, name, across)
 
 
 def _sources(case: Case, declared: Declared, wish: Wish) -> Iterator[tuple[Source, str]]:
     """Yield what a picture is drawn from, each with the name of its cylinder."""
     from kurbel.report.pictures.source import Source
 
-    of_machine = _OF_MACHINE.get(declared.command)
-    if of_machine:
-        yield Source(getattr(case, of_machine), wish.system, wish.fineness), ""
-        return
-    for one in case.cylinders:
-        if wish.cylinder in (None, one.drive.name):
-            if declared.command == "forces":
-                one.refuse_locking()
-            yield Source(one, wish.system, wish.fineness, wish.angles), one.drive.name
+    if declared.command in _OF_MACHINE:
+        yield Source(getattr(case, _OF_MACHINE[declared.command]), wish.system, wish.fineness), ""
+    elif declared.command == "bearings":
+        for part in case.bearings.parts:
+            yield Source(part, wish.system, wish.fineness), part.name
+    else:
+        for one in case.cylinders:
+            if wish.cylinder in (None, one.drive.name):
+                if declared.command == "forces":
+                    one.refuse_locking()
+                several = len(case.cylinders) > 1
+                yield Source(one, wish.system, wish.fineness, wish.angles), one.drive.name if several else ""
 
 
 _OF_MACHINE = {"flywheel": "flywheel", "stress": "strength", "balance": "balance"}
