@@ -18,7 +18,7 @@ from kurbel.cli import kurbel
 from kurbel.cli.progress import Progress
 from kurbel.machine_file import loads
 from kurbel.machine_file.given import given
-from kurbel.report.pictures import Wish, pictures_of
+from kurbel.report.pictures import Wish, pictures
 from kurbel.solver.case import Case
 
 LARGEST = 600_000
@@ -42,7 +42,7 @@ def test_the_waterworks_machine_is_whole_and_small() -> None:
         assert f'<section id="{id}">' in page
         assert f'<a href="#{id}">' in page
     case = Case(loads(CONFIGS["waterworks"].read_text(encoding="utf-8")))
-    assert page.count("<figure>") == len(pictures_of(case, Wish()))
+    assert page.count("<figure>") == len(list(pictures(case, ("all",), Wish())))
     for words in (
         "T_max",
         "87.70",
