@@ -59,7 +59,13 @@ class CylinderForces(Results):
     @property
     def answering(self) -> tuple[Any, ...]:
         """What answers key values, the first that knows one."""
-        return (self, self.motion, self.indicated, self.brake)
+        gas, brake = self.drive.own_gas, self.drive.machine.brake_power
+        return (
+            self,
+            self.motion,
+            *((self.indicated,) if gas else ()),
+            *((self.brake,) if gas and brake is not None else ()),
+        )
 
     @cached_property
     def indicated(self) -> Indicated:
