@@ -7,8 +7,10 @@ from functools import partial
 from typing import NamedTuple
 
 from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
+from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES, PIN_LOSSES
 from kurbel.declared.indicated import INDICATED_COLUMNS, INDICATED_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
+from kurbel.declared.rod_load import ROD_COLUMNS, ROD_VALUES
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
 
 _FORCES, _FLYWHEEL, _STRESS = ("forces",), ("flywheel",), ("stress",)
@@ -25,7 +27,7 @@ _COLUMNS = (
         "angle",
         "Crank angle from the inner dead centre, in the sense of rotation",
         "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "balance"),
+        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "bearings", "balance"),
     ),
     _motion(
         "z",
@@ -150,7 +152,9 @@ _COLUMNS = (
         called="angular acceleration of the shaft",
     ),
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
+    *ROD_COLUMNS,
     *STRENGTH_COLUMNS,
+    *BEARING_COLUMNS,
     *BALANCE_COLUMNS,
 )
 
@@ -250,6 +254,7 @@ _WORK_VALUES = (
         "lam f/2",
     ),
     _forces("loss_rings", "e_R", "ratio", "Work lost at the piston rings over that of the driving pistons"),
+    *PIN_LOSSES,
     _forces(
         "energy_residual",
         "ΔA/A",
@@ -320,9 +325,11 @@ class Lists(NamedTuple):
             *_CYLINDER_VALUES,
             *extremes(found, "forces"),
             *_WORK_VALUES,
+            *ROD_VALUES,
             *extremes(found, "flywheel"),
             *_FLYWHEEL_VALUES,
             *STRENGTH_VALUES,
+            *BEARING_VALUES,
             *BALANCE_VALUES,
         )
         return cls(found, placed((*common, *key_values)))

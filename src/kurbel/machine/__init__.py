@@ -225,6 +225,9 @@ class Machine(Described):
             if name in names[:index]:
                 refuse(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
         faults = [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
+        for index, cylinder in enumerate(self.cylinders):
+            rubbing = cylinder.friction.faults_beside(self.crankshaft) if cylinder.friction else ()
+            faults += [fault.below(("cylinders", index, "friction")) for fault in rubbing]
         faults += crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):

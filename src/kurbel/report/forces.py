@@ -30,7 +30,7 @@ def forces_report(
     machine = case.machine
     refuse_without_cylinder(machine, "forces")
     frame = Frame("forces", rows_of(angles, 360.0 * machine.revolutions), columns, system, also)
-    notes = (*mechanism_notes(machine), *guide_notes(case), *_rod_notes(case))
+    notes = (*mechanism_notes(machine), *guide_notes(case), *_rod_notes(case), *_rod_load_notes(case))
     return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=notes)
 
 
@@ -65,6 +65,22 @@ def _rod_notes(case: Case) -> Iterable[str]:
         )
 
 
+def _rod_load_notes(case: Case) -> Iterable[str]:
+    compressors = [forces for forces in case.cylinders if not forces.rod_load.no_compressor]
+    if compressors:
+        yield (
+            "Rod load after API 618: P_G at the crosshead pin counts gas, inertia and weight of piston, piston rod, "
+            "crosshead and other parts, P_KS at the piston rod the same without the crosshead; neither has the "
+            "connecting rod's share or friction. d: in compression, z: in tension."
+        )
+    masses = [forces.drive.cylinder.masses for forces in compressors]
+    if any(one and one.undivided for one in masses):
+        yield (
+            "'reciprocating' is one sum, with the connecting rod's share: P_G counts all of it; give the parts to leave"
+            " that share out."
+        )
+
+
 def subjects(case: Case) -> Iterable[Subject]:
     """Yield every cylinder, with its forces and its motion."""
     found = cache(lambda: machine_notes(case.machine, case))
@@ -85,6 +101,7 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
     def left() -> Iterable[LeftOut]:
         yield from left_out(case.machine, cylinder)
         yield from _no_loss(forces)
+        yield from _no_piston_rod(forces)
         if forces.reversals_in_noise:
             why = "are within the noise of the trace and no Druckwechsel"
             yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
@@ -96,3 +113,10 @@ def _no_loss(forces: CylinderForces) -> tuple[LeftOut, ...]:
     if forces.friction_work is None or forces.work_driving:
         return ()
     return (LeftOut("friction loss as a share", "no piston drives"),)
+
+
+def _no_piston_rod(forces: CylinderForces) -> tuple[LeftOut, ...]:
+    masses = forces.drive.cylinder.masses
+    if forces.rod_load.no_compressor or masses is None or masses.crosshead is not None:
+        return ()
+    return (LeftOut("load on the piston rod", "no mass of the crosshead given"),)
