@@ -64,7 +64,7 @@ def _as_far_as_solved(found: Callable[[], Iterable[str]], command: str) -> tuple
 _BEYOND = 1e308
 """Floquet multiplier that is as large as a float can be."""
 _LINEAR = 0.1
-"""δ up to which a harmonic balance about the mean speed may be trusted."""
+"""δ up to which the cranks stand near enough where uniform rotation would have them."""
 _CLOSED = 1e-9
 """An energy residual beyond this is no rounding."""
 _COARSE = 0.01
@@ -143,7 +143,7 @@ def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
             f"amplified {near.amplification:.3g} times"
         )
     if turning.elastic.delta > _LINEAR:
-        yield "the speed varies so much that the harmonic balance of the coupling is only a rough guide"
+        yield "the speed varies so much that the torques, taken at the angles of uniform rotation, are a rough guide only"
 
 
 _SHELLS = (
