@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
+from kurbel.declared.torsion import HARMONIC_VALUES, TORSION_COLUMNS, TORSION_VALUES
 
 _FORCES, _FLYWHEEL, _STRESS = ("forces",), ("flywheel",), ("stress",)
 _motion = partial(Quantity, commands=("motion", "forces"))
@@ -23,7 +24,7 @@ _COLUMNS = (
         "angle",
         "Crank angle from the inner dead centre, in the sense of rotation",
         "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS),
+        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "torsion"),
     ),
     _motion(
         "z",
@@ -148,6 +149,7 @@ _COLUMNS = (
     ),
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
     *STRENGTH_COLUMNS,
+    *TORSION_COLUMNS,
 )
 
 
@@ -248,7 +250,13 @@ _WORK_VALUES = (
         "dA/A",
         residual=True,
     ),
-    _flywheel("M_mean", "M_m", "torque", "Mean torque of the turning effort: the resistance"),
+    Quantity(
+        "M_mean",
+        "M_m",
+        "torque",
+        "Mean torque of the turning effort: the resistance",
+        commands=(*_FLYWHEEL, "harmonics"),
+    ),
     _flywheel("work_shaft", "A", "energy", "Work of the turning effort per cycle"),
     _flywheel("power_shaft", "N_e", "power", "Power at the shaft, mean torque times nominal angular velocity"),
 )
@@ -313,6 +321,8 @@ class Lists(NamedTuple):
             *extremes(found, "flywheel"),
             *_FLYWHEEL_VALUES,
             *STRENGTH_VALUES,
+            *HARMONIC_VALUES,
+            *TORSION_VALUES,
         )
         return cls(found, placed((*common, *key_values)))
 

@@ -1,7 +1,7 @@
-"""The shaft line: masses, the pieces of shaft between them, one reduction of gears, and a fixed end where there is one.
+"""The shaft line: masses, the pieces of shaft between them, one reduction of gears, and a fixed end if there is one.
 
-In a machine file it is a list that is read along the shaft; it becomes a `ShaftLine`, all of it referred to the shaft of
-the cranks.
+In a machine file it is a list that is read along the shaft; it becomes a `ShaftLine`, all of it referred to the shaft
+of the cranks.
 """
 
 from __future__ import annotations
@@ -125,7 +125,8 @@ class ShaftPart(Described):
         """Stiffness of a piece in N m/rad, G π (d⁴ − d_i⁴)/(32 l)."""
         if self.stiffness is not None:
             return self.stiffness
-        assert self.diameter is not None and self.length is not None
+        assert self.diameter is not None
+        assert self.length is not None
         modulus = STEEL if self.shear_modulus is None else self.shear_modulus
         return modulus * math.pi * (self.diameter**4 - (self.bore or 0.0) ** 4) / (32 * self.length)
 
@@ -146,14 +147,14 @@ class Section(NamedTuple):
 class ShaftMass:
     """A mass: J in kg m² of what is no cylinder, damping in N m s/rad; both referred to the shaft of the cranks.
 
-    cylinders: names of those whose cranks stand here; flywheel: whether that of the machine is here, too; ratio: speed
-    of this mass over that of the cranks.
+    cylinders: names of those whose cranks stand here; flywheel: how many times J of that of the machine counts here;
+    ratio: speed of this mass over that of the cranks.
     """
 
     name: str
     inertia: float = 0.0
     cylinders: tuple[str, ...] = ()
-    flywheel: bool = False
+    flywheel: float = 0.0
     damping: float = 0.0
     ratio: float = 1.0
 
@@ -278,7 +279,8 @@ class _Builder:
         if self._gear == len(self._parts):
             return 1.0
         gear = self._parts[self._gear]
-        assert isinstance(gear, ShaftPart) and gear.gear is not None
+        assert isinstance(gear, ShaftPart)
+        assert gear.gear is not None
         behind = any(isinstance(part, ShaftPart) and part.cylinder for part in self._parts[self._gear :])
         if behind:
             return 1.0 if index > self._gear else 1 / gear.gear
@@ -313,11 +315,11 @@ class _Builder:
     def _mass(self, index: int, number: int) -> ShaftMass:
         part, ratio = self._parts[index], self._ratio(index)
         if isinstance(part, str):
-            return ShaftMass(FLYWHEEL, flywheel=True, ratio=ratio)
+            return ShaftMass(FLYWHEEL, flywheel=ratio**2, ratio=ratio)
         cylinders = part.cylinder or ()
         name = part.name or " + ".join(cylinders) or f"mass {number}"
         square = ratio**2
-        return ShaftMass(name, square * (part.inertia or 0.0), cylinders, False, square * (part.damping or 0.0), ratio)
+        return ShaftMass(name, square * (part.inertia or 0.0), cylinders, 0.0, square * (part.damping or 0.0), ratio)
 
     def _piece(self, index: int) -> ShaftPiece:
         part, ratio = self._parts[index], self._ratio(index)
@@ -335,7 +337,7 @@ def _as_one(mass: ShaftMass, other: ShaftMass) -> ShaftMass:
         name=f"{mass.name} + {other.name}",
         inertia=mass.inertia + other.inertia,
         cylinders=(*mass.cylinders, *other.cylinders),
-        flywheel=mass.flywheel or other.flywheel,
+        flywheel=mass.flywheel + other.flywheel,
         damping=mass.damping + other.damping,
     )
 

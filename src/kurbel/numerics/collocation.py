@@ -201,7 +201,7 @@ def _answers(stiffness: Array, residual: Array) -> tuple[Array, Array]:
     systems = np.eye(stages * size) - coupled.reshape(count, stages * size, stages * size)
     starts = np.broadcast_to(np.eye(size), (count, stages, size, size))
     sides = np.concatenate((residual[..., None], starts), axis=3).reshape(count, stages * size, size + 1)
-    found = np.linalg.solve(systems, sides).reshape(count, stages, size, size + 1)
+    found: Array = np.asarray(np.linalg.solve(systems, sides), dtype=float).reshape(count, stages, size, size + 1)
     return found[..., 0], found[..., 1:]
 
 

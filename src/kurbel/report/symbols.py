@@ -10,6 +10,7 @@ from kurbel.declared.keys import Keys, required
 from kurbel.declared.quantities import FACTORS
 from kurbel.declared.quantity import Quantity, by_id
 from kurbel.declared.shaft import STRESSES
+from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, ORDERS, SPEEDS
 from kurbel.declared.unit_systems import SI, TECHNICAL
 from kurbel.mechanisms import every_quantity
 
@@ -27,6 +28,11 @@ def symbols_page() -> str:
         _quantities("Columns over the crank angle", by_id(one for one in every.all_columns if one.commands)),
         _quantities("Key values", by_id(every.all_key_values)),
         _quantities("Stresses at one place of a crankshaft", STRESSES),
+        _quantities("Orders of a torque", ORDERS),
+        _quantities("Natural vibrations", MODES),
+        _quantities("Critical speeds", CRITICAL_SPEEDS),
+        _quantities("Holzer's table", HOLZER),
+        _quantities("A piece of shaft over the speed", SPEEDS),
         _quantities("Rows of Zusammenstellung 112", FACTORS),
         _sizes(),
         "## Keys of the machine file\n",

@@ -143,7 +143,7 @@ def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
             f"amplified {near.amplification:.3g} times"
         )
     if turning.elastic.delta > _LINEAR:
-        yield "the speed varies so much that the torques, taken at the angles of uniform rotation, are a rough guide only"
+        yield "the speed varies so much that the coupling, computed at nearly uniform rotation, is only a rough guide"
 
 
 _SHELLS = (

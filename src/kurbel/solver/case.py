@@ -14,8 +14,11 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Figure, Results
 
 if TYPE_CHECKING:
+    from kurbel.arrays import Array
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
+    from kurbel.solver.torsion.vibration import ShaftVibration
     from kurbel.solver.turning.flywheel import MachineTurning
+    from kurbel.solver.turning.harmonics import MachineOrders
 
 
 class Case:
@@ -40,8 +43,10 @@ class Case:
         commands = {word for id in called(name, known.all_key_values) for word in known.commands_of(id)}
         if "forces" in commands and len(self.cylinders) == 1:
             return self.cylinders[0][name]
-        if "forces" in commands and not commands & {"flywheel", "stress"}:
+        if "forces" in commands and not commands & {"flywheel", "stress", "torsion"}:
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
+        if "torsion" in commands:
+            return self.torsion[name]
         return (self.strength if "stress" in commands else self.flywheel)[name]
 
     def _repr_html_(self) -> str:
@@ -72,3 +77,20 @@ class Case:
         from kurbel.solver.turning.flywheel import MachineTurning
 
         return MachineTurning(self.machine, self.cylinders)
+
+    def harmonics(self, orders: Array | None = None) -> MachineOrders:
+        """Return the orders (n,) of the turning effort, or the usual ones. Raises UsageError where nothing turns it."""
+        from kurbel.solver.turning.harmonics import MachineOrders
+
+        return MachineOrders(self.flywheel.turned, orders)
+
+    @cached_property
+    def torsion(self) -> ShaftVibration:
+        """Torsional vibration of the shaft line, by the usual orders. Raises UsageError where there is none."""
+        return self.torsion_of(None)
+
+    def torsion_of(self, orders: Array | None) -> ShaftVibration:
+        """Return the torsional vibration by these orders (k,)."""
+        from kurbel.solver.torsion.vibration import ShaftVibration
+
+        return ShaftVibration(self.machine, self.cylinders, orders)

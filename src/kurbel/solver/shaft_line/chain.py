@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
 
 
+_ARRAYS = ("inertias", "stiffnesses", "piece_damping", "mass_damping", "loss")
+
+
 @dataclass(frozen=True, eq=False)
 class Chain:
     """n masses with the pieces between them, one more where an end is fixed: `ground` is `before`, `after` or empty.
@@ -57,5 +60,5 @@ class Chain:
     def reversed(self) -> Chain:
         """Return the same chain read from its other end."""
         ground = {"before": "after", "after": "before"}.get(self.ground, "")
-        parts = (self.inertias, self.stiffnesses, self.piece_damping, self.mass_damping, self.loss)
-        return Chain(*(part[::-1] for part in parts), ground)
+        turned = {name: getattr(self, name)[::-1] for name in _ARRAYS}
+        return Chain(**turned, ground=ground)

@@ -2,8 +2,8 @@
 
 Going along the chain at ω, s = θ_{i+1}/θ_i = 1 − r/k and r_{i+1} = r_i/s_i + ω² J_{i+1}, where r θ is the torque behind
 a mass: Holzer's table as quotients. No step loses digits by cancellation but through the figures of its own mass and
-piece, so that the sign of s, of which the negative ones count the modes below ω (Sturm), is that of a chain whose J and k
-differ by rounding. A symmetric eigenproblem would lose the low modes of a chain of very unequal masses.
+piece, so that the sign of s, of which the negative ones count the modes below ω (Sturm), is that of a chain whose J and
+k differ by rounding. A symmetric eigenproblem would lose the low modes of a chain of very unequal masses.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A chain of masses driven round and round: its periodic motion over the angle, jumps and loads over the speed included.
+"""A chain of masses driven round and round: its periodic motion, with jumps and loads that depend on the speed.
 
 All masses move nearly uniformly: d/dt = ω_n d/dφ. With the torque T = S + d (ω_i − ω_{i+1}) in each piece,
 Ṡ = k (ω_i − ω_{i+1}), every mass has J ω̇ = T before it − T behind it − c (ω − ω_n) + M, and one of them − L(ω).

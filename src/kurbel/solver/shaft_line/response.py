@@ -1,6 +1,7 @@
-"""What torques of certain orders make of a chain at certain speeds: (K (1 + iη) + iνω C − (νω)² J) θ = M, order by order.
+"""What torques of certain orders make of a chain at certain speeds, order by order.
 
-The matrix has three diagonals. It is taken apart for all orders and speeds at once, the larger of two rows first.
+(K (1 + iη) + iνω C − (νω)² J) θ = M has three diagonals. It is taken apart for all orders and speeds at once, the
+larger of two rows first.
 """
 
 from __future__ import annotations
@@ -24,7 +25,6 @@ def responding(
     it is not finite.
     """
     spring = _springs(chain, frequencies)
-    count = len(chain.inertias)
     own = -np.multiply.outer(chain.inertias, frequencies**2) + 1j * np.multiply.outer(chain.mass_damping, frequencies)
     if more_damping is not None:
         own = own + 1j * more_damping * frequencies
@@ -35,11 +35,11 @@ def responding(
         between = spring[1:] if chain.ground == "before" else spring[:-1]
     own[:-1] += between
     own[1:] += between
-    return _three_diagonals(own, -between, np.array(torques, dtype=complex), count)
+    return _three_diagonals(own, -between, np.array(torques, dtype=complex))
 
 
 def twisting(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
-    """Return the torques (pieces, …) in N m in springs and dampers of the pieces; angles (n, …) as `responding` has them."""
+    """Return the torques (pieces, …) in N m in springs and dampers of the pieces; angles (n, …): see `responding`."""
     return np.asarray(_springs(chain, frequencies) * np.tensordot(chain.twists, angles, axes=1))
 
 
@@ -49,26 +49,23 @@ def _springs(chain: Chain, frequencies: Array) -> ComplexArray:
     return np.asarray(still + 1j * np.multiply.outer(chain.piece_damping, frequencies))
 
 
-def _three_diagonals(own: ComplexArray, beside: ComplexArray, sides: ComplexArray, count: int) -> ComplexArray:
+def _three_diagonals(own: ComplexArray, beside: ComplexArray, sides: ComplexArray) -> ComplexArray:
     """Return x (n, …) with beside_{i−1} x_{i−1} + own_i x_i + beside_i x_{i+1} = sides_i."""
-    first, second, third, right = [], [], [], []
-    row = own[0], beside[0] if count > 1 else None, sides[0]
-    for index in range(1, count):
-        after = beside[index] if index + 1 < count else np.zeros_like(own[0])
-        lower = beside[index - 1], own[index], after, sides[index]
-        upper = row[0], row[1], np.zeros_like(own[0]), row[2]
-        swap = np.abs(lower[0]) > np.abs(upper[0])
-        above = [np.where(swap, low, up) for low, up in zip(lower, upper)]
-        below = [np.where(swap, up, low) for low, up in zip(lower, upper)]
-        share = below[0] / above[0]
-        for kept, part in zip((first, second, third, right), above):
-            kept.append(part)
-        row = below[1] - share * above[1], below[2] - share * above[2], below[3] - share * above[3]
-    found = np.empty_like(sides)
-    found[-1] = row[2] / row[0]
-    for index in range(count - 2, -1, -1):
-        known = second[index] * found[index + 1]
-        if index + 2 < count:
-            known = known + third[index] * found[index + 2]
-        found[index] = (right[index] - known) / first[index]
-    return found
+    zero = np.zeros_like(own[:1])
+    beside = np.concatenate((beside, zero))
+    # of each row that is done with: the factors of x_i, x_{i+1}, x_{i+2}, and its right side
+    done = np.empty((len(own), 4, *own.shape[1:]), dtype=complex)
+    row = np.stack((own[0], beside[0], zero[0], sides[0]))
+    for index in range(1, len(own)):
+        lower = np.stack((beside[index - 1], own[index], beside[index], sides[index]))
+        swap = np.abs(lower[0]) > np.abs(row[0])
+        done[index - 1] = above = np.where(swap, lower, row)
+        below = np.where(swap, row, lower)
+        rest = below[1:] - below[0] / above[0] * above[1:]
+        row = np.stack((rest[0], rest[1], zero[0], rest[2]))
+    done[-1] = row
+    found = np.zeros((len(own) + 2, *own.shape[1:]), dtype=complex)
+    for index in range(len(own) - 1, -1, -1):
+        first, second, third, right = done[index]
+        found[index] = (right - second * found[index + 1] - third * found[index + 2]) / first
+    return np.asarray(found[:-2])

@@ -45,12 +45,12 @@ def coupled(coupling: Coupling, inertia: float) -> Chain:
     >>> [round(float(one), 12) for one in Modes(coupled(Coupling(stiffness=100.0, inertia=2.0), 2.0)).omegas]
     [0.0, 10.0]
     """
-    each = (np.array([one]) for one in (coupling.stiffness, coupling.damping))
-    return Chain(np.array([inertia, coupling.inertia]), *each, np.zeros(2), np.zeros(1))
+    stiffness, damping = (np.array([one]) for one in (coupling.stiffness, coupling.damping))
+    return Chain(np.array([inertia, coupling.inertia]), stiffness, damping, np.zeros(2), np.zeros(1))
 
 
 class Shaft(NamedTuple):
-    """What the coupling stands between: J₁ in kg m², ω_n in rad/s, and how the load rises with the speed, if it does."""
+    """What the coupling stands between: J₁ in kg m², ω_n in rad/s, how the load rises with the speed or None."""
 
     inertia: float
     omega: float

@@ -7,7 +7,6 @@ integrated by itself. What the inertia forces give is told apart: it goes with Ï
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -26,6 +25,8 @@ HIGHEST = 24
 """Order up to which they are told unless others are asked for."""
 _RESOLVED = 10.0
 """Radians of the highest order that sixteen points of Gauss integrate to the last digit."""
+_ROUNDING = 1e-14
+"""What is smaller, over the torques that it is summed of, is rounding."""
 _ALIKE = 1e-9
 """By what the sum of phase vectors of a major order may fall short of their number, relatively."""
 
@@ -33,7 +34,7 @@ _ALIKE = 1e-9
 def every_order(cycle: float) -> Array:
     """Return the orders up to the highest: halves of a cycle of 720 degrees, whole ones of 360."""
     step = 360.0 / cycle
-    return step * np.arange(1, round(HIGHEST / step) + 1)
+    return np.asarray(step * np.arange(1, round(HIGHEST / step) + 1), dtype=float)
 
 
 class Spectrum(NamedTuple):
@@ -50,6 +51,15 @@ class Spectrum(NamedTuple):
     def plus(self, other: Spectrum) -> Spectrum:
         """Return that of the sum with a torque of the same orders."""
         return self._replace(mean=self.mean + other.mean, amplitudes=self.amplitudes + other.amplitudes)
+
+    def cleared(self, size: float) -> Spectrum:
+        """Return it with 0 for what is rounding beside torques of this size in N m."""
+        return self._replace(amplitudes=np.where(np.abs(self.amplitudes) > _ROUNDING * size, self.amplitudes, 0.0))
+
+    @property
+    def size(self) -> float:
+        """The largest of its parts in N m."""
+        return max(abs(self.mean), float(np.abs(self.amplitudes).max(initial=0.0)))
 
     def at(self, degrees: Array) -> Array:
         """Return the sum of the mean and these orders in N m at crank angles (k,) in degrees."""
@@ -91,6 +101,15 @@ class Orders(NamedTuple):
     def whole(self) -> Spectrum:
         """Both together."""
         return self.gas if self.inertia is None else self.gas.plus(self.inertia)
+
+    @property
+    def size(self) -> float:
+        """The largest of the parts of both in N m."""
+        return max(one.size for one in self if one)
+
+    def cleared(self, size: float) -> Orders:
+        """Return both with 0 for what is rounding beside torques of this size in N m."""
+        return Orders(*(one and one.cleared(size) for one in self))  # type: ignore[arg-type]
 
     def at_speed(self, ratio: float) -> Spectrum:
         """Return both together at a speed, over the nominal one."""
@@ -146,17 +165,20 @@ class MachineOrders:
         rest = effort if inertia is None else Sum((1.0, effort), (-1.0, inertia))
         of_masses = None if inertia is None else spectrum(inertia, self.orders)
         found = Orders(spectrum(rest, self.orders), of_masses)
+        found = found.cleared(found.size)
         return CylinderOrders(forces, found, found.turned(forces.drive.cylinder.crank_position))
 
     @cached_property
     def machine(self) -> Orders:
         """Those of the turning effort, with the losses of the machine."""
         if not self.turned.of_cylinders:
-            return Orders(spectrum(self.turned.effort, self.orders), None)
-        total, *others = (one.in_machine for one in self.cylinders)
+            known = spectrum(self.turned.effort, self.orders)
+            return Orders(known.cleared(known.size), None)
+        total, *others = each = [one.in_machine for one in self.cylinders]
         for other in others:
             total = total.plus(other)
-        return total.times(self.turned.efficiency, self.turned.efficiency)
+        size = math.fsum(one.size for one in each)
+        return total.cleared(size).times(self.turned.efficiency, self.turned.efficiency)
 
     @property
     def M_mean(self) -> float:

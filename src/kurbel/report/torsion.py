@@ -1,0 +1,105 @@
+"""The report of `kurbel torsion`: natural vibrations, Holzer's table, critical speeds, and forced vibration."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.declared.unit_systems import show
+from kurbel.errors import NoSolutionError
+from kurbel.report.frame import Answer, Frame, Subject, of_state
+from kurbel.report.notes import machine_notes, of_machine
+from kurbel.report.orders import orders_of
+from kurbel.report.tables import LeftOut, PlaceTable, Report
+from kurbel.report.torsion_tables import critical_table, holzer_table, modes_table, speeds_table
+from kurbel.solver.case import Case
+from kurbel.solver.torsion.vibration import Critical, PieceTorque, ShaftVibration
+
+
+class Wanted(NamedTuple):
+    """What is asked of torsion: orders, how many modes, whose Holzer table, and speeds in revolutions per second."""
+
+    orders: Sequence[float] | None = None
+    modes: int = 3
+    mode: int = 1
+    speeds: Sequence[float] | None = None
+
+
+def torsion_report(
+    case: Case, wanted: Wanted, angles: Sequence[float], columns: Sequence[str] | None, system: str
+) -> Report:
+    """Return the torsional vibration of the shaft line; angles, columns, system: see `Frame`.
+
+    columns: of the pieces over the crank angle; without them only tables are told. Raises UsageError without a shaft
+    line, NoSolutionError where an undamped resonance has no end.
+    """
+    with np.errstate(all="ignore"):  # what overflows is refused, by name
+        found = case.torsion_of(orders_of(case.machine, wanted.orders))
+        if found.vibration is not None and not np.isfinite(found.vibration.torques).all():
+            raise NoSolutionError("an order of the torque meets a mode that nothing damps: give it 'damping'")
+        critical = found.critical_speeds(wanted.modes)
+        tables = tuple(_tables(found, critical, wanted, system))
+        each = [Subject(one.name, (one,), partial(_over, one) if columns else None) for one in found.pieces]
+        whole = Subject(
+            "shaft line",
+            (found,),
+            left_out=lambda: _left_out(found),
+            warnings=lambda: (
+                *_warnings(found, critical),
+                *of_machine(machine_notes(case.machine, case), case.machine),
+            ),
+            place_tables=tables,
+        )
+    frame = Frame("torsion", angles, columns, system)
+    return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found))
+
+
+def _over(piece: PieceTorque, degrees: Any) -> Answer:
+    return of_state(piece.at(degrees))
+
+
+def _tables(found: ShaftVibration, critical: tuple[Critical, ...], wanted: Wanted, system: str) -> Iterable[PlaceTable]:
+    yield modes_table(found, system)
+    yield holzer_table(found, wanted.mode, system)
+    yield critical_table(found, critical, system)
+    if wanted.speeds is not None and not found.obstacle:
+        yield speeds_table(found, wanted.speeds, system)
+
+
+def _left_out(found: ShaftVibration) -> Iterable[LeftOut]:
+    if found.obstacle:
+        yield LeftOut("forced vibration, torques and stresses", found.obstacle)
+    elif not all(piece.sections for piece in found.line.pieces):
+        bare = [found.piece_name(i) for i, piece in enumerate(found.line.pieces) if not piece.sections]
+        yield LeftOut(f"stress in {', '.join(bare)}", "no diameter given")
+    if found.machine.cylinders:
+        yield LeftOut("change of the inertia over the turn", "the mean counts; secondary resonances are not told")
+
+
+def _warnings(found: ShaftVibration, critical: tuple[Critical, ...]) -> Iterable[str]:
+    """Yield, mode by mode, the critical speeds beside the working speed, the strongest first."""
+    speed = found.machine.speed
+    for mode in sorted({one.mode for one in critical}):
+        near = sorted((one for one in critical if one.mode == mode and one.near), key=lambda one: -one.phase_sum)
+        if not near or speed is None:
+            continue
+        listed = ", ".join(f"{one.order:g} ({100 * (one.distance or 0.0):+.3g} %)" for one in near)
+        plural = "s" if len(near) > 1 else ""
+        yield (
+            f"mode {mode}: critical speed{plural} of order{plural} {listed} within 10 % of the working speed "
+            f"{show(speed, 'speed')}"
+        )
+
+
+def _notes(found: ShaftVibration) -> Iterable[str]:
+    if any(piece.ratio != 1 for piece in found.line.pieces):
+        yield "Masses and stiffnesses beyond the gear are referred to the cranks' shaft by u²; torques are true ones."
+    if not found.machine.cylinders and found.machine.effort:
+        yield f"The effort acts on {found.line.masses[0].name}, the first mass."
+    if found.pieces:
+        orders = f"orders {found.orders[0]:g} to {found.orders[-1]:g}"
+        taker = "what holds it" if found.chain.ground else found.line.masses[found.line.load].name
+        yield f"Forced vibration: {orders} together, about uniform rotation; the mean torque goes to {taker}."
