@@ -43,21 +43,9 @@ TORSION_VALUES = (
         "sum w2 J Theta",
         residual=True,
     ),
-    _torsion("M_shaft_mean", "M_w,m", "torque", "Mean torque in the piece of shaft"),
-    _torsion("M_shaft_max", "M_w,max", "torque", "Largest torque in the piece, all these orders together"),
-    _torsion("M_shaft_min", "M_w,min", "torque", "Smallest torque in the piece"),
-    _torsion("M_vibratory", "M_w,a", "torque", "Vibratory torque: half of what it swings"),
-    _torsion("tau_mean", "τ_m", "stress", "Stress of the mean torque where the piece is thinnest", "tau_m"),
-    _torsion("tau_vibratory", "τ_a", "stress", "Vibratory stress: half of what it swings", "tau_a"),
+    _torsion("M_vibratory", "M_w,a", "torque", "Largest vibratory torque of any piece, half of what it swings"),
+    _torsion("tau_vibratory", "τ_a", "stress", "Largest vibratory stress of any piece", "tau_a"),
     _torsion("vibration_loss", "N_d", "power", "Mean power that the damping takes"),
-    _torsion(
-        "vibration_residual",
-        "ΔN/N",
-        "ratio",
-        "Power that the torques feed into the vibration less what the damping takes, over that",
-        "dN/N",
-        residual=True,
-    ),
 )
 
 ORDERS = by_id(
@@ -83,6 +71,18 @@ MODES = by_id(
     )
 )
 """Of one natural vibration, by id."""
+
+PIECES = by_id(
+    (
+        Quantity("M_shaft_mean", "M_w,m", "torque", "Mean torque in the piece of shaft"),
+        Quantity("M_shaft_max", "M_w,max", "torque", "Largest torque in the piece, all orders together"),
+        Quantity("M_shaft_min", "M_w,min", "torque", "Smallest torque in the piece"),
+        Quantity("M_vibratory", "M_w,a", "torque", "Vibratory torque: half of what it swings"),
+        Quantity("tau_mean", "τ_m", "stress", "Stress of the mean torque where the piece is thinnest", "tau_m"),
+        Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress: half of what it swings", "tau_a"),
+    )
+)
+"""Of one piece of shaft at the working speed, by id."""
 
 CRITICAL_SPEEDS = by_id(
     (

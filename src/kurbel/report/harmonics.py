@@ -58,6 +58,11 @@ def _whole(case: Case, found: MachineOrders, more: tuple[PlaceTable, ...], syste
     )
 
 
+def subjects(case: Case) -> Iterable[Subject]:
+    """Yield the whole machine."""
+    yield _whole(case, case.harmonics(), (), "si")
+
+
 def _no_cranks(found: MachineOrders) -> Iterable[LeftOut]:
     if found.machine.inertia is None:
         why = "the effort is given as a torque" if not found.cylinders else "no masses, or no speed given"

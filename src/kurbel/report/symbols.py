@@ -10,7 +10,7 @@ from kurbel.declared.keys import Keys, required
 from kurbel.declared.quantities import FACTORS
 from kurbel.declared.quantity import Quantity, by_id
 from kurbel.declared.shaft import STRESSES
-from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, ORDERS, SPEEDS
+from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, ORDERS, PIECES, SPEEDS
 from kurbel.declared.unit_systems import SI, TECHNICAL
 from kurbel.mechanisms import every_quantity
 
@@ -32,6 +32,7 @@ def symbols_page() -> str:
         _quantities("Natural vibrations", MODES),
         _quantities("Critical speeds", CRITICAL_SPEEDS),
         _quantities("Holzer's table", HOLZER),
+        _quantities("A piece of shaft at the working speed", PIECES),
         _quantities("A piece of shaft over the speed", SPEEDS),
         _quantities("Rows of Zusammenstellung 112", FACTORS),
         _sizes(),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import Any, NamedTuple
@@ -14,9 +15,12 @@ from kurbel.report.frame import Answer, Frame, Subject, of_state
 from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.orders import orders_of
 from kurbel.report.tables import LeftOut, PlaceTable, Report
-from kurbel.report.torsion_tables import critical_table, holzer_table, modes_table, speeds_table
+from kurbel.report.torsion_tables import critical_table, holzer_table, modes_table, pieces_table, speeds_table
 from kurbel.solver.case import Case
 from kurbel.solver.torsion.vibration import Critical, PieceTorque, ShaftVibration
+
+_HIGHEST = 12
+"""Order up to which critical speeds are told unless orders are asked for."""
 
 
 class Wanted(NamedTuple):
@@ -38,23 +42,31 @@ def torsion_report(
     """
     with np.errstate(all="ignore"):  # what overflows is refused, by name
         found = case.torsion_of(orders_of(case.machine, wanted.orders))
-        if found.vibration is not None and not np.isfinite(found.vibration.torques).all():
-            raise NoSolutionError("an order of the torque meets a mode that nothing damps: give it 'damping'")
-        critical = found.critical_speeds(wanted.modes)
-        tables = tuple(_tables(found, critical, wanted, system))
-        each = [Subject(one.name, (one,), partial(_over, one) if columns else None) for one in found.pieces]
-        whole = Subject(
-            "shaft line",
-            (found,),
-            left_out=lambda: _left_out(found),
-            warnings=lambda: (
-                *_warnings(found, critical),
-                *of_machine(machine_notes(case.machine, case), case.machine),
-            ),
-            place_tables=tables,
-        )
+        critical = found.critical_speeds(wanted.modes, _HIGHEST if wanted.orders is None else math.inf)
+        (whole,) = subjects(case, found, critical)
+        whole = whole._replace(place_tables=tuple(_tables(found, critical, wanted, system)))
+        pieces = found.pieces if columns else ()
+        each = [Subject(one.name, (), partial(_over, one)) for one in pieces]
     frame = Frame("torsion", angles, columns, system)
-    return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found))
+    return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found, wanted))
+
+
+def subjects(
+    case: Case, asked: ShaftVibration | None = None, critical: tuple[Critical, ...] | None = None
+) -> Iterable[Subject]:
+    """Yield the shaft line; asked: by other than the usual orders; critical: the critical speeds to warn of."""
+    found = asked or case.torsion
+    if found.vibration is not None and not np.isfinite(found.vibration.torques).all():
+        raise NoSolutionError("an order of the torque meets a mode that nothing damps: give it 'damping'")
+    yield Subject(
+        "shaft line",
+        (found,),
+        left_out=lambda: _left_out(found),
+        warnings=lambda: (
+            *_warnings(found, critical or ()),
+            *of_machine(machine_notes(case.machine, case), case.machine),
+        ),
+    )
 
 
 def _over(piece: PieceTorque, degrees: Any) -> Answer:
@@ -65,6 +77,8 @@ def _tables(found: ShaftVibration, critical: tuple[Critical, ...], wanted: Wante
     yield modes_table(found, system)
     yield holzer_table(found, wanted.mode, system)
     yield critical_table(found, critical, system)
+    if found.pieces:
+        yield pieces_table(found, system)
     if wanted.speeds is not None and not found.obstacle:
         yield speeds_table(found, wanted.speeds, system)
 
@@ -94,7 +108,9 @@ def _warnings(found: ShaftVibration, critical: tuple[Critical, ...]) -> Iterable
         )
 
 
-def _notes(found: ShaftVibration) -> Iterable[str]:
+def _notes(found: ShaftVibration, wanted: Wanted) -> Iterable[str]:
+    if wanted.orders is None:
+        yield f"Critical speeds of orders up to {_HIGHEST}; --orders tells others, --modes of more modes."
     if any(piece.ratio != 1 for piece in found.line.pieces):
         yield "Masses and stiffnesses beyond the gear are referred to the cranks' shaft by u²; torques are true ones."
     if not found.machine.cylinders and found.machine.effort:

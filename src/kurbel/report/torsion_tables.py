@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.declared.quantity import Quantity
-from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, SPEEDS
+from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS
 from kurbel.report.orders import counted
 from kurbel.report.shown import shown_column
 from kurbel.report.tables import PlaceTable
@@ -123,6 +123,13 @@ def _stresses(vibration: Vibration) -> list[float | None]:
         return [None] * len(vibration.omegas)
     each = np.array([factor or 0.0 for factor in factors])[:, None] * vibration.vibratory
     return list(each.max(axis=0).tolist())
+
+
+def pieces_table(found: ShaftVibration, system: str) -> PlaceTable:
+    """Return torques and stresses in the pieces at the working speed."""
+    values = {name: [getattr(piece, name) for piece in found.pieces] for name in PIECES}
+    title = "Torques and stresses at the working speed, all these orders together"
+    return _table("pieces", title, "piece", [piece.name for piece in found.pieces], PIECES, system, **values)
 
 
 def speeds_table(found: ShaftVibration, speeds: Sequence[float], system: str) -> PlaceTable:

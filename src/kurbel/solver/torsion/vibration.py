@@ -115,14 +115,14 @@ class ShaftVibration(Results):
 
     # critical speeds
 
-    def critical_speeds(self, modes: int) -> tuple[Critical, ...]:
-        """Return the critical speeds of all orders with the first modes."""
+    def critical_speeds(self, modes: int, highest: float = math.inf) -> tuple[Critical, ...]:
+        """Return the critical speeds of all orders up to the highest with the first modes."""
         found = []
         last = min(modes, self.first + len(self.modes.omegas) - 1)
         for mode in range(1, last + 1):
             omega = float(self.modes.omegas[mode - self.first])
             sums = self._phase_sums(self.holzer(mode).angles)
-            for order, total in zip(self.orders.tolist(), sums.tolist()):
+            for order, total in zip(self.orders[self.orders <= highest].tolist(), sums.tolist()):
                 speed = omega / (2 * math.pi * order)
                 distance = speed / self.machine.speed - 1 if self.machine.speed else None
                 found.append(Critical(order, mode, speed, total, distance))
@@ -168,11 +168,14 @@ class ShaftVibration(Results):
         return None if self.vibration is None else float(self.vibration.loss[0])
 
     @property
-    def vibration_residual(self) -> float | None:
-        """Power that the torques feed into the vibration less what the damping takes, over that."""
-        if self.vibration is None or not self.vibration_loss:
-            return None
-        return float(self.vibration.power[0]) / self.vibration_loss - 1
+    def M_vibratory(self) -> float | None:
+        """Largest vibratory torque in N m of any piece at the working speed."""
+        return max((piece.M_vibratory for piece in self.pieces), default=None)
+
+    @property
+    def tau_vibratory(self) -> float | None:
+        """Largest vibratory stress in Pa of any piece at the working speed."""
+        return max((piece.tau_vibratory for piece in self.pieces if piece.tau_vibratory is not None), default=None)
 
     def met(self, critical: Critical) -> bool:
         """Whether the machine meets a critical speed on its way to the working speed, or a little beyond."""
@@ -196,10 +199,8 @@ class ShaftVibration(Results):
         return f"{ends[piece]} – {ends[piece + 1]}"
 
 
-class PieceTorque(Results):
+class PieceTorque:
     """The torque in one piece of the shaft line at the working speed, and the stress where its section is known."""
-
-    command = "torsion"
 
     def __init__(self, vibration: Vibration, piece: int, name: str) -> None:
         self._vibration, self._piece, self.name = vibration, piece, name
