@@ -22,7 +22,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--rewrite",
         action="store_true",
         help="write what the program prints now into tests/golden, the expected messages of bad machine files, the "
-        "README and docs/symbols.md; read the diff. Not with -n.",
+        "README and docs; read the diff. Not with -n.",
     )
 
 

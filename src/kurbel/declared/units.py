@@ -12,7 +12,7 @@ import re
 from collections.abc import Callable
 from functools import cache
 
-from kurbel.declared.numerals import NUMBER, plain
+from kurbel.declared.numerals import NUMBER, parse_ratio, plain
 from kurbel.errors import UnitError
 
 Factor = tuple[float, float]
@@ -230,7 +230,7 @@ def parse_quantity(text: str, kind: str) -> float:
     Raises UnitError when there is no number, no unit, or a unit of another kind.
     """
     stripped = plain(text)
-    number = _INCHES.match(stripped) or NUMBER.match(stripped)
+    number = _number_of(stripped)
     if not number:
         raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
     unit = stripped[number.end() :].strip()
@@ -259,19 +259,24 @@ def written_unit(text: str) -> str:
     ('at', 'in', '%', '')
     """
     stripped = plain(text)
-    number = _INCHES.match(stripped) or NUMBER.match(stripped)
+    number = _number_of(stripped)
     unit = stripped[number.end() :].strip() if number else ""
     return "" if re.match(r"/\s*[0-9.]", unit) else unit
 
 
 _INCHES = re.compile(r"([-+]?)(?:([0-9]{1,4})[ -])?([0-9]{1,4})/([1-9][0-9]{0,3})(?=\s*[A-Za-z]|$)")
 """A number as drawings in inches have it: 2 1/4, 2-1/4, 3/8."""
+_QUOTIENT = re.compile(rf"{NUMBER.pattern}\s*/\s*{NUMBER.pattern}(?=\s*[A-Za-z°]|$)")
+
+
+def _number_of(text: str) -> re.Match[str] | None:
+    return _INCHES.match(text) or _QUOTIENT.match(text) or NUMBER.match(text)
 
 
 def _value(number: re.Match[str]) -> float:
-    """Return the float of a match of NUMBER or _INCHES."""
+    """Return the float of a match of `_number_of`."""
     if number.re is not _INCHES:
-        return float(number.group())
+        return parse_ratio(number.group()) if number.re is _QUOTIENT else float(number.group())
     sign, whole, above, below = number.groups()
     return float(f"{sign}1") * (int(whole or 0) * int(below) + int(above)) / int(below)
 

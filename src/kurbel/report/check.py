@@ -17,10 +17,11 @@ from kurbel.report.notes import Note, machine_notes
 
 
 class Section(NamedTuple):
-    """A head line with its entries."""
+    """A head line with its entries; cylinder: they are all of the one whose name it is."""
 
     title: str
     entries: tuple[Entry, ...]
+    cylinder: bool = False
 
 
 class Checked(NamedTuple):
@@ -45,6 +46,7 @@ def checked(machine: Machine) -> Checked:
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
+        Section("Cranks", tuple(_crank_entries(machine))),
         Section("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
         Section("Crankshaft", tuple(_crankshaft_entries(machine))),
         Section("Limits", tuple(one for one in entries if one.path[0] == "limits")),
@@ -72,7 +74,20 @@ def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note
         *_notes(found, cylinder.name, path),
         *(Entry("note", note, "info", path) for note in cylinder.mechanism.notes),
     ]
-    return Section(cylinder.name, tuple(entries))
+    return Section(cylinder.name, tuple(entries), cylinder=True)
+
+
+def _crank_entries(machine: Machine) -> Iterable[Entry]:
+    """Yield for each of several cylinders when it follows the first, and where that puts its crank pin."""
+    banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
+    for cylinder in machine.cylinders[: len(machine.cylinders) if len(machine.cylinders) > 1 else 0]:
+        pin = f", stroke line at {cylinder.bank_angle:g} deg: crank pin {_behind(cylinder):g} deg behind the first"
+        yield Entry(cylinder.name, f"{cylinder.crank_position:g} deg after the first{pin if banked else ''}")
+
+
+def _behind(cylinder: Cylinder) -> float:
+    """Return by which angle in degrees a crank pin follows that of cylinder 1: its dead centre stands at the bank."""
+    return (cylinder.crank_position - cylinder.bank_angle) % 360.0
 
 
 def _notes(found: Sequence[Note], cylinder: str | None, path: Path = ()) -> Iterable[Entry]:

@@ -49,6 +49,9 @@ class Case:
             return self.torsion[name]
         return (self.strength if "stress" in commands else self.flywheel)[name]
 
+    def __repr__(self) -> str:
+        return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
+
     def _repr_html_(self) -> str:
         from html import escape
 
@@ -70,6 +73,11 @@ class Case:
         from kurbel.solver.strength.crankshaft import CrankshaftStrength
 
         return CrankshaftStrength(self.machine, self.cylinders)
+
+    @property
+    def stress(self) -> CrankshaftStrength:
+        """What `kurbel stress` answers, by the name of the command as the others are."""
+        return self.strength
 
     @cached_property
     def flywheel(self) -> MachineTurning:

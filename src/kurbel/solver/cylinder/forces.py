@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,22 +19,16 @@ from kurbel.numerics.search import Curve, Evaluate, Extremes, Sampled, curves, e
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.state import State
-from kurbel.solver.figures import Results, answered
+from kurbel.solver.figures import Results, answered, crank_angles
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.declared.quantities import Lists
+    from kurbel.numerics.where import Where
 
 
 _SURE = 4.0
 """Standard deviations that the noise of thousands of samples does not reach."""
-
-
-class Where(NamedTuple):
-    """The crank angles in degrees at which a column has a value, ascending, and between which values in SI it moves."""
-
-    angles: tuple[float, ...]
-    span: tuple[float, float]
 
 
 class CylinderForces(Results):
@@ -51,8 +45,14 @@ class CylinderForces(Results):
 
     @property
     def lists(self) -> Lists:
-        """The quantities that a machine with this mechanism may have."""
-        return quantities_of(self.drive.mechanism)
+        """The quantities that a machine with this mechanism may have, its pressures counted as in the machine file."""
+        known = quantities_of(self.drive.mechanism)
+        gas = self.drive.own_gas
+        return known.absolute if gas and gas.absolute else known
+
+    @property
+    def _of(self) -> str:
+        return self.drive.name
 
     @property
     def answering(self) -> tuple[Any, ...]:
@@ -71,7 +71,7 @@ class CylinderForces(Results):
 
         At a jump the value just after it is meant.
         """
-        return self.drive.at(np.asarray(degrees, dtype=float))
+        return self.drive.at(crank_angles(degrees))
 
     @cached_property
     def grid(self) -> Grid:
@@ -123,29 +123,17 @@ class CylinderForces(Results):
         return Extremes(max(largest, key=lambda one: one.value), min(smallest, key=lambda one: one.value))
 
     def angles_where(self, column: str, value: float) -> Where | None:
-        """Return the crank angles of the cycle at which a column passes a value in SI, or reaches it as its extreme.
-
-        None for a column that is left out. At a jump over the value it is the angle of the jump.
-        """
+        """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         if getattr(self._samples, column) is None:
             return None
-        name = (column,)
-        whole = curves(self.grid, _sampled(self._samples, name), self._quantities(*name))[column]
+        from kurbel.numerics.where import where
 
-        def less(degrees: Array, within: Array) -> dict[str, Sampled]:
-            found = _sampled(self.drive.jets_at(degrees, within), name)[column]
-            return {column: Sampled(found.value - value, found.slope)}
-
-        passed = sign_changes(
-            self.grid, {column: whole._replace(value=whole.value - value)}, less, float(np.abs(whole.value).max())
-        )[column]
-        ends = extremes_of(whole)
-        reached = [one.degrees for one in ends if math.isclose(one.value, value, rel_tol=1e-14)]
-        return Where(tuple(sorted({*passed.tolist(), *reached})), (ends.smallest.value, ends.largest.value))
+        samples, evaluate = _sampled(self._samples, (column,))[column], self._quantities(column)
+        return where(self.grid, samples, lambda *place: evaluate(*place)[column], value)
 
     @cached_property
     def p_max(self) -> Extreme | None:
-        """Largest gauge pressure in Pa at either end of the cylinder's own piston."""
+        """Largest pressure in Pa at either end of the cylinder's own piston, counted as in the machine file."""
         if not self.drive.own_gas:
             return None
         found = [extremes_of(curve).largest for curve in self._searched(("p_head", "p_crank")).values()]
@@ -229,6 +217,24 @@ class CylinderForces(Results):
             return None
         most = max(found, key=lambda extreme: abs(extreme.value))
         return Extreme(abs(most.value) / area, most.degrees)
+
+    @property
+    def p_guide_mean(self) -> float | None:
+        """Mean pressure in Pa of the shoe on its guide over the way there and back; None without friction there."""
+        area, f = self.drive.guide_area, self.drive.crosshead_friction
+        return self.crosshead_work / (f * area * self._way) if self.crosshead_work and area and f else None
+
+    @property
+    def wear_max(self) -> Extreme | None:
+        """Largest value of the wear line f |N| |c| in W."""
+        return max((extremes_of(curve).largest for curve in self._searched(("wear",)).values()), default=None)
+
+    @property
+    def wear_mean(self) -> float | None:
+        """Mean of the wear line over time in W."""
+        speed = self.drive.machine.speed
+        lost = self.crosshead_work if self.drive.guide_area else None
+        return None if lost is None or speed is None else lost * speed / self.drive.revolutions
 
     @property
     def A_head(self) -> float | None:

@@ -21,7 +21,8 @@ class PistonGas:
     """The pressures on both sides of one piston that has an indicator.
 
     head, crank: the pressures of the two ends, None for an end that is open to the ambient. cycle: degrees of its own
-    cycle, which is run through `repeats` times in that of the cylinder.
+    cycle, which is run through `repeats` times in that of the cylinder. absolute: whether the figures of the
+    file are; base: what they less this are gauge pressures, in Pa.
     """
 
     def __init__(self, piston: Piston, mechanism: Mechanism, cycle: float, ambient: float, repeats: int = 1) -> None:
@@ -31,6 +32,7 @@ class PistonGas:
         at_head = Setting(mechanism, cycle, True, ambient, indicator.absolute)
         at_crank = at_head._replace(head_end=False, mirrored=crank is head)
         self.piston = piston
+        self.absolute, self.base = indicator.absolute, at_head.base
         self.repeats = repeats
         self._cycle = cycle
         self.head = None if head is None else pressure_in(head, at_head)
