@@ -16,8 +16,15 @@ else:  # before click 8.4 a ParamType has no parameter
 _MOST = 10_000
 
 
+def _speed(text: str, unit: str) -> float:
+    """Return a speed in revolutions per second; unit: of one that has none of its own."""
+    from kurbel.declared.units import parse_quantity, written_unit
+
+    return parse_quantity(text if written_unit(text) else f"{text} {unit}".strip(), "speed")
+
+
 class Speeds(_SpeedsType):
-    """Speeds of rotation with one unit, such as `300, 350 rpm`, or `300:1500:10 rpm`, from, to, step."""
+    """Speeds of rotation, with one unit or each with its own: `300, 350 rpm`; or from, to, step: `300:1500:10 rpm`."""
 
     name = "speeds"
 
@@ -25,19 +32,15 @@ class Speeds(_SpeedsType):
         """Return the speeds in revolutions per second, in the order given."""
         if not isinstance(value, str):
             return tuple(value)
-        from kurbel.declared.units import unit_factor, written_unit
+        from kurbel.declared.units import written_unit
         from kurbel.errors import UnitError
 
-        *first, last = value.replace(":", ",").split(",")
-        unit = written_unit(last)
+        each = value.replace(":", ",").split(",")
+        unit = written_unit(each[-1])
         try:
-            up, down = unit_factor(unit, "speed") if unit else (0.0, 1.0)
-            texts = [*first, last.strip().removesuffix(unit)]
-            numbers = [number * up / down for number in Numbers().convert(",".join(texts), param, ctx)]
+            numbers = [_speed(text, unit) for text in each]
         except UnitError as error:
             self.fail(str(error), param, ctx)
-        if not unit:
-            self.fail(f"'{value}' has no unit; write it with one, such as '{value} rpm'", param, ctx)
         speeds = self._stepped(numbers, value, param, ctx) if ":" in value else tuple(numbers)
         if not all(speed > 0 for speed in speeds):
             self.fail(f"'{value}': a speed is more than 0", param, ctx)

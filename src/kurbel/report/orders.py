@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array, ComplexArray
 
 _HIGHEST = 1000
+_COUNTS = ("order", "mode", "distance")
 
 
 def orders_of(machine: Machine, asked: Sequence[float] | None) -> Array | None:
@@ -43,9 +44,11 @@ def phase_degrees(amplitudes: ComplexArray) -> list[float | None]:
 
 
 def counted(columns: Iterable[Column]) -> tuple[Column, ...]:
-    """Return columns with orders and numbers of modes written as such: 1.5, but 1 and 2."""
-    return tuple(one._replace(decimals=_decimals(one)) if one.id in ("order", "mode") else one for one in columns)
+    """Return columns with orders and numbers of modes written as such, 1.5, but 1 and 2; a distance in thousandths."""
+    return tuple(one._replace(decimals=_decimals(one)) if one.id in _COUNTS else one for one in columns)
 
 
 def _decimals(column: Column) -> int:
+    if column.id == "distance":
+        return 3
     return 1 if any(value and value % 1 for value in column.values) else 0

@@ -56,12 +56,12 @@ def subjects(
 ) -> Iterable[Subject]:
     """Yield the shaft line; asked: by other than the usual orders; critical: the critical speeds to warn of."""
     found = asked or case.torsion
-    if found.vibration is not None and not np.isfinite(found.vibration.torques).all():
-        raise NoSolutionError("an order of the torque meets a mode that nothing damps: give it 'damping'")
+    if found.vibration is not None and found.vibration.endless.any():
+        raise NoSolutionError("an order of the torque meets a natural vibration that nothing damps: give it 'damping'")
     yield Subject(
         "shaft line",
         (found,),
-        left_out=lambda: _left_out(found),
+        left_out=lambda: torsion_left_out(found),
         warnings=lambda: (
             *_warnings(found, critical or ()),
             *of_machine(machine_notes(case.machine, case), case.machine),
@@ -83,7 +83,8 @@ def _tables(found: ShaftVibration, critical: tuple[Critical, ...], wanted: Wante
         yield speeds_table(found, wanted.speeds, system)
 
 
-def _left_out(found: ShaftVibration) -> Iterable[LeftOut]:
+def torsion_left_out(found: ShaftVibration) -> Iterable[LeftOut]:
+    """Yield what torsional vibration leaves out, with the reason."""
     if found.obstacle:
         yield LeftOut("forced vibration, torques and stresses", found.obstacle)
     elif not all(piece.sections for piece in found.line.pieces):
@@ -116,6 +117,7 @@ def _notes(found: ShaftVibration, wanted: Wanted) -> Iterable[str]:
     if not found.machine.cylinders and found.machine.effort:
         yield f"The effort acts on {found.line.masses[0].name}, the first mass."
     if found.pieces:
-        orders = f"orders {found.orders[0]:g} to {found.orders[-1]:g}"
+        first, last = (f"{order:g}" for order in (found.orders[0], found.orders[-1]))
+        orders = f"order {first}" if first == last else f"orders {first} to {last} together"
         taker = "what holds it" if found.chain.ground else found.line.masses[found.line.load].name
-        yield f"Forced vibration: {orders} together, about uniform rotation; the mean torque goes to {taker}."
+        yield f"Forced vibration: {orders}, about uniform rotation; the mean torque goes to {taker}."

@@ -97,8 +97,10 @@ def critical_table(found: ShaftVibration, critical: tuple[Critical, ...], system
     met = [index for index, one in enumerate(critical) if found.met(one)]
     if met:
         vibration = found.forced([critical[index].speed for index in met])
-        for index, torque, strain in zip(met, vibration.vibratory.max(axis=0).tolist(), _stresses(vibration)):
-            torques[index], stresses[index] = torque, strain
+        found_there = zip(met, vibration.vibratory.max(axis=0).tolist(), _stresses(vibration), vibration.endless)
+        for index, torque, strain, endless in found_there:
+            if not endless:
+                torques[index], stresses[index] = torque, strain
     return _table(
         "critical_speeds",
         "Critical speeds",
@@ -139,8 +141,9 @@ def speeds_table(found: ShaftVibration, speeds: Sequence[float], system: str) ->
     for piece, of_piece in enumerate(vibration.vibratory):
         factor = stress(found.line, piece)
         names += [found.piece_name(piece)] * len(speeds)
-        torques += of_piece.tolist()
-        stresses += [None if factor is None else factor * torque for torque in of_piece.tolist()]
+        told = [None if endless else torque for torque, endless in zip(of_piece.tolist(), vibration.endless)]
+        torques += told
+        stresses += [None if factor is None or torque is None else factor * torque for torque in told]
     title = "Vibratory torque over the speed, all these orders together"
     return _table(
         "speeds",

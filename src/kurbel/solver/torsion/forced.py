@@ -16,14 +16,18 @@ from kurbel.solver.turning.harmonics import MachineOrders, spectrum
 from kurbel.solver.turning.speed_lines import speed_law
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
+    from kurbel.arrays import Array, ComplexArray, Flags
+
+
+_ENDLESS = 1e9
+"""Torque in a piece, over the largest that drives, beyond which nothing but rounding bounds it."""
 
 
 class Excitation(NamedTuple):
-    """The torques on n masses in N m: orders (k,), amplitudes (n, k) of what does not mind the speed and, at ω_n in
+    """The torques on n masses in N m, by orders (k,).
 
-    rad/s, of the inertia forces; means (n,), the load of the mass that takes it included; load_slope: dL/dω at ω_n of
-    each mass in N m s/rad (n,).
+    gas, inertia: amplitudes (n, k) of what does not mind the speed, and of the inertia forces at ω_n = omega in rad/s;
+    means (n,), with the load on the mass that takes it; load_slope: dL/dω of each mass at ω_n in N m s/rad (n,).
     """
 
     omega: float
@@ -102,6 +106,12 @@ class Vibration:
         """Amplitudes of the torques in the pieces in N m."""
         referred = twisting(self.chain, self._frequencies, self.angles)
         return np.asarray(referred / self._ratios[:, None, None])
+
+    @cached_property
+    def endless(self) -> Flags:
+        """Where an order meets a mode that nothing damps, so that only rounding bounds it, (s,)."""
+        bound = _ENDLESS * np.abs(self.driving).max(axis=(0, 2))
+        return np.asarray(np.isfinite(bound) & ~(np.abs(self.torques).max(axis=(0, 2)) <= bound))
 
     @cached_property
     def means(self) -> Array:

@@ -38,7 +38,8 @@ def shaft_line_of(machine: Machine) -> ShaftLine:
         return machine.shaft
     coupling, wheel = machine.coupling, machine.flywheel
     if coupling is None:
-        raise UsageError(f"{machine.name}: no 'shaft' is given; write its masses and the pieces between them below it")
+        what = "write its masses and the pieces between them below it, or give a 'coupling' behind a 'flywheel'"
+        raise UsageError(f"{machine.name}: no 'shaft' is given; {what}")
     if wheel is None or wheel.inertia is None:
         raise UsageError(f"{machine.name}: the mass before the coupling is not known; give 'flywheel' an 'inertia'")
     names = tuple(cylinder.name for cylinder in machine.cylinders)
