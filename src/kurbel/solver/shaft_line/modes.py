@@ -16,7 +16,7 @@ import numpy as np
 from kurbel.solver.shaft_line.chain import Chain
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
+    from kurbel.arrays import Array, Indices
 
 _NOTHING = 1e-40
 """What stands for a quotient of exactly zero: a mass that stands still."""
@@ -51,14 +51,8 @@ class Modes:
 
     def _elastic(self) -> Array:
         """Return those of the elastic modes by bisection of the number of modes below, to the last digit."""
-        count = len(self.chain.stiffnesses)
-        inertias, stiffnesses = self._line.inertias, self._line.stiffnesses
-        beside = np.zeros(len(inertias))
-        beside[: len(stiffnesses)] += stiffnesses
-        beside[1:] += stiffnesses[: len(inertias) - 1]
-        high = np.full(count, 1.01 * np.sqrt(2 * (beside / inertias).max()))  # Gershgorin
-        low = self._below_all(high[0]) * np.ones(count)
-        wanted = np.arange(count)
+        wanted = np.arange(len(self.chain.stiffnesses))
+        low, high = self._between(wanted)
         while True:
             # halving exponents first, then digits
             middle = np.where(high > 2 * low, np.sqrt(low) * np.sqrt(high), low + (high - low) / 2)
@@ -67,6 +61,18 @@ class Modes:
                 return high
             more = self._below(middle) > wanted
             high, low = np.where(inside & more, middle, high), np.where(inside & ~more, middle, low)
+
+    def _between(self, wanted: Indices) -> tuple[Array, Array]:
+        """Return bounds of these modes: plain eigenvalues with their rounding, if that holds, or the bounds of all."""
+        chain, roots = self._line, np.sqrt(self._line.inertias)
+        matrix = (chain.twists.T * chain.stiffnesses) @ chain.twists / roots / roots[:, None]
+        highest = 1.01 * float(np.sqrt(2 * np.diag(matrix).max()))  # Gershgorin, for the matrix J⁻¹ K
+        about = np.sqrt(np.abs(np.linalg.eigvalsh(matrix)))[-len(wanted) :]
+        share = 1e-14 * (1 + (highest / np.maximum(about, 1e-100 * highest)) ** 2)
+        low, high = about * (1 - np.minimum(share, 0.5)), about * (1 + share)
+        holds = (self._below(low) <= wanted) & (self._below(high) > wanted)
+        lowest = self._below_all(highest)
+        return np.where(holds, low, lowest), np.where(holds, high, highest)
 
     def _below_all(self, high: float) -> float:
         low = high
