@@ -91,7 +91,7 @@ def torsion_left_out(found: ShaftVibration) -> Iterable[LeftOut]:
         bare = [found.piece_name(i) for i, piece in enumerate(found.line.pieces) if not piece.sections]
         yield LeftOut(f"stress in {', '.join(bare)}", "no diameter given")
     if found.machine.cylinders:
-        yield LeftOut("change of the inertia over the turn", "the mean counts; secondary resonances are not told")
+        yield LeftOut("change of the inertia over the turn", "the mean counts; what its change excites is not told")
 
 
 def _warnings(found: ShaftVibration, critical: tuple[Critical, ...]) -> Iterable[str]:
