@@ -12,13 +12,14 @@ from importlib import import_module
 import click
 
 from kurbel.cli import COMMANDS
+from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Key, Keys, required
 from kurbel.declared.quantities import FACTORS
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.shaft import STRESSES
-from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, ORDERS, PIECES, SPEEDS
+from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.declared.units import kinds, unit_names
 from kurbel.mechanisms import every_quantity
@@ -91,7 +92,9 @@ def _by_command(declared: Iterable[Quantity]) -> Iterator[str]:
 
 def _others() -> Iterator[str]:
     yield f"## Stresses at one place of a crankshaft\n\n{_quantities(STRESSES.values())}"
-    yield f"## Orders of a torque\n\n{_quantities(ORDERS.values())}"
+    tables = (ORDERS | ELLIPSES | WEIGHTS).values()
+    yield f"## Orders of free forces and moments, and weights\n\n{_quantities(tables)}"
+    yield f"## Orders of a torque\n\n{_quantities(TORQUE_ORDERS.values())}"
     yield f"## Natural vibrations\n\n{_quantities(MODES.values())}"
     yield f"## Holzer's table\n\n{_quantities(HOLZER.values())}"
     yield f"## Critical speeds\n\n{_quantities(CRITICAL_SPEEDS.values())}"

@@ -28,11 +28,11 @@ SI = {
     **dict.fromkeys(("", "deg", "m", "m/s", "m/s2", "rad/s", "rad/s2", "kg", "kg m2", "N", "N m", "Pa", "Hz"), 1.0),
     **dict.fromkeys(("rpm", "per min"), 1 / 60),
     **{"mm": 1e-3, "cm": 1e-2, "in/s": FOOT / 12, "kN": 1e3, "kW": 1e3, "percent": 1e-2},
-    **{"lbf": POUND_FORCE, "lb ft2": POUND * FOOT**2, "ton": 2240 * POUND},
+    **{"lb": POUND, "lbf": POUND_FORCE, "lb ft2": POUND * FOOT**2, "ton": 2240 * POUND},
     **{"hp": 550 * FOOT * POUND_FORCE, "PS": 735.49875},
 }
 QUESTION = re.compile(
-    r"(?P<command>\w+) (?:(?P<table>\w+):)?(?P<id>\w+)(?:\[(?P<nth>\d)\])?(?:\[(?P<rows>\w+=.+)\])?"
+    r"(?P<command>\w+) (?:(?P<table>\w+)\.)?(?P<id>\w+)(?:\[(?P<nth>\d)\])?(?:\[(?P<rows>\w+=.+)\])?"
     r"(?:(?P<at>@)(?P<angle>\d*))?(?: where (?P<where>.+))?"
 )
 
@@ -51,7 +51,7 @@ def answer(file: str, command: str, where: str | None) -> dict[str, Any]:
     angles = sorted({one["angle"] for one in asked if one["angle"]}, key=int) or ["0"]
     columns = {one["id"]: "" for one in asked if one["angle"] or where}
     arguments = [command, str(FOLDER / f"{file}.yaml"), "-f", "json"]
-    if any(one["table"] for one in asked):
+    if any(one["rows"] for one in asked):
         return answered(arguments)
     arguments += ["--where", where] if where else ["--angles", ",".join(angles)]
     arguments += ["--columns", ",".join(("phi", *columns))] if columns else []
@@ -80,9 +80,12 @@ def told(row: dict[str, Any]) -> Any:
     """Return what kurbel answers, in SI units: a number or a list of them."""
     asked = question(row)
     parsed = answer(row["file"], asked["command"] or "", asked["where"])
-    if asked["table"]:
+    if asked["rows"]:
         return of_table(parsed, asked)
     parts = [{key.removeprefix("machine_"): what for key, what in parsed.items()}, *parsed.get("cylinders", ())]
+    if asked["table"]:
+        table = next(one for part in parts for one in part.get("place_tables", ()) if one["id"] == asked["table"])
+        return next(one for one in table["columns"] if one["id"] == asked["id"])["values"][int(asked["nth"] or 0)]
     kind = "columns" if asked["angle"] or asked["where"] else "key_values"
     one = next(one for part in parts for one in part.get(kind, ()) if one["id"] == asked["id"])
     if asked["angle"]:
@@ -99,7 +102,8 @@ def expected(row: dict[str, Any]) -> tuple[Any, Any]:
     figures = row.get("strict", row["exact"])
     figures = figures if isinstance(figures, list) else [figures]
     digits = 12 if "strict" in row else row.get("digits", 12)
-    last = [10.0 ** (math.floor(math.log10(abs(one))) + 1 - digits) for one in figures]
+    # nothing is to be nothing
+    last = [10.0 ** (math.floor(math.log10(abs(one))) + 1 - digits) if one else 0.0 for one in figures]
     return [factor * one + row.get("plus", 0) for one in figures], [abs(factor) * one for one in last]
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
 
+from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
 from kurbel.declared.torsion import HARMONIC_VALUES, TORSION_COLUMNS, TORSION_VALUES
@@ -24,7 +25,7 @@ _COLUMNS = (
         "angle",
         "Crank angle from the inner dead centre, in the sense of rotation",
         "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "torsion"),
+        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "balance", "torsion"),
     ),
     _motion(
         "z",
@@ -149,6 +150,7 @@ _COLUMNS = (
     ),
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
     *STRENGTH_COLUMNS,
+    *BALANCE_COLUMNS,
     *TORSION_COLUMNS,
 )
 
@@ -326,6 +328,7 @@ class Lists(NamedTuple):
             *extremes(found, "flywheel"),
             *_FLYWHEEL_VALUES,
             *STRENGTH_VALUES,
+            *BALANCE_VALUES,
             *HARMONIC_VALUES,
             *TORSION_VALUES,
         )

@@ -48,7 +48,7 @@ TORSION_VALUES = (
     _torsion("vibration_loss", "N_d", "power", "Mean power that the damping takes"),
 )
 
-ORDERS = by_id(
+TORQUE_ORDERS = by_id(
     (
         Quantity("speed", "n", "speed", "Speed of rotation"),
         Quantity("order", "ν", "ratio", "Order: periods per turn of the shaft", "nu"),
@@ -86,7 +86,7 @@ PIECES = by_id(
 
 CRITICAL_SPEEDS = by_id(
     (
-        ORDERS["order"],
+        TORQUE_ORDERS["order"],
         MODES["mode"],
         Quantity("speed", "n_k", "speed", "Critical speed, at which the order meets the mode"),
         Quantity("phase_sum", "|ΣΘ|", "ratio", "Sum of the phase vectors of the cranks, Θ as in Holzer's table"),

@@ -49,6 +49,7 @@ def checked(machine: Machine) -> Checked:
         Section("Cranks", tuple(_crank_entries(machine))),
         Section("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
         Section("Crankshaft", tuple(_crankshaft_entries(machine))),
+        Section("Balance", tuple(_balance_entries(machine))),
         Section("Shaft line", tuple(_shaft_entries(machine))),
         Section("Limits", tuple(one for one in entries if one.path[0] == "limits")),
         Section("Expected", tuple(one for one in entries if one.path[0] == "expect")),
@@ -130,6 +131,25 @@ def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
     yield Entry("computed", "forces on the bearings, stresses in pin and webs")
     for what, why in strength_left_out(machine):
         yield Entry("left out", f"{what}: {why}", "info", ("crankshaft",))
+
+
+def _balance_entries(machine: Machine) -> Iterable[Entry]:
+    """Yield what kurbel balance has to say of a machine of which a place, a weight or a wheel is told."""
+    placed = any(one.axial_position is not None or one.counterweights for one in machine.cylinders)
+    if not (placed or machine.counterweights or machine.balance_shafts or machine.locomotive):
+        return
+    from kurbel.report.balance import subjects
+    from kurbel.solver.case import Case
+
+    try:
+        (whole,) = subjects(Case(machine))
+        missing = tuple(whole.left_out())
+    except KurbelError as error:
+        yield Entry("left out", str(error), "info")
+        return
+    yield Entry("computed", "free forces and moments, their orders, best counterweights")
+    for what, why in missing:
+        yield Entry("left out", f"{what}: {why}", "info")
 
 
 def _shaft_entries(machine: Machine) -> Iterable[Entry]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.declared.torsion import ORDERS
+from kurbel.declared.torsion import TORQUE_ORDERS
 from kurbel.errors import UsageError
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import flywheel_left_out, left_out
@@ -70,7 +70,7 @@ def _no_cranks(found: MachineOrders) -> Iterable[LeftOut]:
 
 
 def _table(id: str, title: str, orders: Orders, area: float | None, marks: list[str], system: str) -> PlaceTable:
-    columns = (shown_column(ORDERS[name], values, system) for name, values in _columns(orders, area))
+    columns = (shown_column(TORQUE_ORDERS[name], values, system) for name, values in _columns(orders, area))
     return PlaceTable(id, title, ("kind",), tuple((mark,) for mark in marks), counted(columns))
 
 
@@ -103,7 +103,9 @@ def _speed_tables(
     for one in spectra:
         for name, values in _of_spectrum(one):
             columns.setdefault(name, []).extend(values)
-    shown: tuple[Column, ...] = counted(shown_column(ORDERS[name], values, system) for name, values in columns.items())
+    shown: tuple[Column, ...] = counted(
+        shown_column(TORQUE_ORDERS[name], values, system) for name, values in columns.items()
+    )
     names = tuple(("",) for _ in columns["speed"])
     yield PlaceTable("orders_by_speed", "Orders of the turning effort at other speeds", ("kind",), names, shown)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.machine import Cylinder, Machine
 from kurbel.report.alike import grouped, together
+from kurbel.report.pins import pin_notes
 from kurbel.report.sizes import size_notes, speed_notes
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
     found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
     found += [Note(None, text) for text in speed_notes(machine)]
     found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in size_notes(cylinder)]
+    found += [Note(None, text) for text in pin_notes(machine)]
     if machine.effort or any(map(_acts, machine.cylinders)):
         import numpy as np
 

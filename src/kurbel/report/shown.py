@@ -50,17 +50,19 @@ def shown_columns(
     )
 
 
-def shown_column(quantity: Quantity, values: Sequence[float | None], system: str, size: float = 0.0) -> Column:
+def shown_column(
+    quantity: Quantity, values: Sequence[float | None], system: str, size: float = 0.0, beside: float = 0.0
+) -> Column:
     """Return the column of a quantity; values (n,) in SI, None where there is none; size: of the largest of its curve.
 
-    Raises UsageError where one is not finite.
+    beside: the largest value in SI of what is to have the same unit. Raises UsageError where one is not finite.
     """
     given = np.frombuffer(values) if isinstance(values, array) else np.array([v for v in values if v is not None])
     if not (np.isfinite(given).all() and math.isfinite(size)):
         raise too_large(quantity)
     largest = max(given.max(initial=0.0), -given.min(initial=0.0))
     size = size if largest <= _ROUNDING * size else 0.0
-    unit = shown_unit(quantity.kind, system, size or largest)
+    unit = shown_unit(quantity.kind, system, max(size or largest, beside))
     given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
     given += 0.0
     shown = values if isinstance(values, array) else _filled(values, given.tolist())

@@ -38,9 +38,9 @@ class Column(NamedTuple):
 
     values: a tuple, or an array of doubles, which takes a quarter of the memory;
     decimals: fixed number of decimals in printed tables, where the digits of a source are to be kept;
-    marked: indices of the values that the printed table marks with an asterisk; alone: each value has a scale of its
-    own, since they run over many powers of ten, as errors do; size: of the largest value of the whole curve, where the
-    values here are but rounding beside it, and 0 where they are not.
+    marked: indices of the values that the printed table marks with an asterisk; alone: the digits of values of which
+    each has a scale of its own, since they run over many powers of ten, as errors do, 0 where they share one; size: of
+    the largest value of the whole curve, where the values here are but rounding beside it, and 0 where they are not.
     """
 
     id: str
@@ -51,7 +51,7 @@ class Column(NamedTuple):
     text: str = ""
     decimals: int | None = None
     marked: tuple[int, ...] = ()
-    alone: bool = False
+    alone: int = 0
     size: float = 0.0
 
 
@@ -81,9 +81,9 @@ class LeftOut(NamedTuple):
 class PlaceTable(NamedTuple):
     """A table whose rows are named places instead of crank angles; `id` names it in csv and json.
 
-    heads: what the names are, such as (part, place); names: those of each row, one to a head, with _ for a blank;
-    columns: as over the crank angle, one value to a row; headed: the heads are printed too, and the names are texts as
-    they stand.
+    heads: what the names are, such as (part, place), or none; names: those of each row, one to a head, with _ for a
+    blank; columns: as over the crank angle, one value to a row; headed: the heads are printed too, and the names are
+    texts as they stand.
     """
 
     id: str

@@ -59,11 +59,9 @@ class Drive:
 
     @cached_property
     def pin_inertia(self) -> float:
-        """Moment of inertia m R² in kg m² of the part of the connecting rod that turns with the crank pin."""
+        """Moment of inertia m R² in kg m² of what turns with the crank pin."""
         masses = self.cylinder.masses
-        if not (masses and masses.connecting_rod and self.mechanism.has_rod):
-            return 0.0
-        return masses.connecting_rod.at_pin(self.mechanism.rod_length) * self.mechanism.crank**2
+        return masses.at_pin(self.mechanism.rod_length) * self.mechanism.crank**2 if masses else 0.0
 
     @property
     def _incline(self) -> CrankAngle | None:

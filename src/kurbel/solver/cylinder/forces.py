@@ -227,6 +227,8 @@ class CylinderForces(Results):
     @property
     def wear_max(self) -> Extreme | None:
         """Largest value of the wear line f |N| |c| in W."""
+        if self.drive.guide_area is None:
+            return None
         return max((extremes_of(curve).largest for curve in self._searched(("wear",)).values()), default=None)
 
     @property
