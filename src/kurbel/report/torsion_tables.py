@@ -72,7 +72,6 @@ def holzer_table(found: ShaftVibration, mode: int, system: str) -> PlaceTable:
         *(mass.name for mass in found.line.masses),
         *(["ground"] if after else []),
     ]
-    theta = [*([0.0] if before else []), *angles.tolist(), *([0.0] if after else [])]
     title = f"Holzer's table of mode {mode}, f = {omega / (2 * np.pi):.6g} Hz, ω² = {omega**2:.6g} 1/s²"
     return _table(
         "holzer",
@@ -82,7 +81,7 @@ def holzer_table(found: ShaftVibration, mode: int, system: str) -> PlaceTable:
         HOLZER,
         system,
         inertia=rows(chain.inertias),
-        theta=theta,
+        theta=[0.0 if angle is None else angle for angle in rows(angles)],
         inertia_torque=rows(own),
         torque_sum=[*table.torques.tolist(), None],
         stiffness=[*chain.stiffnesses.tolist(), None],
