@@ -11,12 +11,12 @@ from importlib import import_module
 
 import click
 
-from kurbel.cli import COMMANDS
+from kurbel.cli import COMMANDS, kurbel
 from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
+from kurbel.declared.factors import FACTORS
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Key, Keys, required
-from kurbel.declared.quantities import FACTORS
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.shaft import STRESSES
 from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
@@ -162,7 +162,9 @@ def _example(word: str, key: Key) -> str:
 
 def _command(name: str) -> str:
     command: click.Command = getattr(import_module(f"kurbel.cli.{name}"), name)
-    context = click.Context(command, info_name=f"kurbel {name}", parent=None)
+    # as the group names it: a command keeps the first help option that it is asked for
+    names = kurbel.context_settings["help_option_names"]
+    context = click.Context(command, info_name=f"kurbel {name}", help_option_names=names)
     usage = command.get_usage(context).removeprefix("Usage: ")
     text = _prose(command.help or "")
     rows = [row for one in command.get_params(context) if (row := one.get_help_record(context))]

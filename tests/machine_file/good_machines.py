@@ -143,6 +143,17 @@ shaft:
   - {diameter: 60 mm, length: 400 mm}
   - ground
 """
+BALANCED = """\
+speed: 250 rpm
+counterweights: {share: 1/3, planes: [-750 mm, 750 mm]}
+balance_shafts:
+  - {order: 2, sense: against, mass: 2 kg, radius: 30 mm, angle: 90 deg, axial_position: 0 mm}
+locomotive: {wheel_distance: 1.5 m, wheel_diameter: 1.98 m, wheel_load: 8 tf, hammer_limit: 25 kN}
+moment_reference: 0 mm
+cylinders:
+  - {name: A, crank: 300 mm, rod_ratio: 8.5, axial_position: -1 m, masses: {other: 290 kg, rotating: 210 kg}}
+  - {like: A, axial_position: 1 m, crank_position: 90 deg, counterweights: [{product: 2 kg m, angle: 170 deg}]}
+"""
 ALL = {
     "demo": DEMO,
     "full": FULL,
@@ -153,4 +164,5 @@ ALL = {
     "equal cylinders": EQUAL,
     "like one": LIKE_ONE,
     "shaft line": SHAFT_LINE,
+    "balanced": BALANCED,
 }

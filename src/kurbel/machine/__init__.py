@@ -248,6 +248,9 @@ class Machine(Described):
             if name in names[:index]:
                 refuse(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
         faults = [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
+        for index, cylinder in enumerate(self.cylinders):
+            rubbing = cylinder.friction.faults_beside(self.crankshaft) if cylinder.friction else ()
+            faults += [fault.below(("cylinders", index, "friction")) for fault in rubbing]
         faults += crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
@@ -300,8 +303,7 @@ class Machine(Described):
             piston.indicator for cylinder in self.cylinders for piston in cylinder.pistons if piston.indicator
         ]
         measured = (*(end for one in indicators for end in (one.head_end, one.crank_end)), self.effort)
-        files = (getattr(one, "file", None) for one in measured)
-        return tuple(dict.fromkeys(file for file in files if file))
+        return tuple(dict.fromkeys(file for one in measured for file in getattr(one, "files", ())))
 
     def lean_of(self, cylinder: Cylinder) -> float | None:
         """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""

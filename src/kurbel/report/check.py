@@ -125,6 +125,10 @@ def _load(machine: Machine) -> str:
 def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
     if machine.crankshaft is None:
         return
+    from kurbel.solver.shaft.line import shaft_obstacle
+
+    if not shaft_obstacle(machine):
+        yield Entry("computed", "loads on pins and main bearings")
     if obstacle := machine.strength_obstacle:
         yield Entry("left out", f"strength: {obstacle}", "info", ("crankshaft",))
         return

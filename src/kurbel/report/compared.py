@@ -92,9 +92,9 @@ def compared(path: Path, quantity: Quantity, figure: float | Expected, where: st
 
 
 def _kept(quantity: Quantity, bound: float, value: float) -> tuple[str, str, bool]:
-    """Judge by a bound: a `_min` may not fall below it, all else may not exceed it; of a residual the size counts."""
-    name, unit = quantity.id, getattr(bound, "unit", "")
-    lower, bars = name.endswith("_min"), "|" if name.endswith("_residual") else ""
+    """Judge by a bound, from below or from above; of a residual the size counts."""
+    unit = getattr(bound, "unit", "")
+    lower, bars = quantity.bounded_below, "|" if quantity.id.endswith("_residual") else ""
     excess = bound - value if lower else (abs(value) if bars else value) - bound
     broken = excess > _ROUNDING * abs(bound)
     relation = ("<" if broken else "≥") if lower else (">" if broken else "≤")

@@ -16,6 +16,7 @@ from kurbel.solver.figures import Figure, Results
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.balance.machine_balance import MachineBalance
+    from kurbel.solver.bearings.shaft_bearings import ShaftBearings
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
     from kurbel.solver.torsion.vibration import ShaftVibration
     from kurbel.solver.turning.flywheel import MachineTurning
@@ -51,6 +52,8 @@ class Case:
         whole = next((_WHOLE[command] for command in _WHOLE if command in commands), "")
         if "forces" in commands and not whole:
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
+        if "bearings" in commands:
+            raise UsageError(f"each pin and main bearing has its own {name}: ask one of case.bearings.parts")
         results: Results = getattr(self, whole or "flywheel")
         return results[name]
 
@@ -83,6 +86,13 @@ class Case:
     def stress(self) -> CrankshaftStrength:
         """What `kurbel stress` answers, by the name of the command as the others are."""
         return self.strength
+
+    @cached_property
+    def bearings(self) -> ShaftBearings:
+        """Loads on pins and main bearings. Raises UsageError where nothing loads them."""
+        from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+
+        return ShaftBearings(self.machine, self.cylinders)
 
     @cached_property
     def balance(self) -> MachineBalance:

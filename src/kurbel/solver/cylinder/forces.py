@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.declared.quantities import Lists
     from kurbel.numerics.where import Where
+    from kurbel.solver.cylinder.brake import Brake
+    from kurbel.solver.cylinder.indicated import Indicated
+    from kurbel.solver.cylinder.pin_works import PinWorks
+    from kurbel.solver.cylinder.rod_load import RodLoad
 
 
 _SURE = 4.0
@@ -57,7 +61,36 @@ class CylinderForces(Results):
     @property
     def answering(self) -> tuple[Any, ...]:
         """What answers key values, the first that knows one."""
-        return (self, self.motion)
+        return (self, self.motion, self.rod_load, self.pin_works, self.indicated, self.brake)
+
+    @cached_property
+    def pin_works(self) -> PinWorks:
+        """Works of friction in pins and journals."""
+        from kurbel.solver.cylinder.pin_works import PinWorks
+
+        return PinWorks(self)
+
+    @cached_property
+    def rod_load(self) -> RodLoad:
+        """The rod load, as compressors are judged by it."""
+        from kurbel.solver.cylinder.rod_load import RodLoad
+
+        return RodLoad(self)
+
+    @cached_property
+    def indicated(self) -> Indicated:
+        """What the traces of the cylinder's own piston tell."""
+        from kurbel.solver.cylinder.indicated import Indicated
+
+        return Indicated(self.drive.own_gas)
+
+    @cached_property
+    def brake(self) -> Brake | None:
+        """What the brake tells, where this is the only cylinder."""
+        from kurbel.solver.cylinder.brake import Brake
+
+        machine = self.drive.machine
+        return Brake(machine, (self,)) if len(machine.cylinders) == 1 else None
 
     def __getattr__(self, id: str) -> Any:
         """Return a key value that is no attribute here: extremes, and what the motion or the mechanism has."""
@@ -79,10 +112,18 @@ class CylinderForces(Results):
         return self._cut_at_turns(self.drive.cuts.grid())
 
     def _cut_at_turns(self, grid: Grid) -> Grid:
-        if not self.drive.crosshead_friction:
-            return grid
-        sense = self._quantities("guide_sense")
-        return grid.split_at(zeros(grid, sense(grid.degrees, grid.within), sense)["guide_sense"])
+        """Return the grid cut where the guide force changes sides, and where a force on a pin all but vanishes."""
+        pins = self.drive.pin_friction
+        if self.drive.crosshead_friction:
+            turns = zeros(grid, self._sides(grid.degrees, grid.within), self._sides)
+            grid = grid.split_at(np.concatenate(tuple(turns.values())))
+        return grid.split_at(pins.bends(grid)) if pins and self.drive.has_force else grid
+
+    def _sides(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        """Return what tells the sides of the guide force; what makes pins rub has it where they do not yet."""
+        state = self.drive.jets_at(degrees, within)
+        every = (state, state.unrubbed) if self.drive.pin_friction else (state,)
+        return {str(number): _sampled(one, ("guide_sense",))["guide_sense"] for number, one in enumerate(every)}
 
     def _quantities(self, *names: str) -> Evaluate:
         return lambda degrees, within: _sampled(self.drive.jets_at(degrees, within), names)
@@ -94,9 +135,10 @@ class CylinderForces(Results):
     @cached_property
     def _curves(self) -> dict[str, Curve]:
         declared = quantities_of(self.drive.mechanism).all_columns
-        return self._searched(one.id for one in declared if "forces" in one.extremes)
+        return self.searched(*(one.id for one in declared if "forces" in one.extremes))
 
-    def _searched(self, columns: Iterable[str]) -> dict[str, Curve]:
+    def searched(self, *columns: str) -> dict[str, Curve]:
+        """Return the curves over the cycle of those of these columns that there are."""
         names = [name for name in columns if getattr(self._samples, name) is not None]
         return curves(self.grid, _sampled(self._samples, names), self._quantities(*names)) if names else {}
 
@@ -136,7 +178,7 @@ class CylinderForces(Results):
         """Largest pressure in Pa at either end of the cylinder's own piston, counted as in the machine file."""
         if not self.drive.own_gas:
             return None
-        found = [extremes_of(curve).largest for curve in self._searched(("p_head", "p_crank")).values()]
+        found = [extremes_of(curve).largest for curve in self.searched("p_head", "p_crank").values()]
         return max(found, key=lambda one: one.value)
 
     def offered(self, id: str) -> Any:
@@ -175,9 +217,17 @@ class CylinderForces(Results):
 
         Of those that are the noise of a trace alone the middle one stands for all.
         """
-        if self._reversals is None:
+        return self.reversals_of("P", self._curves.get("P") if self.drive.has_force else None)
+
+    def reversals_of(self, column: str, curve: Curve | None) -> tuple[float, ...] | None:
+        """Return the crank angles in degrees at which a force of the gas takes the other sign for longer than noise."""
+        changes = self._changes(column, curve)
+        if changes is None or curve is None:
             return None
-        return tuple(lasting(self._curves["P"], self._reversals, _SURE * self._noise).tolist())
+        return tuple(lasting(curve, changes, _SURE * self._noise).tolist())
+
+    def _changes(self, column: str, curve: Curve | None) -> Array | None:
+        return None if curve is None else sign_changes(self.grid, {column: curve}, self._quantities(column))[column]
 
     @property
     def reversals_in_noise(self) -> int:
@@ -187,8 +237,7 @@ class CylinderForces(Results):
 
     @cached_property
     def _reversals(self) -> Array | None:
-        force = self._curves.get("P") if self.drive.has_force else None
-        return None if force is None else sign_changes(self.grid, {"P": force}, self._quantities("P"))["P"]
+        return self._changes("P", self._curves.get("P") if self.drive.has_force else None)
 
     @property
     def _noise(self) -> float:
@@ -229,7 +278,7 @@ class CylinderForces(Results):
         """Largest value of the wear line f |N| |c| in W."""
         if self.drive.guide_area is None:
             return None
-        return max((extremes_of(curve).largest for curve in self._searched(("wear",)).values()), default=None)
+        return max((extremes_of(curve).largest for curve in self.searched("wear").values()), default=None)
 
     @property
     def wear_mean(self) -> float | None:
@@ -294,6 +343,12 @@ class CylinderForces(Results):
         gas = self.drive.own_gas
         return None if gas is None else gas.work / gas.swept_volume
 
+    @property
+    def swept_rate(self) -> float | None:
+        """Volume in m³ per turn that the cylinder's own piston sweeps against its pressures, once in a cycle."""
+        gas = self.drive.own_gas
+        return None if gas is None else gas.swept_volume / self.drive.revolutions
+
     @cached_property
     def work_sensitivity(self) -> float | None:
         """Change of the indicated work of the measured traces if they are put 0.1° later, over that work.
@@ -309,6 +364,8 @@ class CylinderForces(Results):
         """∮ f |N| |dx| in J per cycle."""
         if not self.drive.has_force or not self.drive.crosshead_friction:
             return 0.0 if self._has_crosshead else None
+        if self.drive.pin_friction:  # whose couple bends N where a load all but vanishes
+            return float(integral(self.grid, lambda pieces: np.asarray(self._on(pieces).crosshead_power)))
         return self.grid.integral(self._samples.crosshead_power.value)
 
     @property
@@ -338,7 +395,8 @@ class CylinderForces(Results):
     @cached_property
     def friction_work(self) -> float | None:
         """Work of all friction in J per cycle."""
-        given = [work for work in (self.crosshead_work, self.ring_work, self.constant_work) if work is not None]
+        every = (self.crosshead_work, self.ring_work, self.constant_work, *self.pin_works.all)
+        given = [work for work in every if work is not None]
         return math.fsum(given) if given and self.drive.has_force else None
 
     @cached_property
@@ -397,7 +455,10 @@ class CylinderForces(Results):
         return float(integral(pieces, self._torque) - self.work_left) / turnover if turnover else 0.0
 
     def _torque(self, pieces: Pieces) -> Array:
-        return np.asarray(State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond)).M)
+        return np.asarray(self._on(pieces).M)
+
+    def _on(self, pieces: Pieces) -> State:
+        return State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond))
 
 
 def _sampled(state: State, names: Iterable[str]) -> dict[str, Sampled]:

@@ -91,6 +91,14 @@ class PistonGas:
         ends = ((self.head, self.piston.head_area), (self.crank, self.piston.crank_area))
         return math.hypot(*(getattr(end, "noise", 0.0) * area for end, area in ends))
 
+    @cached_property
+    def clearance_volumes(self) -> tuple[float, float]:
+        """Smallest volumes in m³ of head end and crank end; 0 where one is not known."""
+        indicator = self.piston.indicator
+        chambers = (indicator.head_end, indicator.crank_end) if indicator else (None, None)
+        shares = [getattr(chamber, "clearance", None) or 0.0 for chamber in chambers]
+        return shares[0] * self.piston.head_area * self._stroke, shares[1] * self.piston.crank_area * self._stroke
+
     @property
     def swept_volume(self) -> float:
         """Volume in m³ swept in the chambers that have pressures."""
