@@ -22,6 +22,8 @@ MACHINES = {
     "throw-stress": "gas-engine",
     "card-volume": "compressor",
     "bearing-loads": "gas-engine",
+    "orders": "marine-diesel",
+    "modes": "marine-diesel",
 }
 """Picture -> the shipped machine that shows it best; the others are of the waterworks engine."""
 USUAL = "waterworks"

@@ -72,3 +72,25 @@ def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:
             (mark,) = panel.marks
             assert mark.figure.value == part.load_max.value / 1e3
             assert np.hypot(mark.x, mark.y) == pytest.approx(part.load_max.value / 1e3, rel=1e-9)
+
+
+def test_bars_of_the_torque_are_its_orders() -> None:
+    """Over a turn of six cranks at 120° only the orders 3, 6, 9, … of the gas remain (two-stroke: 6, 12)."""
+    case = case_of("marine-diesel")
+    panel = drawn("marine-diesel", "orders")[0].panels[0]
+    heights = [float(one.high[0]) for one in panel.shades]
+    found = case.harmonics()
+    assert heights == [abs(one) / 1e3 for one in found.machine.whole.amplitudes[: len(heights)].tolist()]
+    assert panel.x.names[int(np.argmax(heights))] == "6"
+
+
+def test_modes_are_those_of_holzer_with_their_frequencies() -> None:
+    case = case_of("marine-diesel")
+    panel = drawn("marine-diesel", "modes")[0].panels[0]
+    curves = [one for one in panel.curves if one.kind == "line"]
+    for mode, curve in enumerate(curves, 1):
+        angles = np.asarray(case.torsion.holzer(mode).angles)
+        assert (curve.pieces[0].y == angles / np.abs(angles).max()).all()
+        assert np.count_nonzero(np.diff(np.sign(curve.pieces[0].y))) == mode  # a free shaft has as many nodes
+    assert curves[0].name.symbol == f"1: {case.torsion.natural_frequency:.4g} Hz"
+    assert len(panel.x.names) == len(case.torsion.line.masses)

@@ -284,20 +284,31 @@ class Asked(NamedTuple):
         self.output.write(report.key_values_alone() if self.key_values_only else report)
 
 
+def machine_places(command: Callable[..., None]) -> Callable[..., Any]:
+    """Give a command FILE and the options of one that tells nothing over the crank angle; see `machine_table`."""
+    return _stacked(machine_file, _part_options, units_option)(output_options(_with_asked(command)))
+
+
 def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
     """Give a command FILE and all options of a table, which reach it as one `asked: Asked`."""
+    return _stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
+        output_options(_with_asked(command))
+    )
+
+
+def _with_asked(command: Callable[..., None]) -> Callable[..., Any]:
 
     @wraps(command)
     def with_asked(
         file: str,
         overrides: tuple[str, ...],
-        step: float,
-        angles: tuple[float, ...] | None,
-        columns: tuple[str, ...] | None,
         units: str | None,
         cylinder: str | None,
         key_values_only: bool,
         output: Output,
+        step: float = 10.0,
+        angles: tuple[float, ...] | None = None,
+        columns: tuple[str, ...] | None = None,
         **others: Any,
     ) -> None:
         system = units or ("si" if output.look.format in ("csv", "json") else "metric")
@@ -307,6 +318,4 @@ def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
         with told_in(units or "metric"):
             command(asked=asked, **others)
 
-    return _stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
-        output_options(with_asked)
-    )
+    return with_asked

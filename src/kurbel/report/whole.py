@@ -24,24 +24,50 @@ Progress = Callable[[str], None]
 
 
 class Command(NamedTuple):
-    """A command whose tables a report has: its word, the module below `kurbel.report` that makes them, and a title.
+    """A command whose tables a report has: its word, a title, and what makes them at crank angles (n,) in degrees.
 
     turns: whether its table runs over the whole cycle of the machine.
     """
 
     word: str
     title: str
-    function: str
+    make: Callable[[Case, Sequence[float], str], Report]
     turns: bool = True
 
 
+def _made_by(module: str) -> Callable[[Case, Sequence[float], str], Report]:
+    """Return what makes the report of a command, as the module of that name below `kurbel.report` has it."""
+
+    def make(case: Case, angles: Sequence[float], system: str) -> Report:
+        report: Report = getattr(import_module(f"kurbel.report.{module}"), f"{module}_report")(
+            case, angles, None, system
+        )
+        return report
+
+    return make
+
+
+def _harmonics(case: Case, angles: Sequence[float], system: str) -> Report:
+    from kurbel.report.harmonics import harmonics_report
+
+    return harmonics_report(case, None, None, system)
+
+
+def _torsion(case: Case, angles: Sequence[float], system: str) -> Report:
+    from kurbel.report.torsion import Wanted, torsion_report
+
+    return torsion_report(case, Wanted(), angles, None, system)
+
+
 COMMANDS = (
-    Command("motion", "Motion", "motion:motion_report", False),
-    Command("forces", "Forces", "forces:forces_report"),
-    Command("flywheel", "Turning effort and flywheel", "flywheel:flywheel_report"),
-    Command("stress", "Strength of the crankshaft", "stress:stress_report"),
-    Command("bearings", "Bearings", "bearings:bearings_report"),
-    Command("balance", "Balance of the masses", "balance:balance_report"),
+    Command("motion", "Motion", _made_by("motion"), False),
+    Command("forces", "Forces", _made_by("forces")),
+    Command("flywheel", "Turning effort and flywheel", _made_by("flywheel")),
+    Command("stress", "Strength of the crankshaft", _made_by("stress")),
+    Command("bearings", "Bearings", _made_by("bearings")),
+    Command("balance", "Balance of the masses", _made_by("balance")),
+    Command("harmonics", "Orders of the turning effort", _harmonics),
+    Command("torsion", "Torsional vibration", _torsion),
 )
 """In the order in which a report has them."""
 
@@ -88,10 +114,8 @@ def _section(case: Case, command: Command, system: str, step: float, left_out: l
 
 
 def _table(case: Case, command: Command, system: str, step: float) -> Report | str:
-    module, name = command.function.split(":")
-    make: Callable[..., Report] = getattr(import_module(f"kurbel.report.{module}"), name)
     end = 360.0 * case.machine.revolutions if command.turns else 360.0
-    report = make(case, stepped(step, end, max(len(case.cylinders), 1)), None, system)
+    report = command.make(case, stepped(step, end, max(len(case.cylinders), 1)), system)
     for part in report.all_parts:  # what cannot be computed is told now, not while the page is written
         len(part.key_values)
     return report

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from importlib import import_module
 from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -118,6 +118,20 @@ PICTURES = (
         "bearings",
         "bearings:polar_loads",
         across=2,
+    ),
+    Declared(
+        "orders",
+        "Drehkraft nach Ordnungen",
+        "Amplitudes of the turning effort by order, periods per turn of the shaft.",
+        "harmonics",
+        "orders:torque_orders",
+    ),
+    Declared(
+        "modes",
+        "Eigenschwingungen der Welle",
+        "How far the masses of the shaft line turn in its first natural vibrations.",
+        "torsion",
+        "orders:shaft_modes",
     ),
     Declared(
         "free-vectors",
@@ -254,7 +268,7 @@ def _sources(case: Case, declared: Declared, wish: Wish) -> Iterator[tuple[Sourc
     from kurbel.report.pictures.source import Source
 
     if declared.command in _OF_MACHINE:
-        yield Source(getattr(case, _OF_MACHINE[declared.command]), wish.system, wish.fineness), ""
+        yield Source(_OF_MACHINE[declared.command](case), wish.system, wish.fineness), ""
     elif declared.command == "bearings":
         for part in case.bearings.parts:
             yield Source(part, wish.system, wish.fineness), part.name
@@ -267,5 +281,11 @@ def _sources(case: Case, declared: Declared, wish: Wish) -> Iterator[tuple[Sourc
                 yield Source(one, wish.system, wish.fineness, wish.angles), one.drive.name if several else ""
 
 
-_OF_MACHINE = {"flywheel": "flywheel", "stress": "strength", "balance": "balance"}
+_OF_MACHINE: dict[str, Callable[[Case], Any]] = {
+    "flywheel": lambda case: case.flywheel,
+    "stress": lambda case: case.strength,
+    "balance": lambda case: case.balance,
+    "harmonics": lambda case: case.harmonics(),
+    "torsion": lambda case: case.torsion,
+}
 """Command -> the result of a case that its pictures are drawn from; those of others are drawn of each cylinder."""
