@@ -30,9 +30,9 @@ def example(name: str | None, file_name: str | None) -> None:
     from kurbel.render.output import stdout_charset, stdout_width, write_stdout, write_text
 
     if name is not None:
-        write_text(_read(_known(name)), file_name)
+        write_text((_read(_known(name)),), file_name)
     elif file_name is not None:
-        write_text("".join(line + "\n" for line in entries(_listing(), Look())), file_name)
+        write_text((line + "\n" for line in entries(_listing(), Look())), file_name)
     else:
         look = Look(encoding=stdout_charset().encoding, width=stdout_width())
         write_stdout(line + "\n" for line in entries(_listing(), look))

@@ -186,7 +186,14 @@ _look_options = _stacked(
 )
 
 
-_SUFFIXES = {".csv": "csv", ".json": "json", ".md": "markdown", ".markdown": "markdown"}
+_SUFFIXES = {
+    ".csv": "csv",
+    ".json": "json",
+    ".md": "markdown",
+    ".markdown": "markdown",
+    ".html": "html",
+    ".tex": "latex",
+}
 
 
 def format_of(asked: str | None, file_name: str | None) -> str:

@@ -20,6 +20,7 @@ from kurbel.numerics.extreme import Extreme
 if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle
     from kurbel.mechanisms.coupler import Coupler
+    from kurbel.mechanisms.sketch import Sketch
 
 MECHANISMS = {
     "slider-crank": Record("kurbel.mechanisms.slider_crank:SliderCrank"),
@@ -85,8 +86,9 @@ class Mechanism(Described):
 
     A class without one of these is refused. All else has an answer here that a mechanism may better: `crank_angles_at`,
     the inverse of `coordinate`; `landmarks`, where its functions bend sharply; the connecting rod, the radial force;
-    closed extremes; `lacks` and `notes`. What only some mechanisms have (a swinging lever, a sliding block, a coupler)
-    they hand out as columns in OFFERS and key values in KEY_OFFERS. Nobody asks for the class of a mechanism.
+    closed extremes; `sketch`, what is drawn of it; `lacks` and `notes`. What only some mechanisms have (a swinging
+    lever, a sliding block, a coupler) they hand out as columns in OFFERS and key values in KEY_OFFERS. Nobody asks for
+    the class of a mechanism.
     """
 
     KEYS: ClassVar[Keys]
@@ -209,6 +211,10 @@ class Mechanism(Described):
 
     def coupler_at(self, angle: CrankAngle) -> Coupler | None:
         """Return how the connecting rod or coupler on the crank pin lies and turns, or None where there is none."""
+        return None
+
+    def sketch(self, angle: CrankAngle) -> Sketch | None:
+        """Return what is drawn of the mechanism at the crank angle, or None where that cannot be drawn."""
         return None
 
     @property

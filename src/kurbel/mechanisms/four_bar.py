@@ -16,6 +16,7 @@ from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, turning_column
 from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.four_bar_loop import Loop
+from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
 from kurbel.numerics.arithmetic import bearing
 from kurbel.numerics.extreme import Extreme
@@ -154,6 +155,18 @@ class FourBar(Mechanism):
     def coupler_length(self) -> float:
         """b in m."""
         return self.coupler
+
+    def sketch(self, angle: CrankAngle) -> Sketch:
+        """Return crank, coupler and rocker."""
+        sin, cos = self.loop.at(angle).direction
+        pivot = (self.frame, 0.0)
+        joints = {
+            SHAFT: (0.0, 0.0),
+            PIN: on_circle(self.crank, angle.cos, angle.sin),
+            "rocker pin": on_circle(self.rocker, cos, sin, pivot),
+            "pivot": pivot,
+        }
+        return Sketch(joints, ((SHAFT, PIN), (PIN, "rocker pin"), ("rocker pin", "pivot")), (SHAFT, "pivot"))
 
     def coupler_at(self, angle: CrankAngle) -> Coupler:
         """Return the coupler at the crank angle."""

@@ -15,6 +15,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
 from kurbel.mechanisms import crank_formulas as formulas
+from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.numerics.arithmetic import sqrt, where
 from kurbel.numerics.extreme import Extreme
 
@@ -196,6 +197,22 @@ class SliderCrank(Mechanism):
         sin_psi, cos_psi = self.rod_angle(angle)
         slope = formulas.rod_slope(angle.cos, cos_psi, self.lam)
         return Coupler(-sin_psi, cos_psi, -slope, -formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.lam))
+
+    def sketch(self, angle: CrankAngle) -> Sketch | None:
+        """Return crank, rod and crosshead, whose line runs e beside the shaft; of an infinite rod, None."""
+        if math.isinf(self.rod):
+            return None
+        pin, far = on_circle(self.crank, angle.cos, angle.sin), self.rod * self._reaches[0]
+        guide = ((far - self.stroke, self.offset), (far, self.offset))
+        return Sketch(
+            {SHAFT: (0.0, 0.0), PIN: pin, "crosshead": (far - self.coordinate(angle), self.offset)},
+            ((SHAFT, PIN), (PIN, "crosshead")),
+            (SHAFT,),
+            guides=(guide,),
+            output="crosshead",
+            toward=(-1.0, 0.0),
+            across=(0.0, -1.0),
+        )
 
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0."""

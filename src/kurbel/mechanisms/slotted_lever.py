@@ -14,6 +14,7 @@ from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
 from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area, sum_along
 from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
+from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import SWING_OFFERS, SWING_VALUES, Swing
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
@@ -189,6 +190,22 @@ class SlottedLever(Mechanism):
     def direction(self, angle: CrankAngle) -> tuple[Any, Any]:
         """Return (sin θ, cos θ) of the lever's tilt from the line of the pivots."""
         return self._lever_at(angle)[:2]
+
+    def sketch(self, angle: CrankAngle) -> Sketch:
+        """Return the crank with its block on the lever, and the ram on its line, which is upright where φ = 0 lies."""
+        lever, pivot = self._lever_at(angle), (-self.frame, 0.0)
+        length = 1.1 * (self.crank + self.frame) if self.lever is None else self.lever
+        end = on_circle(length, lever.cos, lever.sin, pivot)
+        joints = {SHAFT: (0.0, 0.0), PIN: on_circle(self.crank, angle.cos, angle.sin), "pivot": pivot, "end": end}
+        links: tuple[tuple[str, ...], ...] = ((SHAFT, PIN), ("pivot", "end"))
+        blocks, fixed = ((PIN, ("pivot", "end")),), (SHAFT, "pivot")
+        if not self.slides:
+            return Sketch(joints, links, fixed, blocks)
+        line = pivot[0] + (length if self._forked else self._height)
+        middle = 0.0 if self._forked else length * (self._middle + self.link / length)
+        joints["ram"] = (line, middle + self.coordinate(angle))
+        guide = ((line, middle - self.stroke / 2), (line, middle + self.stroke / 2))
+        return Sketch(joints, (*links, ("end", "ram")), fixed, blocks, (guide,), "ram", (0.0, 1.0))
 
     def swing_at(self, angle: CrankAngle) -> Swing:
         """Return θ, θ′ = r(r + e cos φ)/ρ² and θ″ = −r e (e² − r²) sin φ/ρ⁴, with ρ the pin's distance from the pivot.

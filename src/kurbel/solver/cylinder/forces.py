@@ -106,12 +106,17 @@ class CylinderForces(Results):
             raise AttributeError(f"no key value is called {id}")
         return answered(self.answering, quantity)
 
-    def at(self, degrees: Any) -> State:
+    def at(self, degrees: Any, within: Array | None = None) -> State:
         """Return every quantity at crank angles (n,) in degrees: `forces.at([0, 10]).T` in N, …
 
-        At a jump the value just after it is meant.
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
         """
-        return self.drive.at(crank_angles(degrees))
+        return self.drive.at(crank_angles(degrees), within)
+
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees between which every quantity is smooth."""
+        return self.grid.breaks
 
     @cached_property
     def grid(self) -> Grid:
