@@ -258,6 +258,7 @@ class SliderCrank(Mechanism):
         """Return the crank angles in degrees at which x (n,) in m is passed on the outstroke or the return stroke.
 
         From the triangle shaft, pin, crosshead by half angles, so that no digit is lost beside the dead centres.
+        Cards over the stroke ask it for every point, of every design of a sweep: a search takes fifty times as long.
         """
         import numpy as np
 
