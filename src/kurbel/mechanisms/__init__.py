@@ -172,9 +172,11 @@ class Mechanism(Described):
         inner, outer = (np.full_like(way, degrees) for degrees in self.dead_centres())
         ends = ((inner, -way), (outer, self.stroke - way))
         (low, f_low), (high, f_high) = ends if outstroke else (ends[1], (inner + 360.0, -way))
-        return bracketed_roots(
+        found = bracketed_roots(
             lambda degrees: self.coordinate(CrankAngle.of(degrees)) - self.start - way, low, high, f_low, f_high
         )
+        # beside a dead centre the rounding of the coordinate leaves 1e-6 degrees open
+        return np.where(f_low == 0, low, np.where(f_high == 0, high, found))
 
     def landmarks(self) -> tuple[float, ...]:
         """Return the crank angles in degrees, besides the dead centres, at which searches should split."""

@@ -62,16 +62,9 @@ class ScotchYoke(Mechanism):
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (pin_pressure(bound=200 * 98066.5),)
 
     @classmethod
-    def of_keys(
-        cls,
-        crank: float | None = None,
-        stroke: float | None = None,
-        guide_length: float | None = None,
-        pin_diameter: float | None = None,
-        pin_length: float | None = None,
-    ) -> ScotchYoke:
+    def of_keys(cls, crank: float | None = None, stroke: float = 0.0, **others: float) -> ScotchYoke:
         """Return the Scotch yoke that these keys of a machine file describe; raises RuleError."""
-        return cls(crank if crank is not None else (stroke or 0.0) / 2, guide_length, pin_diameter, pin_length)
+        return cls(stroke / 2 if crank is None else crank, **others)
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return the crank with its block in an upright yoke, and the rod that this moves."""

@@ -103,12 +103,13 @@ class SliderCrank(Mechanism):
         rod: float | None = None,
         rod_ratio: float | None = None,
         offset: float = 0.0,
+        **others: float,
     ) -> SliderCrank:
         """Return the slider-crank that these keys of a machine file describe; raises RuleError."""
         if crank is None:
             assert stroke is not None
             crank = _crank_of_stroke(stroke, rod, rod_ratio, offset)
-        return cls(crank, rod if rod is not None else crank * (rod_ratio or math.inf), offset)
+        return cls(crank, rod if rod is not None else crank * (rod_ratio or math.inf), offset, **others)
 
     def __post_init__(self) -> None:
         if not (0 < self.crank < math.inf and self.rod > 0 and math.isfinite(self.offset)):
@@ -258,6 +259,7 @@ class SliderCrank(Mechanism):
         """Return the crank angles in degrees at which x (n,) in m is passed on the outstroke or the return stroke.
 
         From the triangle shaft, pin, crosshead by half angles, so that no digit is lost beside the dead centres.
+        Cards over the stroke ask it for every point, of every design of a sweep: a search takes fifty times as long.
         """
         import numpy as np
 

@@ -316,33 +316,6 @@ class SlottedLever(Mechanism):
         _, frame, _ = self._shares
         return -self.crank * frame * angle.sin / self._lever_at(angle).reach
 
-    def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
-        """Return the crank angles in degrees at which x − start (n,) in m is passed.
-
-        Turning lever: φ = θ + arcsin(κ sin θ). Swinging: with sin α = sin θ/κ, φ = θ + α on the working stroke and
-        θ + 180° − α on the return. The fork head's x = (s/2) sin α keeps all digits beside the dead centres.
-        """
-        import numpy as np
-
-        kappa, half = self._kappa[0], self.stroke / 2
-        if not self.slides:
-            return self._turned_to(np.degrees(self.start + displacement), outstroke)
-        if self._forked:
-            sin, cos = (displacement - half) / half, np.sqrt(displacement * (self.stroke - displacement)) / half
-            main, shift = bearing(sin, cos), bearing(kappa * sin, self._cos_shift(sin, cos))
-            return main + shift if outstroke else 180.0 - main + shift
-        theta = self._ram.tilt_at(self._middle + (displacement - half) / self._end, outstroke or not self.rotates)
-        return self._turned_to(theta, outstroke)
-
-    def _turned_to(self, theta: Any, outstroke: bool) -> Any:
-        import numpy as np
-
-        kappa, tilt = self._kappa[0], CrankAngle.of(theta)
-        if self.rotates:
-            return theta + bearing(kappa * tilt.sin, self._cos_shift(tilt.sin, tilt.cos))
-        alpha = bearing(tilt.sin, np.sqrt(np.maximum((kappa - tilt.sin) * (kappa + tilt.sin), 0.0)))
-        return theta + alpha if outstroke else theta + 180.0 - alpha
-
     def landmarks(self) -> tuple[float, ...]:
         """Return 0° and 180°, and a widening fan round 180° where the pin comes near the pivot."""
         crank, frame, gap = self._shares
