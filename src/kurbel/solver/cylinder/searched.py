@@ -1,0 +1,179 @@
+"""The cycle of one cylinder, searched: extremes of every column, changes of sign, and the angles of a value."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from kurbel.machine.cylinder import may_lock
+from kurbel.mechanisms import quantities_of
+from kurbel.numerics.cycles import Flat
+from kurbel.numerics.extreme import largest, smallest
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, lasting, sign_changes, zeros
+from kurbel.solver.cylinder.drive import Drive
+from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.state import State
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, Indices
+
+
+_SURE = 4.0
+"""Standard deviations that the noise of thousands of samples does not reach."""
+
+
+class Where(NamedTuple):
+    """The crank angles in degrees at which a column has a value, ascending, and between which values in SI it moves."""
+
+    angles: tuple[float, ...]
+    span: tuple[float, float]
+
+
+class Quantities(NamedTuple):
+    """Columns of a drive with their slopes at any (degrees, within); see `search.Evaluate`."""
+
+    drive: Drive
+    names: tuple[str, ...]
+
+    def __call__(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        return self.of_state(self.drive.jets_at(degrees, within))
+
+    def of_state(self, state: State) -> dict[str, Sampled]:
+        """Return them in a state."""
+        return {name: Sampled.of(getattr(state, name), state.phi.shape) for name in self.names}
+
+    def of(self, variant: Indices) -> Quantities:
+        """Return the same of these variants (n,)."""
+        return self._replace(drive=self.drive.taken(variant))
+
+
+class Searched:
+    """Where the columns of a cylinder, or of many variants of it, are largest and smallest, and where they pass zero."""
+
+    def __init__(self, drive: Drive, motion: Motion) -> None:
+        self.drive = drive
+        self.motion = motion
+
+    @cached_property
+    def grid(self) -> Grid:
+        """The cycle in smooth pieces, cut also where the guide force changes sides, if friction makes that a kink."""
+        return self.cut_at_turns(self.drive.pieces)
+
+    def cut_at_turns(self, grid: Grid) -> Grid:
+        """Return a grid cut where the guide force changes sides, if that makes a kink."""
+        if not self.drive.rubs:
+            return grid
+        sense = self.quantities("guide_sense")
+        sampled = Quantities(self.drive.on(grid), sense.names)(grid.degrees, grid.within)
+        return grid.split_at(zeros(grid, sampled, sense)["guide_sense"])
+
+    def quantities(self, *names: str) -> Quantities:
+        """Return what gives these columns with their slopes."""
+        return Quantities(self.drive, names)
+
+    @cached_property
+    def samples(self) -> State:
+        """The state at the nodes of the grid."""
+        return self.drive.on(self.grid).jets_at(self.grid.degrees, self.grid.within, self.grid.beyond)
+
+    @cached_property
+    def curves(self) -> dict[str, Curve]:
+        """Every column that is declared to have extremes, as far as there is one."""
+        declared = quantities_of(self.drive.mechanism).all_columns
+        return self.searched(one.id for one in declared if "forces" in one.extremes)
+
+    def searched(self, columns: Iterable[str]) -> dict[str, Curve]:
+        """Return these columns as curves, as far as there are any."""
+        names = [name for name in columns if getattr(self.samples, name) is not None]
+        asked = self.quantities(*names)
+        return curves(self.grid, asked.of_state(self.samples), asked) if names else {}
+
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
+        if column == "S" and self.drive.rod:
+            # S of an exact rod stands between the masses at its ends: what it must bear is the force at its pins
+            return self._at_pins
+        curve = self.curves.get(column) if self.drive.has_force else None
+        return extremes_of(curve) if curve else self.motion.extremes_of(column)
+
+    def refuse_locking(self) -> None:
+        """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
+        if may_lock(self.drive.cylinder):
+            self.extremes_of("N")
+
+    @property
+    def _at_pins(self) -> Extremes | None:
+        """Largest and smallest force in N along an exact rod, of both pins."""
+        found = [one for end in ("S_crosshead", "S_crank") if (one := self.extremes_of(end))]
+        if not found:
+            return None
+        high, low = zip(*found, strict=True)
+        return Extremes(largest(*high), smallest(*low))
+
+    def angles_where(self, column: str, value: float) -> Where | None:
+        """Return the crank angles of the cycle at which a column passes a value in SI, or reaches it as its extreme.
+
+        None for a column that is left out. At a jump over the value it is the angle of the jump.
+        """
+        if getattr(self.samples, column) is None:
+            return None
+        whole, asked = self.searched((column,))[column], self.quantities(column)
+
+        def less(degrees: Array, within: Array) -> dict[str, Sampled]:
+            found = asked(degrees, within)[column]
+            return {column: Sampled(found.value - value, found.slope)}
+
+        passed = sign_changes(
+            self.grid, {column: whole._replace(value=whole.value - value)}, less, float(np.abs(whole.value).max())
+        )[column]
+        ends = extremes_of(whole)
+        reached = [one.degrees for one in ends if math.isclose(one.value, value, rel_tol=1e-14)]
+        return Where(tuple(sorted({*passed.tolist(), *reached})), (ends.smallest.value, ends.largest.value))
+
+    @cached_property
+    def phi_reversal(self) -> tuple[Any, ...] | None:
+        """Druckwechsel: crank angles in degrees at which P takes the other sign, through zero or by a jump.
+
+        Of those that are the noise of a trace alone the middle one stands for all. Of many variants one tuple each.
+        """
+        if self._reversals is None:
+            return None
+        if isinstance(self._reversals, Flat):
+            return self._reversals.of_each(self.drive.count or 0)
+        return tuple(lasting(self.curves["P"], self._reversals, _SURE * self._noise).tolist())
+
+    @property
+    def reversals_in_noise(self) -> int:
+        """How many changes of the sign of P are the noise of a trace alone, and not told."""
+        # without noise nothing is within it, and no reversal need be searched to tell so
+        return len(self._reversals) - len(self.phi_reversal or ()) if self._noise and self._reversals is not None else 0
+
+    @cached_property
+    def _reversals(self) -> Any:
+        force = self.curves.get("P") if self.drive.has_force else None
+        return None if force is None else sign_changes(self.grid, {"P": force}, self.quantities("P"))["P"]
+
+    @property
+    def _noise(self) -> float:
+        """Standard deviation in N of the noise that traces bring into P."""
+        return math.hypot(*(gas.noise for gas in self.drive.gas))
+
+    @cached_property
+    def lifted(self) -> tuple[tuple[float, float], ...]:
+        """Stretches of crank angle in degrees on which N presses on the upper guide, R p. 602.
+
+        Empty, too, where there is no guide, no N, or no inclination that says which guide is the lower one.
+        """
+        down, side = self.drive.down, self.curves.get("N") if self.drive.has_force else None
+        if side is None or not down or not (self.drive.mechanism.guided and self.drive.mechanism.has_rod):
+            return ()
+        turns = sign_changes(self.grid, {"N": side}, self.quantities("N"))["N"].tolist() or [0.0]
+        stretches = list(zip(turns, [*turns[1:], turns[0] + self.drive.cycle]))
+        middles = np.array([(start + end) / 2 for start, end in stretches])
+        pressing = np.asarray(self.drive.at(middles).N) * down
+        return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
