@@ -83,14 +83,19 @@ class Grid(Pieces):
         """Return angles (n,) found in the pieces of these rows, ascending; of many variants as `Flat`."""
         return np.sort(angles)
 
-    def slopes(self, value: Array) -> Array:
-        """Return the derivative by φ of the polynomials through values (…, pieces, nodes), of the same shape."""
+    @property
+    def widest(self) -> float:
+        """The largest distance between two nodes of a piece, over half its width."""
+        return float(np.diff(self.nodes).max())
+
+    def slopes(self, value: Array, rows: Indices) -> Array:
+        """Return the derivatives by φ of the polynomials through values (k, nodes) on these pieces (k,)."""
         gaps = self.nodes[:, None] - self.nodes + np.eye(len(self.nodes))
         products = gaps.prod(axis=1)
         matrix = products[:, None] / products / gaps
         np.fill_diagonal(matrix, 0.0)
         np.fill_diagonal(matrix, -matrix.sum(axis=1))
-        return np.asarray((value @ matrix.T) / self.half_widths[:, None])
+        return np.asarray((value @ matrix.T) / self.half_widths[rows, None])
 
     def other(self) -> Grid:
         """Return the same cycle in other pieces: each cut in two unequal ones."""

@@ -98,84 +98,155 @@ def extremes(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dic
 
     samples: the quantities on the grid, (pieces, nodes).
     """
-    return {name: extremes_of(curve) for name, curve in curves(grid, samples, evaluate).items()}
+    worth = {name: _may_be_extreme(grid, sampled) for name, sampled in samples.items()}
+    return {name: extremes_of(curve) for name, curve in curves(grid, samples, evaluate, worth).items()}
 
 
 def zeros(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
     """Return the angles of `sign_changes` of quantities of which no extremes are wanted."""
-    near = np.stack([_near_zero(grid, sampled) for sampled in samples.values()])
-    return sign_changes(grid, curves(grid, samples, evaluate, near), evaluate, size)
+    worth = {name: _may_be_zero(grid, sampled) for name, sampled in samples.items()}
+    return sign_changes(grid, curves(grid, samples, evaluate, worth), evaluate, size)
 
 
-def curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, worth: Any = True) -> dict[str, Curve]:
-    """Return several quantities as curves; what they do between two nodes is searched where `worth` holds.
+def curves(
+    grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, worth: dict[str, Worth] | None = None
+) -> dict[str, Curve]:
+    """Return several quantities as curves; of pieces that are not worth a search only their ends.
 
-    samples: the quantities on the grid, (pieces, nodes); worth: (quantities, pieces, nodes − 1).
+    samples: the quantities on the grid, (pieces, nodes).
     """
-    brackets = _slope_brackets(grid, np.stack([sampled.slope for sampled in samples.values()]), evaluate, worth)
+    asked = [_slopes(grid, sampled, worth[name] if worth else None) for name, sampled in samples.items()]
+    brackets = _slope_brackets(grid, asked, evaluate)
     peaks = _roots(grid, brackets, evaluate, "slope")
     heights = _at(grid, brackets, evaluate, "value")(peaks) if len(peaks) else peaks
     return {
-        name: _with_peaks(grid, sampled.value, brackets, peaks, heights, brackets.owner == k)
+        name: _with_peaks(grid, sampled.value, asked[k].rows, brackets, peaks, heights, brackets.owner == k)
         for k, (name, sampled) in enumerate(samples.items())
     }
 
 
-def _with_peaks(grid: Grid, value: Array, brackets: _Brackets, peaks: Array, heights: Array, own: Flags) -> Curve:
-    """Return the values (pieces, nodes) as a curve with those of the peaks (n,) that are its own, each in its place."""
-    nodes = value.shape[1]
-    place = brackets.row[own] * nodes + brackets.node[own] + 1
-    order = np.lexsort((peaks[own], place))
-    into = place[order]
-    parts = (grid.degrees, peaks), (np.repeat(np.arange(len(value)), nodes), brackets.row), (value, heights)
-    degrees, row, values = (np.insert(at_nodes, into, at_peaks[own][order]) for at_nodes, at_peaks in parts)
-    first = grid.first * nodes
-    return Curve(degrees, row, values, first + np.searchsorted(into, first, side="right"), grid)
+class Worth(NamedTuple):
+    """Where a quantity is worth a search: rows (k,) of pieces, and flags (k, nodes − 1) of the intervals in them."""
+
+    rows: Indices
+    intervals: Any
 
 
-def _slope_brackets(grid: Grid, slope: Array, evaluate: Evaluate, worth: Any) -> _Brackets:
-    """Return where slopes (quantities, pieces, nodes) pass zero between two nodes, once or to and fro."""
-    ends = slope[..., :-1], slope[..., 1:]
-    # a zero at a node counts for the interval that it ends, so that it is found once
-    once = np.nonzero((((ends[0] < 0) & (ends[1] >= 0)) | ((ends[0] > 0) & (ends[1] <= 0))) & worth)
-    bends = grid.slopes(slope)
-    twice = np.nonzero(_dips(grid, slope, bends) & worth)
-    plain = _between(grid, once, *(end[once] for end in ends))
-    owner, rows, nodes = twice
-    if not len(owner):
-        return plain
-    share = bends[twice] / (bends[twice] - bends[owner, rows, nodes + 1])
-    over = _between(grid, twice, *(end[twice] for end in ends))
-    middle = over.low + share * (over.high - over.low)
-    f_middle = _at(grid, over, evaluate, "slope")(middle)
-    crossed = f_middle * over.f_low < 0
-    halves = over._replace(high=middle, f_high=f_middle), over._replace(low=middle, f_low=f_middle)
-    return _Brackets.joined((plain, *(_Brackets(*(part[crossed] for part in half)) for half in halves)))
+class _Slopes(NamedTuple):
+    """Slopes and their derivatives on the rows (k,) of pieces that are searched, (k, nodes), and which intervals are."""
+
+    rows: Indices
+    slope: Array
+    bends: Array
+    worth: Any
 
 
-def _dips(grid: Grid, slope: Array, bends: Array) -> Flags:
-    """Return the intervals between nodes in which the tangents to a slope of one sign at both ends meet beyond zero."""
-    width = np.radians(np.diff(grid.degrees))
-    low, high, bend, next_bend = slope[..., :-1], slope[..., 1:], bends[..., :-1], bends[..., 1:]
-    toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0)
-    gap = np.where(toward, bend - next_bend, 1.0)
-    lowest = low + bend * (high - low - next_bend * width) / gap
-    return np.asarray(toward & (lowest * low <= 0))
+def _slopes(grid: Grid, sampled: Sampled, worth: Worth | None) -> _Slopes:
+    rows, intervals = worth or Worth(np.arange(len(sampled.slope)), True)
+    slope = sampled.slope[rows]
+    return _Slopes(rows, slope, grid.slopes(slope, rows), intervals)
 
 
-def _between(grid: Grid, index: tuple[Any, ...], f_low: Array, f_high: Array) -> _Brackets:
-    owner, rows, nodes = index
-    return _Brackets(owner, grid.degrees[rows, nodes], grid.degrees[rows, nodes + 1], rows, nodes, f_low, f_high)
-
-
-def _near_zero(grid: Grid, sampled: Sampled) -> Flags:
-    """Return the intervals (pieces, nodes − 1) in which a quantity may reach zero and turn back.
+def _reach(grid: Grid, sampled: Sampled) -> Array:
+    """Return what values in a piece (pieces,) may at most differ by from those at the nodes beside them.
 
     Slope times width is four times what a parabola with these slopes rises above its ends.
     """
-    value, slope = np.abs(sampled.value), np.abs(sampled.slope)
-    reach = np.maximum(slope[:, :-1], slope[:, 1:]) * np.radians(np.diff(grid.degrees))
-    return np.asarray(np.minimum(value[:, :-1], value[:, 1:]) <= reach)
+    steepest = np.maximum(sampled.slope.max(axis=1), -sampled.slope.min(axis=1))
+    return np.asarray(steepest * grid.half_widths * grid.widest)
+
+
+def _between_nodes(grid: Grid, sampled: Sampled, rows: Indices) -> tuple[Array, Array, Array]:
+    """Return values at both ends of the intervals of these rows, and the reach in each, (k, nodes − 1)."""
+    value, slope = sampled.value[rows], np.abs(sampled.slope[rows])
+    widths = grid.half_widths[rows][:, None] * np.diff(grid.nodes)
+    return value[:, :-1], value[:, 1:], np.maximum(slope[:, :-1], slope[:, 1:]) * widths
+
+
+def _may_be_extreme(grid: Grid, sampled: Sampled) -> Worth:
+    """Return where a quantity may be larger or smaller than at every node of its variant."""
+    reach, high, low = _reach(grid, sampled), sampled.value.max(axis=1), sampled.value.min(axis=1)
+    pieces = np.diff(np.append(grid.first, len(high)))
+    top = np.repeat(np.maximum.reduceat(high, grid.first), pieces)
+    bottom = np.repeat(np.minimum.reduceat(low, grid.first), pieces)
+    rows = np.flatnonzero((high + reach >= top) | (low - reach <= bottom))
+    before, after, rise = _between_nodes(grid, sampled, rows)
+    above = np.maximum(before, after) + rise >= top[rows][:, None]
+    return Worth(rows, above | (np.minimum(before, after) - rise <= bottom[rows][:, None]))
+
+
+def _may_be_zero(grid: Grid, sampled: Sampled) -> Worth:
+    """Return where a quantity may reach zero, and turn back or not."""
+    reach = _reach(grid, sampled)
+    rows = np.flatnonzero((sampled.value.min(axis=1) <= reach) & (sampled.value.max(axis=1) >= -reach))
+    before, after, rise = _between_nodes(grid, sampled, rows)
+    return Worth(rows, np.minimum(np.abs(before), np.abs(after)) <= rise)
+
+
+def _with_peaks(
+    grid: Grid, value: Array, rows: Indices, brackets: _Brackets, peaks: Array, heights: Array, own: Flags
+) -> Curve:
+    """Return the values (pieces, nodes) as a curve with those of the peaks (n,) that are its own, each in its place.
+
+    rows: of the pieces of which all nodes stand in it; of the others their ends do.
+    """
+    kept = np.zeros(value.shape, dtype=bool)
+    kept[:, 0] = kept[:, -1] = True
+    kept[rows] = True
+    standing = np.flatnonzero(kept)
+    nodes = value.shape[1]
+    place = np.searchsorted(standing, brackets.row[own] * nodes + brackets.node[own]) + 1
+    order = np.lexsort((peaks[own], place))
+    into = place[order]
+    parts = (grid.degrees.ravel()[standing], peaks), (standing // nodes, brackets.row), (value.ravel()[standing], heights)
+    degrees, row, values = (np.insert(at_nodes, into, at_peaks[own][order]) for at_nodes, at_peaks in parts)
+    first = np.searchsorted(standing, grid.first * nodes)
+    return Curve(degrees, row, values, first + np.searchsorted(into, first, side="right"), grid)
+
+
+def _slope_brackets(grid: Grid, asked: list[_Slopes], evaluate: Evaluate) -> _Brackets:
+    """Return where slopes pass zero between two nodes, once or to and fro."""
+    plain = _Brackets.joined(_crossing(grid, k, one) for k, one in enumerate(asked))
+    over, share = zip(*(_dips(grid, k, one) for k, one in enumerate(asked)), strict=True)
+    twice = _Brackets.joined(over)
+    if not len(twice.low):
+        return plain
+    middle = twice.low + np.concatenate(share) * (twice.high - twice.low)
+    f_middle = _at(grid, twice, evaluate, "slope")(middle)
+    crossed = f_middle * twice.f_low < 0
+    halves = twice._replace(high=middle, f_high=f_middle), twice._replace(low=middle, f_low=f_middle)
+    return _Brackets.joined((plain, *(_Brackets(*(part[crossed] for part in half)) for half in halves)))
+
+
+def _crossing(grid: Grid, owner: int, asked: _Slopes) -> _Brackets:
+    before, after = asked.slope[:, :-1], asked.slope[:, 1:]
+    # a zero at a node counts for the interval that it ends, so that it is found once
+    once = (((before < 0) & (after >= 0)) | ((before > 0) & (after <= 0))) & asked.worth
+    return _between(grid, owner, asked, *np.nonzero(once))
+
+
+def _dips(grid: Grid, owner: int, asked: _Slopes) -> tuple[_Brackets, Array]:
+    """Return the intervals in which the tangents to a slope of one sign at both ends meet beyond zero.
+
+    Also where between the ends a line through its derivatives there is zero, (n,) as a share of the way.
+    """
+    ends = (part[:, side] for part in (asked.slope, asked.bends) for side in (slice(-1), slice(1, None)))
+    low, high, bend, next_bend = ends
+    toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0) & asked.worth
+    rows, nodes = np.nonzero(toward)
+    low, high, bend, next_bend = (part[rows, nodes] for part in (low, high, bend, next_bend))
+    width = grid.half_widths[asked.rows[rows]] * np.diff(grid.nodes)[nodes]
+    lowest = low + bend * (high - low - next_bend * width) / (bend - next_bend)
+    beyond = lowest * low <= 0
+    share = bend / (bend - next_bend)
+    return _between(grid, owner, asked, rows[beyond], nodes[beyond]), share[beyond]
+
+
+def _between(grid: Grid, owner: int, asked: _Slopes, places: Indices, nodes: Indices) -> _Brackets:
+    rows = asked.rows[places]
+    f_low, f_high = asked.slope[places, nodes], asked.slope[places, nodes + 1]
+    owners = np.full(len(rows), owner)
+    return _Brackets(owners, grid.degrees[rows, nodes], grid.degrees[rows, nodes + 1], rows, nodes, f_low, f_high)
 
 
 def _at(grid: Grid, brackets: _Brackets, evaluate: Evaluate, part: str) -> Callable[[Array], Array]:
@@ -266,11 +337,11 @@ def _first_at(curve: Curve, best: Array, size: Array, sign: float) -> Extreme:
     high = np.flatnonzero(curve.value * sign >= level)
     # ... and what only lies beside a summit, as high but for that, is none
     owner = np.searchsorted(curve.first, high, side="right") - 1
-    following = curve.following
-    preceding = np.empty_like(following)
-    preceding[following] = np.arange(len(following))
+    first, end = curve.first[owner], np.append(curve.first[1:], len(curve.value))[owner]
+    following = np.where(high + 1 == end, first, high + 1)
+    preceding = np.where(high == first, end - 1, high - 1)
     value, slack = curve.value[high] * sign, 4 * np.finfo(float).eps * np.abs(best)[owner]
-    beside = np.maximum(curve.value[following[high]] * sign, curve.value[preceding[high]] * sign)
+    beside = np.maximum(curve.value[following] * sign, curve.value[preceding] * sign)
     summit = high[value >= beside - slack]
     degrees = np.full(len(best), np.inf)
     np.minimum.at(degrees, owner[value >= beside - slack], curve.degrees[summit])

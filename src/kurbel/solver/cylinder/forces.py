@@ -14,7 +14,6 @@ from kurbel.mechanisms import quantities_of
 from kurbel.numerics.arithmetic import every, total, where
 from kurbel.numerics.extreme import Extreme, largest, smallest
 from kurbel.numerics.grid import Pieces, integral
-from kurbel.numerics.search import extremes_of
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.searched import Searched
@@ -67,7 +66,7 @@ class CylinderForces(Searched, Results):
         """Largest gauge pressure in Pa at either end of the cylinder's own piston."""
         if not self.drive.own_gas:
             return None
-        return largest(*(extremes_of(curve).largest for curve in self.searched(("p_head", "p_crank")).values()))
+        return largest(*(one.largest for one in self.extremes_over(("p_head", "p_crank")).values()))
 
     def offered(self, id: str) -> Any:
         """Return a key value that the mechanism offers."""

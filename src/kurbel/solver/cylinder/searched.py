@@ -14,7 +14,17 @@ from kurbel.mechanisms import quantities_of
 from kurbel.numerics.cycles import Flat
 from kurbel.numerics.extreme import largest, smallest
 from kurbel.numerics.grid import Grid
-from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, lasting, sign_changes, zeros
+from kurbel.numerics.search import (
+    Curve,
+    Extremes,
+    Sampled,
+    curves,
+    extremes,
+    extremes_of,
+    lasting,
+    sign_changes,
+    zeros,
+)
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.state import State
@@ -82,24 +92,32 @@ class Searched:
         return self.drive.on(self.grid).jets_at(self.grid.degrees, self.grid.within, self.grid.beyond)
 
     @cached_property
-    def curves(self) -> dict[str, Curve]:
-        """Every column that is declared to have extremes, as far as there is one."""
+    def _extremes(self) -> dict[str, Extremes]:
+        """Those of every column that is declared to have extremes, as far as there is one."""
         declared = quantities_of(self.drive.mechanism).all_columns
-        return self.searched(one.id for one in declared if "forces" in one.extremes)
+        return self.extremes_over(one.id for one in declared if "forces" in one.extremes)
 
-    def searched(self, columns: Iterable[str]) -> dict[str, Curve]:
-        """Return these columns as curves, as far as there are any."""
-        names = [name for name in columns if getattr(self.samples, name) is not None]
-        asked = self.quantities(*names)
-        return curves(self.grid, asked.of_state(self.samples), asked) if names else {}
+    def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
+        """Return the extremes in SI of these columns, as far as there are any."""
+        asked = self.quantities(*(name for name in columns if getattr(self.samples, name) is not None))
+        return extremes(self.grid, asked.of_state(self.samples), asked) if asked.names else {}
+
+    def _whole(self, column: str) -> Curve:
+        asked = self.quantities(column)
+        return curves(self.grid, asked.of_state(self.samples), asked)[column]
+
+    def _changes(self, column: str) -> Any:
+        """The crank angles in degrees at which a column takes the other sign."""
+        asked = self.quantities(column)
+        return zeros(self.grid, asked.of_state(self.samples), asked)[column]
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
         if column == "S" and self.drive.rod:
             # S of an exact rod stands between the masses at its ends: what it must bear is the force at its pins
             return self._at_pins
-        curve = self.curves.get(column) if self.drive.has_force else None
-        return extremes_of(curve) if curve else self.motion.extremes_of(column)
+        found = self._extremes.get(column) if self.drive.has_force else None
+        return found or self.motion.extremes_of(column)
 
     def refuse_locking(self) -> None:
         """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
@@ -122,7 +140,7 @@ class Searched:
         """
         if getattr(self.samples, column) is None:
             return None
-        whole, asked = self.searched((column,))[column], self.quantities(column)
+        whole, asked = self._whole(column), self.quantities(column)
 
         def less(degrees: Array, within: Array) -> dict[str, Sampled]:
             found = asked(degrees, within)[column]
@@ -145,7 +163,9 @@ class Searched:
             return None
         if isinstance(self._reversals, Flat):
             return self._reversals.of_each(self.drive.count or 0)
-        return tuple(lasting(self.curves["P"], self._reversals, _SURE * self._noise).tolist())
+        if not self._noise:
+            return tuple(self._reversals.tolist())
+        return tuple(lasting(self._whole("P"), self._reversals, _SURE * self._noise).tolist())
 
     @property
     def reversals_in_noise(self) -> int:
@@ -155,8 +175,7 @@ class Searched:
 
     @cached_property
     def _reversals(self) -> Any:
-        force = self.curves.get("P") if self.drive.has_force else None
-        return None if force is None else sign_changes(self.grid, {"P": force}, self.quantities("P"))["P"]
+        return self._changes("P") if self.drive.has_force and self.samples.P is not None else None
 
     @property
     def _noise(self) -> float:
@@ -169,10 +188,10 @@ class Searched:
 
         Empty, too, where there is no guide, no N, or no inclination that says which guide is the lower one.
         """
-        down, side = self.drive.down, self.curves.get("N") if self.drive.has_force else None
+        down, side = self.drive.down, self.samples.N if self.drive.has_force else None
         if side is None or not down or not (self.drive.mechanism.guided and self.drive.mechanism.has_rod):
             return ()
-        turns = sign_changes(self.grid, {"N": side}, self.quantities("N"))["N"].tolist() or [0.0]
+        turns = self._changes("N").tolist() or [0.0]
         stretches = list(zip(turns, [*turns[1:], turns[0] + self.drive.cycle]))
         middles = np.array([(start + end) / 2 for start, end in stretches])
         pressing = np.asarray(self.drive.at(middles).N) * down

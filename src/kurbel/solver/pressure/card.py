@@ -68,13 +68,18 @@ class ProcessPressure:
 
     def _at_corners(self, share: Any, angle: CrankAngle, segment: Indices) -> Any:
         """Return the stroke fractions, at corners those of the card: their angles are rounded, lines may be steep."""
-        turned = within_cycle(angle.degrees, self.setting.cycle)
+        degrees, value = angle.degrees, getattr(share, "value", share)
+        # of a piece of a grid only the first and the last node may stand at a corner
+        at = np.s_[:, :: degrees.shape[1] - 1] if segment.shape != degrees.shape else np.s_[:]
+        turned, own = within_cycle(degrees[at], self.setting.cycle), value[at]
         begins = np.abs(turned - self._places.angles[segment]) <= _ROUNDING
         ends = np.abs(turned - self._ends[segment]) <= _ROUNDING
-        if not (begins.any() or ends.any()):
+        moved = np.where(begins, self._z[segment], np.where(ends, self._next_z[segment], own)) - own
+        if not moved.any():
             return share
-        value = getattr(share, "value", share)
-        return share + (np.where(begins, self._z[segment], np.where(ends, self._next_z[segment], value)) - value)
+        apart = np.zeros_like(value)
+        apart[at] = moved
+        return share + apart
 
     def _curved(self, straight: Any, share: Any, segment: Indices) -> Any:
         """Return P (V/V′)^n less the ambient on polytropic segments, and the straight value elsewhere."""
