@@ -128,6 +128,11 @@ class SliderCrank(Mechanism):
         return f"{rod} {relation} the crank ({crank}); the crank turns fully only with a longer rod"
 
     @property
+    def has_rod(self) -> bool:
+        """Always."""
+        return True
+
+    @property
     def rod_length(self) -> float:
         """L in m, `math.inf` for the infinite rod."""
         return self.rod
