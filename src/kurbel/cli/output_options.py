@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -109,7 +109,9 @@ class Output(NamedTuple):
         write_report(report, self.look, self.file_name)
 
 
-def _stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    """Return one decorator for several options, in their order."""
+
     def decorate(command: Command) -> Command:
         for option in reversed(options):
             command = option(command)
@@ -126,10 +128,10 @@ set_option = click.option(
     shell_complete=complete_override,
     help="This value instead of that of FILE, such as cylinders.0.bore='450 mm'; may be repeated.",
 )
-machine_file = _stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_option)
+machine_file = stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_option)
 """The machine file, or - for standard input, and values over those in it."""
 
-angle_options = _stacked(
+angle_options = stacked(
     click.option(
         "--step", type=Number(), default=10.0, metavar="DEGREES", help="Step of the crank angle; 10 if not given."
     ),
@@ -146,7 +148,7 @@ columns_option = click.option(
     help="Only these columns, by id or symbol, in this order.",
     shell_complete=complete_columns,
 )
-_part_options = _stacked(
+_part_options = stacked(
     click.option(
         "--cylinder", metavar="NAME", help="Only the results of this cylinder.", shell_complete=complete_cylinder
     ),
@@ -158,7 +160,7 @@ units_option = click.option(
     help="metric: mm, bar, kN, the default of tables and markdown; technical: mm, kgf, at, as the old books; "
     "imperial: in, lbf, psi; si: the default of csv and json.",
 )
-_look_options = _stacked(
+_look_options = stacked(
     click.option(
         "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
     ),
@@ -188,10 +190,10 @@ _look_options = _stacked(
 _SUFFIXES = {".csv": "csv", ".json": "json", ".md": "markdown", ".markdown": "markdown"}
 
 
-def format_of(asked: str | None, file_name: str | None) -> str:
+def format_of(asked: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES) -> str:
     """Return the format that is asked for, or that of the suffix of the file; UsageError where the two contradict."""
     dot = (file_name or "").rfind(".")
-    of_suffix = _SUFFIXES.get(file_name[dot:].lower()) if file_name else None
+    of_suffix = suffixes.get(file_name[dot:].lower()) if file_name else None
     if asked and of_suffix and asked != of_suffix:
         raise click.UsageError(
             f"--format {asked} contradicts the name {file_name}, which says {of_suffix}; change one of them."
@@ -296,6 +298,6 @@ def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
         asked = Asked(file, overrides, step, angles, columns, system, cylinder, key_values_only, output)
         command(asked=asked, **others)
 
-    return _stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
+    return stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
         output_options(with_asked)
     )

@@ -94,12 +94,18 @@ def _kept(quantity: Quantity, bound: float, value: float) -> tuple[str, str, boo
     """Judge by a bound: a `_min` may not fall below it, all else may not exceed it; of a residual the size counts."""
     name, unit = quantity.id, getattr(bound, "unit", "")
     lower, bars = name.endswith("_min"), "|" if name.endswith("_residual") else ""
-    excess = bound - value if lower else (abs(value) if bars else value) - bound
-    broken = excess > _ROUNDING * abs(bound)
+    broken = breaks(name, bound, value)
     relation = ("<" if broken else "≥") if lower else (">" if broken else "≤")
     size = f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else f"{bars}{_shown(value, quantity.kind, unit)}{bars}"
     text = f"{size} {relation} {_shown(bound, quantity.kind, unit)}"
     return text, "BROKEN" if broken else "kept", not broken
+
+
+def breaks(id: str, bound: float, value: float) -> bool:
+    """Return whether a key value breaks its bound: a `_min` falls below it, all else exceeds it."""
+    magnitude = abs(value) if id.endswith("_residual") else value
+    excess = bound - value if id.endswith("_min") else magnitude - bound
+    return excess > _ROUNDING * abs(bound)
 
 
 def _met(quantity: Quantity, figure: Expected, value: float) -> tuple[str, str, bool]:
