@@ -230,7 +230,7 @@ class TestReversalsInTheNoise:
         text = f"{{speed: 60 rpm, crank: 400 mm, rod: 2 m, bore: 450 mm, indicator: {card}}}"
         plain = Case(loads(text)).cylinders[0]
         assert plain.reversals_in_noise == 0
-        assert not vars(plain).keys() & {"_reversals", "_curves"}
+        assert not vars(plain).keys() & {"_reversals", "_extremes"}
 
     def test_changes_in_a_band_lead_on_or_back(self) -> None:
         """Above, thrice through zero within the band, below; then to zero and back below; then above again."""

@@ -298,6 +298,4 @@ def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
         asked = Asked(file, overrides, step, angles, columns, system, cylinder, key_values_only, output)
         command(asked=asked, **others)
 
-    return stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
-        output_options(with_asked)
-    )
+    return stacked(machine_file, angle_options, columns_option, _part_options, units_option)(output_options(with_asked))

@@ -41,7 +41,9 @@ _what_is_told = stacked(
     click.option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only rows with 'c_max < 5 m/s'."),
     click.option("--sort", metavar="ID", help="The smallest of this column first; -ID: the largest."),
     click.option("--top", type=click.IntRange(1), metavar="N", help="Only the first N rows of --sort."),
-    click.option("--pareto", type=Words(), metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."),
+    click.option(
+        "--pareto", type=Words(), metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."
+    ),
     click.option("--summary", is_flag=True, help="Quantiles, and rank correlation with every input, instead of rows."),
 )
 _where_it_goes = stacked(
@@ -52,9 +54,13 @@ _where_it_goes = stacked(
     click.option("--resume", is_flag=True, help="Go on where the --output file of an interrupted run ends."),
 )
 _who_computes = stacked(
-    click.option("--shard", metavar="K/N", help="Only this part of the rows; all parts one after another are the whole."),
+    click.option(
+        "--shard", metavar="K/N", help="Only this part of the rows; all parts one after another are the whole."
+    ),
     click.option("--jobs", "-j", type=click.IntRange(1), default=1, metavar="N", help="Processes; 1 if not given."),
-    click.option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster that computes, such as tcp://node:8786."),
+    click.option(
+        "--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster that computes, such as tcp://node:8786."
+    ),
     click.option("--yes", is_flag=True, help="Compute more than ten million rows."),
 )
 

@@ -17,7 +17,6 @@ from kurbel.machine_file.overrides import read_override
 from kurbel.machine_file.reader import read_machine
 from kurbel.machine_file.source import Source
 
-
 _MOST_KNOWN = 10_000
 """Values of keys that are kept beside their texts."""
 

@@ -1,4 +1,4 @@
-"""Which rows of a sweep are kept: by conditions, as the best ones, as those that no other one betters; and a summary."""
+"""Which rows of a sweep are kept: by conditions, as the best, as those that no other one betters; and a summary."""
 
 from __future__ import annotations
 
@@ -47,7 +47,9 @@ def read_condition(text: str, heads: Sequence[Head]) -> Condition:
     """Return what `c_max < 5 m/s` says; raises UsageError."""
     found = _CONDITION.fullmatch(plain(text).strip())
     if not found:
-        raise UsageError(f"--where: expected a column, a relation and a value, such as 'c_max < 5 m/s', got {shown(text)!r}")
+        raise UsageError(
+            f"--where: expected a column, a relation and a value, such as 'c_max < 5 m/s', got {shown(text)!r}"
+        )
     place = place_of(found[1].strip(), heads, "--where")
     head, written = heads[place], found[3].strip()
     if not head.kind:
@@ -68,7 +70,9 @@ def place_of(name: str, heads: Sequence[Head], option: str) -> int:
     """Return which column a name is; raises UsageError."""
     ids = [one.id for one in heads]
     if name not in ids:
-        raise UsageError(f"{option}: no column '{shown(name)}'{did_you_mean(name, tuple(ids))} (there are {', '.join(ids)})")
+        raise UsageError(
+            f"{option}: no column '{shown(name)}'{did_you_mean(name, tuple(ids))} (there are {', '.join(ids)})"
+        )
     return ids.index(name)
 
 

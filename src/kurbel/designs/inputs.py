@@ -61,7 +61,9 @@ def read_input(text: str) -> Input:
     if call := _CALL.fullmatch(values):
         return Input(key, (), *_distribution(text, call[1], call[2]))
     if call := _UNKNOWN_CALL.fullmatch(values):
-        raise _refused(text, f"no distribution '{shown(call[1])}'; known are normal(mean, deviation), uniform(least, most)")
+        raise _refused(
+            text, f"no distribution '{shown(call[1])}'; known are normal(mean, deviation), uniform(least, most)"
+        )
     if ":" in values and "," not in values and NUMBER.match(values):
         return Input(key, _range(text, values))
     return Input(key, _with_unit([part.strip() for part in values.split(",")], text))
@@ -100,7 +102,9 @@ def _range(text: str, values: str) -> tuple[str, ...]:
     if not step or (last - first) / step < 0:
         raise _refused(text, f"a range from {first} by steps of {step} never reaches {last}")
     if (last - first) / step >= MOST_VALUES:
-        raise _refused(text, f"this range has {int((last - first) / step) + 1} values; no key has more than {MOST_VALUES}")
+        raise _refused(
+            text, f"this range has {int((last - first) / step) + 1} values; no key has more than {MOST_VALUES}"
+        )
     unit = units.pop() if units else ""
     return tuple(f"{first + step * i:f} {unit}".rstrip() for i in range(int((last - first) / step) + 1))
 

@@ -66,7 +66,9 @@ class Plan:
         combination, point = divmod(row, self._sample or 1)
         found = {}
         for one in reversed(self._listed):
-            combination, place = (combination, combination) if self._side_by_side else divmod(combination, len(one.texts))
+            combination, place = (
+                (combination, combination) if self._side_by_side else divmod(combination, len(one.texts))
+            )
             found[one.key] = one.texts[place]
         for column, one in enumerate(self._drawn):
             found[one.key] = one.text(float(self._points[point, column]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -44,10 +44,10 @@ def sobol(count: int, width: int, seed: int) -> Array:
     if width > len(_DIRECTIONS) + 1:
         raise UsageError(f"--sobol: {width} distributions; the sequence is known for {len(_DIRECTIONS) + 1} here")
     shift = np.random.default_rng(seed).integers(0, 2**_BITS, width, dtype=np.uint64)
-    return np.asarray((_digits(count, width) ^ shift).astype(float) + 0.5) / 2.0**_BITS
+    return np.asarray((np.bitwise_xor(_digits(count, width), shift).astype(float) + 0.5) / 2.0**_BITS)
 
 
-def _digits(count: int, width: int) -> Array:
+def _digits(count: int, width: int) -> Any:
     """Return the points as whole numbers below 2³², in the order of the Gray code (Antonov and Saleev)."""
     change = np.arange(count, dtype=np.uint64)
     change = change ^ (change >> np.uint64(1))
@@ -55,7 +55,7 @@ def _digits(count: int, width: int) -> Array:
     for column in range(width):
         for bit, direction in enumerate(_direction_numbers(column)):
             found[:, column] ^= np.where((change >> np.uint64(bit)) & np.uint64(1), np.uint64(direction), np.uint64(0))
-    return found  # type: ignore[return-value]
+    return found
 
 
 def _direction_numbers(column: int) -> list[int]:

@@ -19,7 +19,7 @@ from kurbel.machine import Machine
 from kurbel.machine_file.source import Source
 from kurbel.numerics.extreme import Extreme
 
-CHUNK = 1000
+CHUNK = 2000
 """Rows that are computed together: what memory holds at once."""
 _FIRST = 20
 """Rows of the first chunk, so that a reader sees something at once."""
@@ -73,7 +73,7 @@ class Row(NamedTuple):
 
 
 class Sweep:
-    """Rows of one machine; heads: what stands over their values. Raises UsageError or MachineFileError where it is none."""
+    """Rows of one machine; heads: what stands over their values. Raises UsageError for what makes none."""
 
     def __init__(self, spec: Spec) -> None:
         self.spec = spec
@@ -99,7 +99,9 @@ class Sweep:
                 return Binder(self.spec.source, self.spec.overrides, keys, self.plan.texts(row))
             except MachineFileError as error:
                 failed = failed or error
-        raise UsageError(str(failed).replace("--set ", "--vary ")) if failed else UsageError("there is no row to compute")
+        raise (
+            UsageError(str(failed).replace("--set ", "--vary ")) if failed else UsageError("there is no row to compute")
+        )
 
     @cached_property
     def heads(self) -> tuple[Head, ...]:
@@ -153,7 +155,9 @@ class Sweep:
         if isinstance(found, str):
             blank = [None] * (len(self.heads) - len(inputs))
             return Row(row + 1, (*inputs, *blank), None, "", found)
-        values = [part for one, unit, value in zip(self.asked, self._units, found) for part in self._shown(one, unit, value)]
+        values = [
+            part for one, unit, value in zip(self.asked, self._units, found) for part in self._shown(one, unit, value)
+        ]
         broken = self._broken(found[len(self.asked) :])
         return Row(row + 1, (*inputs, *values), not broken if self.limited else None, broken)
 

@@ -60,7 +60,7 @@ def _processes(jobs: int) -> Iterator[Callable[..., Any]]:
 @contextmanager
 def _cluster(address: str) -> Iterator[tuple[Callable[..., Any], int]]:
     try:
-        from distributed import Client
+        from distributed import Client  # type: ignore[import-not-found, unused-ignore]
     except ImportError:
         raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
     try:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import is_dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
     from kurbel.arrays import Indices
-
-Item = TypeVar("Item")
 
 
 class Chambers(NamedTuple):
@@ -25,12 +23,12 @@ class Chambers(NamedTuple):
         return self.each[0].cycles  # type: ignore[no-any-return]
 
 
-def taken(record: Item, index: Indices) -> Item:
+def taken(record: Any, index: Indices) -> Any:
     """Return a record of many variants with the numbers of these ones, of the shape of the index."""
     if isinstance(record, np.ndarray):
         return record[index]
     if isinstance(record, tuple) and not hasattr(record, "_fields"):
-        return tuple(taken(one, index) for one in record)  # type: ignore[return-value]
+        return tuple(taken(one, index) for one in record)
     if not is_dataclass(record) or count_of(record) is None:
         return record
     return record_of(record, {name: taken(value, index) for name, value in vars(record).items()})
@@ -41,7 +39,7 @@ def count_of(record: Any) -> int | None:
     if isinstance(record, np.ndarray):
         return len(record)
     if isinstance(record, Chambers):
-        return len(record.which)
+        return None if record.which is None else len(record.which)
     parts = record if isinstance(record, tuple) else vars(record).values() if is_dataclass(record) else ()
     return next((count for part in parts if (count := count_of(part)) is not None), None)
 

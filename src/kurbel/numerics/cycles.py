@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -38,8 +39,7 @@ class Flat(NamedTuple):
         """Return the numbers of each of so many variants."""
         ends = np.searchsorted(self.variant, np.arange(count + 1)).tolist()
         values = self.values.tolist()
-        return tuple(tuple(values[start:end]) for start, end in zip(ends, ends[1:]))
-
+        return tuple(tuple(values[start:end]) for start, end in pairwise(ends))
 
     @classmethod
     def alike(cls, values: Array, count: int) -> Flat:
@@ -92,6 +92,12 @@ class Cycles(Grid):
         """Return what was found of every variant (v,)."""
         return values
 
+    def piece_at(self, angles: Array, variant: Indices | None) -> Indices:
+        """Return the pieces (n,) that hold angles (n,) of these variants, or begin there."""
+        assert self.variant is not None
+        assert variant is not None
+        return located(Flat(self.variant, self.low), variant, angles)
+
     def in_order(self, angles: Array, rows: Indices) -> Any:
         """Return angles (n,) found in the pieces of these rows, ascending, variant by variant."""
         assert self.variant is not None
@@ -111,7 +117,7 @@ class Cycles(Grid):
 
 
 def cycles_of_turns(landmarks: Iterable[Any], cycle: float, jumps: Iterable[Any], count: int) -> Cycles:
-    """Return the cycles (360 or 720 deg) of so many variants, of which every turn is cut at the landmarks, and each 45°.
+    """Return the cycles (360 or 720 deg) of so many variants, every turn cut at the landmarks, and every 45°.
 
     landmarks: floats, or arrays (v,), nan where a variant has none; jumps: further angles in the cycle, (n,) or
     `Flat`.

@@ -49,7 +49,7 @@ class Pieces:
         """Half the width of each piece in radians, (pieces,)."""
         return np.asarray(np.radians(self.high - self.low) / 2)
 
-    def integral(self, value: Array) -> Any:
+    def integral(self, value: Array) -> float:
         """Return ∫ value dφ (φ in radians) over all pieces by the rule, of every variant; value (pieces, nodes)."""
         return float(self.half_widths @ (value @ self.weights))
 
@@ -78,6 +78,10 @@ class Grid(Pieces):
     def told(self, values: Array) -> Any:
         """Return what was found of every variant (v,), or of the only machine as a number."""
         return float(values[0])
+
+    def piece_at(self, angles: Array, variant: Indices | None) -> Indices:
+        """Return the pieces (n,) that hold angles (n,) of these variants, or begin there."""
+        return np.searchsorted(self.low, angles, side="right") - 1
 
     def in_order(self, angles: Array, rows: Indices) -> Any:
         """Return angles (n,) found in the pieces of these rows, ascending; of many variants as `Flat`."""

@@ -88,6 +88,11 @@ class _Brackets(NamedTuple):
     f_low: Array
     f_high: Array
 
+    def where(self, flags: Flags) -> _Brackets:
+        """Return those for which a flag (n,) is set."""
+        parts: list[Any] = [part[flags] for part in self]
+        return _Brackets(*parts)
+
     @classmethod
     def joined(cls, parts: Iterable[_Brackets]) -> _Brackets:
         return cls(*map(np.concatenate, zip(*parts, strict=True)))
@@ -133,7 +138,7 @@ class Worth(NamedTuple):
 
 
 class _Slopes(NamedTuple):
-    """Slopes and their derivatives on the rows (k,) of pieces that are searched, (k, nodes), and which intervals are."""
+    """Slopes and their derivatives on the pieces (k,) that are searched, (k, nodes), and which intervals are."""
 
     rows: Indices
     slope: Array
@@ -198,7 +203,11 @@ def _with_peaks(
     place = np.searchsorted(standing, brackets.row[own] * nodes + brackets.node[own]) + 1
     order = np.lexsort((peaks[own], place))
     into = place[order]
-    parts = (grid.degrees.ravel()[standing], peaks), (standing // nodes, brackets.row), (value.ravel()[standing], heights)
+    parts = (
+        (grid.degrees.ravel()[standing], peaks),
+        (standing // nodes, brackets.row),
+        (value.ravel()[standing], heights),
+    )
     degrees, row, values = (np.insert(at_nodes, into, at_peaks[own][order]) for at_nodes, at_peaks in parts)
     first = np.searchsorted(standing, grid.first * nodes)
     return Curve(degrees, row, values, first + np.searchsorted(into, first, side="right"), grid)
@@ -215,7 +224,7 @@ def _slope_brackets(grid: Grid, asked: list[_Slopes], evaluate: Evaluate) -> _Br
     f_middle = _at(grid, twice, evaluate, "slope")(middle)
     crossed = f_middle * twice.f_low < 0
     halves = twice._replace(high=middle, f_high=f_middle), twice._replace(low=middle, f_low=f_middle)
-    return _Brackets.joined((plain, *(_Brackets(*(part[crossed] for part in half)) for half in halves)))
+    return _Brackets.joined((plain, *(half.where(crossed) for half in halves)))
 
 
 def _crossing(grid: Grid, owner: int, asked: _Slopes) -> _Brackets:
@@ -290,7 +299,9 @@ def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: 
 def _turns(owner: int, curve: Curve, size: float | None) -> tuple[_Brackets, Indices]:
     """Return the brackets of the changes of sign inside pieces, and the rows of the pieces that begin with one."""
     magnitude = np.abs(curve.value)
-    noise = _ROUNDING * (np.maximum.reduceat(magnitude, curve.first) if size is None else np.full(len(curve.first), size))
+    noise = _ROUNDING * (
+        np.maximum.reduceat(magnitude, curve.first) if size is None else np.full(len(curve.first), size)
+    )
     kept = np.flatnonzero(magnitude > curve.of_each(noise))
     beginning = np.searchsorted(kept, curve.first)
     begun = beginning[np.diff(np.append(beginning, len(kept))) > 0]  # of what has any sign at all

@@ -1,4 +1,4 @@
-"""Where the rows of a sweep go: whole lines at a time, the first ones at once, so that an interrupted run keeps its own."""
+"""Where the rows of a sweep go: whole lines, the first ones at once, so that an interrupted run keeps its own."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from itertools import islice
-from typing import Any, BinaryIO
+from typing import Any
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
@@ -27,9 +27,7 @@ class SweepOutput:
     resume: go on at the end of the file. Raises UsageError for a file of another sweep.
     """
 
-    def __init__(
-        self, titles: Titles, look: Look, file_name: str | None, rows: range, resume: bool = False
-    ) -> None:
+    def __init__(self, titles: Titles, look: Look, file_name: str | None, rows: range, resume: bool = False) -> None:
         self.titles = titles
         self._file_name = None if file_name == "-" else file_name
         self._look = look if self._file_name else look._replace(encoding=stdout_look().encoding)
@@ -55,7 +53,7 @@ class SweepOutput:
         return WRITERS[self._look.format](self.titles, rows, self._look)
 
     @contextmanager
-    def _opened(self) -> Iterator[BinaryIO]:
+    def _opened(self) -> Iterator[Any]:
         try:
             if self._file_name is None:
                 sys.stdout.flush()
@@ -65,7 +63,7 @@ class SweepOutput:
             with open(self._file_name, mode) as file:
                 file.seek(self._resumed)
                 file.truncate()
-                yield file  # type: ignore[misc]
+                yield file
         except BrokenPipeError:
             silence(sys.stdout)
         except OSError as error:
@@ -74,7 +72,7 @@ class SweepOutput:
 
     def _write_parquet(self, rows: Iterable[Any]) -> None:
         try:
-            import pyarrow
+            import pyarrow  # type: ignore[import-not-found, unused-ignore]
             from pyarrow import parquet
         except ImportError:
             raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
@@ -153,4 +151,3 @@ def _number_of(line: str, look: Look) -> int | None:
         return int(line.partition(";" if look.comma else ",")[0])
     except (ValueError, KeyError, TypeError):
         return None
-

@@ -68,7 +68,6 @@ def json_rows(titles: Titles, rows: Iterable[Any], look: Look) -> Iterator[str]:
     """Yield one object a line, whose keys are the heads of csv."""
     names = titles.whole
     for row in rows:
-        values = titles.values(row)
         told = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
         found = {name: told.get(name, value) for name, value in zip(names, titles.values(row))}
         yield json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"

@@ -34,7 +34,7 @@ class Record(Form):
 
             module, name = self.target.split(":")
             self._class = getattr(import_module(module), name)
-        return self._class  # type: ignore[return-value]
+        return self._class
 
     @property
     def keys(self) -> Keys:

@@ -49,12 +49,8 @@ class Drive:
         other.gas = tuple(gas.taken(index) for gas in self.gas)
         return other
 
-    def on(self, grid: Grid) -> Drive:
-        """Return the drive for all angles of a grid: of many variants with the numbers of each piece."""
-        return self if grid.variant is None else self.taken(grid.variant[:, None])
-
     @cached_property
-    def omega(self) -> Any:
+    def omega(self) -> float | None:
         """Angular velocity in rad/s, None where no speed is given."""
         return None if self.machine.speed is None else 2 * math.pi * self.machine.speed
 

@@ -14,6 +14,7 @@ from kurbel.mechanisms import quantities_of
 from kurbel.numerics.arithmetic import every, total, where
 from kurbel.numerics.extreme import Extreme, largest, smallest
 from kurbel.numerics.grid import Pieces, integral
+from kurbel.solver.cylinder.assembled import Assembled
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.searched import Searched
@@ -66,7 +67,8 @@ class CylinderForces(Searched, Results):
         """Largest gauge pressure in Pa at either end of the cylinder's own piston."""
         if not self.drive.own_gas:
             return None
-        return largest(*(one.largest for one in self.extremes_over(("p_head", "p_crank")).values()))
+        gas = self.drive.own_gas
+        return largest(*(end.highest for end in (gas.head, gas.crank) if end))
 
     def offered(self, id: str) -> Any:
         """Return a key value that the mechanism offers."""
@@ -155,7 +157,9 @@ class CylinderForces(Searched, Results):
     def power(self) -> Any:
         """Indicated power in W; None without a speed or at rest."""
         speed = self.drive.machine.speed
-        return None if self.work is None or speed is None or every(speed == 0) else self.work * speed / self.drive.revolutions
+        if self.work is None or speed is None or every(speed == 0):
+            return None
+        return self.work * speed / self.drive.revolutions
 
     @cached_property
     def mean_pressure(self) -> Any:
@@ -272,9 +276,10 @@ class CylinderForces(Searched, Results):
         if self.work_left is None:
             return None
         turnover = self.grid.integral(np.abs(self.samples.M.value))
-        pieces = self.cut_at_turns(self.drive.pieces.other())
+        pieces = self.drive.pieces.other()
+        if self.drive.rubs:
+            pieces = self.cut_at_turns(Assembled(self.drive, pieces))
         return float(integral(pieces, self._torque) - self.work_left) / turnover if turnover else 0.0
 
     def _torque(self, pieces: Pieces) -> Array:
         return np.asarray(State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond)).M)
-

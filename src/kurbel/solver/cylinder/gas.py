@@ -48,7 +48,7 @@ class PistonGas:
 
     @property
     def starts(self) -> list[Any]:
-        """The crank angles (n,) in degrees in the cylinder's cycle at which each pressure bends or jumps; or `Flat`s."""
+        """The crank angles (n,) in degrees of the cylinder's cycle at which each pressure bends or jumps, or `Flat`."""
         ends = [end.starts for end in (self.head, self.crank) if end]
         return [later(starts, turn * self._cycle) for turn in range(self.repeats) for starts in ends]
 
@@ -96,7 +96,8 @@ class PistonGas:
     def noise(self) -> float:
         """Standard deviation in N of the noise that traces bring into the force."""
         ends = ((self.head, self.piston.head_area), (self.crank, self.piston.crank_area))
-        return math.hypot(*(end.noise * area for end, area in ends if hasattr(end, "noise")))
+        noises = [getattr(end, "noise", None) for end, _ in ends]
+        return math.hypot(*(noise * area for noise, (_, area) in zip(noises, ends) if noise))
 
     @property
     def swept_volume(self) -> Any:

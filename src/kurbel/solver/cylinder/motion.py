@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -113,9 +114,7 @@ class Motion:
     def _acceleration(self) -> Extremes:
         return self._extremes(_curvature, 2, self.mechanism.acceleration_extremes())
 
-    def _extremes(
-        self, function: Kinematic, order: int, closed: tuple[Extreme, ...] = ()
-    ) -> Extremes:
+    def _extremes(self, function: Kinematic, order: int, closed: tuple[Extreme, ...] = ()) -> Extremes:
         """Return the extremes over a turn of a function of the crank angle times ω^order; closed: where it has them."""
         # a power would raise where a product is inf, which is refused by name
         scale = math.prod((0.0 if self.omega is None else self.omega,) * order)
@@ -197,7 +196,7 @@ class Motion:
             return tuple(angles if self._count is None else map(tuple, angles))
         evaluate = _Evaluated(self.mechanism, _curvature)
         found = zeros(self._turn, evaluate.on(self._turn), evaluate)["it"]
-        return tuple(found.tolist()) if self._count is None else found.of_each(self._count)  # type: ignore[no-any-return]
+        return tuple(found.tolist()) if self._count is None else found.of_each(self._count)
 
 
 Kinematic = Callable[[Any, CrankAngle], Any]
@@ -208,7 +207,8 @@ def _curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
     return mechanism.curvature(angle)
 
 
-class _Evaluated(NamedTuple):
+@dataclass(frozen=True)
+class _Evaluated:
     """A function of the mechanism with its slope; see `search.Evaluate`."""
 
     mechanism: Mechanism
@@ -219,7 +219,7 @@ class _Evaluated(NamedTuple):
 
     def of(self, variant: Indices) -> _Evaluated:
         """Return the same of these variants."""
-        return self._replace(mechanism=taken(self.mechanism, variant))
+        return replace(self, mechanism=taken(self.mechanism, variant))
 
     def on(self, grid: Grid) -> dict[str, Sampled]:
         """Return it at the nodes of a grid."""

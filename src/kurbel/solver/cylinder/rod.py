@@ -26,9 +26,7 @@ class ExactRod:
     square to it onto the guide; None where weights are left out.
     """
 
-    def __init__(
-        self, rod: ConnectingRod, length: Any, crank: Any, omega: Any, incline: CrankAngle | None
-    ) -> None:
+    def __init__(self, rod: ConnectingRod, length: Any, crank: Any, omega: Any, incline: CrankAngle | None) -> None:
         self.length = length
         self.crank = crank
         self.omega = 0.0 if omega is None else omega

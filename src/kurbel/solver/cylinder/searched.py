@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -25,9 +25,9 @@ from kurbel.numerics.search import (
     sign_changes,
     zeros,
 )
+from kurbel.solver.cylinder.assembled import Assembled
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
-from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
@@ -44,7 +44,8 @@ class Where(NamedTuple):
     span: tuple[float, float]
 
 
-class Quantities(NamedTuple):
+@dataclass(frozen=True)
+class Quantities:
     """Columns of a drive with their slopes at any (degrees, within); see `search.Evaluate`."""
 
     drive: Drive
@@ -53,17 +54,17 @@ class Quantities(NamedTuple):
     def __call__(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         return self.of_state(self.drive.jets_at(degrees, within))
 
-    def of_state(self, state: State) -> dict[str, Sampled]:
+    def of_state(self, state: Any) -> dict[str, Sampled]:
         """Return them in a state."""
         return {name: Sampled.of(getattr(state, name), state.phi.shape) for name in self.names}
 
     def of(self, variant: Indices) -> Quantities:
         """Return the same of these variants (n,)."""
-        return self._replace(drive=self.drive.taken(variant))
+        return replace(self, drive=self.drive.taken(variant))
 
 
 class Searched:
-    """Where the columns of a cylinder, or of many variants of it, are largest and smallest, and where they pass zero."""
+    """Where the columns of a cylinder, or of many variants of it, are largest, smallest, and zero."""
 
     def __init__(self, drive: Drive, motion: Motion) -> None:
         self.drive = drive
@@ -72,34 +73,39 @@ class Searched:
     @cached_property
     def grid(self) -> Grid:
         """The cycle in smooth pieces, cut also where the guide force changes sides, if friction makes that a kink."""
-        return self.cut_at_turns(self.drive.pieces)
+        return self.cut_at_turns(self._uncut) if self.drive.rubs else self.drive.pieces
 
-    def cut_at_turns(self, grid: Grid) -> Grid:
-        """Return a grid cut where the guide force changes sides, if that makes a kink."""
-        if not self.drive.rubs:
-            return grid
+    @cached_property
+    def _uncut(self) -> Assembled:
+        """The state at the nodes of the smooth pieces, before they are cut where the guide force changes sides."""
+        return Assembled(self.drive, self.drive.pieces, (*self._together, "guide_sense"))
+
+    @cached_property
+    def _together(self) -> tuple[str, ...]:
+        """The columns that are declared to have extremes, and what the work at the crosshead is made of."""
+        declared = quantities_of(self.drive.mechanism).all_columns
+        rubbing = ("crosshead_power",) if self.drive.rubs and self.drive.has_force else ()
+        return (*(one.id for one in declared if "forces" in one.extremes), *rubbing)
+
+    def cut_at_turns(self, samples: Assembled) -> Grid:
+        """Return the grid of samples cut where the guide force changes sides."""
         sense = self.quantities("guide_sense")
-        sampled = Quantities(self.drive.on(grid), sense.names)(grid.degrees, grid.within)
-        return grid.split_at(zeros(grid, sampled, sense)["guide_sense"])
+        return samples.grid.split_at(zeros(samples.grid, sense.of_state(samples), sense)["guide_sense"])
 
     def quantities(self, *names: str) -> Quantities:
         """Return what gives these columns with their slopes."""
         return Quantities(self.drive, names)
 
     @cached_property
-    def samples(self) -> State:
+    def samples(self) -> Assembled:
         """The state at the nodes of the grid."""
-        return self.drive.on(self.grid).jets_at(self.grid.degrees, self.grid.within, self.grid.beyond)
+        return Assembled(self.drive, self.grid, self._together, self._uncut if self.drive.rubs else None)
 
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
         """Those of every column that is declared to have extremes, as far as there is one."""
-        declared = quantities_of(self.drive.mechanism).all_columns
-        return self.extremes_over(one.id for one in declared if "forces" in one.extremes)
-
-    def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
-        """Return the extremes in SI of these columns, as far as there are any."""
-        asked = self.quantities(*(name for name in columns if getattr(self.samples, name) is not None))
+        named = (name for name in self._together if name != "crosshead_power")
+        asked = self.quantities(*(name for name in named if getattr(self.samples, name) is not None))
         return extremes(self.grid, asked.of_state(self.samples), asked) if asked.names else {}
 
     def _whole(self, column: str) -> Curve:

@@ -50,7 +50,7 @@ class State(OfPoint):
         return reduce(mul, found) * factor if found else factor
 
     @property
-    def omega(self) -> float | None:
+    def omega(self) -> Any:
         """Angular velocity in rad/s."""
         return self.drive.omega
 

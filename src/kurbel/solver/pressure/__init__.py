@@ -15,6 +15,7 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.variants import Chambers, count_of, taken
 from kurbel.mechanisms import Mechanism
+from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
@@ -63,12 +64,21 @@ class Pressure(Protocol):
         """Crank angles in degrees of a turn at which a quadrature should split."""
         ...
 
+    @property
+    def highest(self) -> Extreme:
+        """The highest gauge pressure in Pa, and the first crank angle in degrees of the cycle that has it."""
+        ...
+
     def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
         """Return the gauge pressure in Pa at crank angles (n,), where the displacement is x (n,) in m.
 
         within: angles (n,) in degrees inside the segment that is meant, so that each side of a jump can be asked for.
         With a jet for x the pressure is a jet too.
         """
+        ...
+
+    def taken(self, index: Indices) -> Pressure:
+        """Return the pressure of these of many variants, at angles of the shape of the index."""
         ...
 
     @property

@@ -15,6 +15,7 @@ from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.indicator import STROKES, Card, Line
 from kurbel.mechanisms import fan
 from kurbel.numerics.arithmetic import sqrt, where
+from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.jet import once_each
 from kurbel.solver.pressure import Setting
 from kurbel.solver.pressure.places import segments_over
@@ -101,6 +102,11 @@ class ProcessPressure:
         flat = curvature == 0
         bent = sqrt(2 * self._clearance * self._stroke / where(flat, 1.0, curvature)) * (180 / math.pi)
         return fan(dead_centre, where(flat, 0.0, bent))
+
+    @property
+    def highest(self) -> Extreme:
+        """The highest gauge pressure in Pa, and the first crank angle that has it: at an end of a segment."""
+        return self._places.highest(self.setting.base)
 
     @cached_property
     def area(self) -> Any:

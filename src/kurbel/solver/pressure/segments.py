@@ -16,16 +16,17 @@ if TYPE_CHECKING:
 
 
 class Segment(NamedTuple):
-    """Part of a line between two stroke fractions z, where the pressures p (Pa) are given.
+    """Part of a line between two stroke fractions z, where the pressures p (Pa) are given;
+    numbers, or those of many segments (n,).
 
     exponent: n of p V^n = const between them, with absolute pressures; 0 for a straight line.
     """
 
-    z: float
-    p: float
-    next_z: float
-    next_p: float
-    exponent: float = 0.0
+    z: Any
+    p: Any
+    next_z: Any
+    next_p: Any
+    exponent: Any = 0.0
 
 
 Stroke = tuple[Segment, ...]
@@ -67,7 +68,7 @@ class Processes(NamedTuple):
     each: tuple[Process, ...]
     which: Indices | None = None
 
-    def count(self, setting: Setting) -> int | None:
+    def variants(self, setting: Setting) -> int | None:
         """Return of how many variants they are in this setting; None where all have the same."""
         return count_of(setting.mechanism) if self.which is None else len(self.which)
 
