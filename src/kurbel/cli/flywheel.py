@@ -5,12 +5,13 @@ from __future__ import annotations
 import click
 
 from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import Asked, machine_table
+from kurbel.cli.output_options import Asked, machine_table, uncertainty_option
 
 
 @click.command(short_help="Turning effort, flywheel and speed line of the machine.", epilog=exit_statuses(NO_SOLUTION))
 @machine_table
-def flywheel(asked: Asked) -> None:
+@uncertainty_option
+def flywheel(asked: Asked, spreads: tuple[tuple[str, str], ...]) -> None:
     """Print the turning effort of the whole machine, its excess work, and what the flywheel makes of it.
 
     Every cylinder counts at the angle of its crank; T is referred to the radius of crank 1, T_b is the share of the
@@ -21,4 +22,4 @@ def flywheel(asked: Asked) -> None:
 
     case = asked.case()
     angles = asked.crank_angles(360.0 * case.machine.revolutions)
-    asked.write(flywheel_report(case, angles, asked.columns, asked.units))
+    asked.write(flywheel_report(case, angles, asked.columns, asked.units), case, spreads)

@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from kurbel.declared.keys import Form
-from kurbel.declared.reading import REFUSED, Birth, Plain, Reading
+from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, shown
 from kurbel.errors import Fault, MachineFileError, Path, RuleError, UsageError, path_text
 from kurbel.machine import Machine
-from kurbel.machine_file.overrides import read_override
+from kurbel.machine_file.events import parse
+from kurbel.machine_file.overrides import overridden, read_override
 from kurbel.machine_file.reader import read_machine
 from kurbel.machine_file.source import Source
 
@@ -122,6 +123,25 @@ class Binder:
             return read_machine(self._source, self._set(texts))
         except MachineFileError as error:
             raise Unbound(_told(error.faults, ())) from None
+
+
+def written_texts(source: Source, overrides: Sequence[str], keys: Sequence[str]) -> list[str]:
+    """Return what a file has under these dotted keys; raises UsageError for a key under which no value stands."""
+    tree = parse(source.text, Reading(source.folder))
+    overridden(tree, [read_override(one) for one in overrides])
+    return [_written(tree, key) for key in keys]
+
+
+def _written(tree: Any, key: str) -> str:
+    node = tree
+    try:
+        for step in read_override(f"{key}=0").path:
+            node = node[step]
+    except (KeyError, IndexError, TypeError):
+        node = None
+    if not isinstance(node, str):
+        raise UsageError(f"uncertainty of {shown(key)}: no value stands under this key in the file")
+    return node
 
 
 def _owner(path: Path, births: list[Birth]) -> tuple[Birth, str]:

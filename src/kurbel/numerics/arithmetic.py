@@ -20,7 +20,7 @@ def sqrt(value: Any) -> Any:
 
 def where(condition: Any, value: Any, otherwise: Any) -> Any:
     """Return `value` where the condition holds and `otherwise` elsewhere; shapes as for numpy.where."""
-    if isinstance(condition, bool):
+    if not getattr(condition, "ndim", 0):
         return value if condition else otherwise
     for branch in (value, otherwise):
         if hasattr(branch, "where"):  # a Jet chooses value and slope together

@@ -54,7 +54,7 @@ class Places(NamedTuple):
         degrees: Any = np.minimum.reduceat(angle, first)
         if self.variant is not None:
             return Extreme(best - base, degrees)
-        return Extreme(best[0] - base + 0.0, float(degrees[0]))
+        return Extreme(float(best[0] - base) + 0.0, float(degrees[0]))
 
     def holding(self, angles: Array, variant: Indices | None) -> Indices:
         """Return the segments (…,) that hold angles in the cycle, of these variants."""
