@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -9,9 +10,13 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-# random examples have no deadline either
-settings.register_profile("untimed", deadline=None)
-settings.load_profile("untimed")
+# random examples have no deadline either; .ci/run draws four times as many
+settings.register_profile("brief", deadline=None, max_examples=25)
+settings.register_profile("thorough", deadline=None, max_examples=100)
+settings.load_profile("brief")
+
+# processes that the tests start are an installed kurbel's: they find it compiled, instead of compiling it each anew
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # a width in the environment (pytest-xdist sets one) is asked of every output, by contract
 os.environ.pop("COLUMNS", None)
@@ -22,8 +27,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--rewrite",
         action="store_true",
         help="write what the program prints now into tests/golden, the expected messages of bad machine files, the "
-        "README and docs/symbols.md; read the diff. Not with -n.",
+        "README and docs; read the diff. Not with -n.",
     )
+
+
+def pytest_collection_finish() -> None:
+    # what was collected stays; the collector need not look through it again and again
+    gc.freeze()
 
 
 @pytest.fixture

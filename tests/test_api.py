@@ -125,6 +125,47 @@ def test_all_columns_as_a_dict_of_arrays() -> None:
     assert "theta" not in case.cylinders[0].columns([0])
 
 
+@pytest.mark.parametrize("degrees", ["abc", "", [float("nan")], [0.0, math.inf], None, {"phi": 1}])
+def test_angles_that_are_none_are_refused_by_the_root_class(degrees: object) -> None:
+    case = kurbel.solve(kurbel.load(CONFIGS / "gas-engine.yaml"))
+    for results in (case.cylinders[0], case.flywheel, case.stress):
+        for ask in (results.columns, results.at):
+            with pytest.raises(kurbel.KurbelError, match="crank angles are"):
+                ask(degrees)  # type: ignore[operator, arg-type]
+
+
+def test_some_columns_by_id_or_symbol() -> None:
+    case = kurbel.solve(kurbel.load(CONFIGS / "gas-engine.yaml"))
+    (cylinder,) = case.cylinders
+    found, every = cylinder.columns([0, 30, 90], "T", "p_H"), cylinder.columns([0, 30, 90])
+    assert list(found) == ["phi", "T", "p_head"]
+    assert all(np.array_equal(values, every[id]) for id, values in found.items())
+    with pytest.raises(kurbel.KurbelError, match="no column 'P_inertai'; did you mean 'P_inertia'"):
+        cylinder.columns([0], "P_inertai")
+    with pytest.raises(kurbel.KurbelError, match="this machine has no S_crank: Force along an exact rod"):
+        cylinder.columns([0], "S_crank")
+
+
+def test_all_key_values_as_a_dict() -> None:
+    case = kurbel.solve(kurbel.load(CONFIGS / "gas-engine.yaml"))
+    for results in (case.cylinders[0], case.flywheel, case.stress):
+        values = results.key_values()
+        assert all(figure == results[id] for id, figure in values.items())
+        assert all(figure.value is not None for figure in values.values())
+        missing = set(results.lists.key_values(results.command)) - set(values)
+        for id in missing:
+            with pytest.raises(kurbel.KurbelError, match=f"this machine has no {id}"):
+                _ = results[id]
+
+
+def test_a_case_says_what_it_is() -> None:
+    case = kurbel.solve(kurbel.load(CONFIGS / "gas-engine.yaml"))
+    assert repr(case) == "<kurbel case 'Lying gas engine': .cylinders (1), .flywheel, .stress>"
+    assert repr(case.cylinders[0]) == "<kurbel forces of cylinder 1: ['id'], key_values(), columns(degrees)>"
+    assert repr(case.flywheel).startswith("<kurbel flywheel of the whole machine: ")
+    assert case.stress is case.strength
+
+
 def test_notebooks_show_tables_that_are_escaped() -> None:
     text = "{name: '<b>A&B</b>', " + (PLAIN % PRESSURE)[1:]
     case = kurbel.solve(kurbel.loads(text))

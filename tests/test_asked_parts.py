@@ -78,3 +78,28 @@ def test_what_does_not_exist_is_refused(arguments: tuple[str, ...], message: str
     asked = run(*arguments)
     assert asked.exit_code == 2
     assert message in asked.stderr
+
+
+NAMED = 'speed: 1 rpm\ncylinders: [{name: "2", crank: 1 m, rod: 5 m}, {name: left, crank: 2 m, rod: 9 m}]\n'
+
+
+@pytest.mark.parametrize("command", ["motion", "forces"])
+def test_a_cylinder_by_its_number(command: str) -> None:
+    for number in ("1", "4"):
+        by_name = run(command, FOUR, "--cylinder", f"cylinder {number}")
+        assert run(command, FOUR, "--cylinder", number).stdout == by_name.stdout
+    beyond = run(command, FOUR, "--cylinder", "5")
+    assert beyond.exit_code == 2
+    assert "no results of '5'; it has those of cylinder 1, cylinder 2, cylinder 3, cylinder 4" in beyond.stderr
+
+
+def test_a_number_that_is_another_ones_name_is_refused() -> None:
+    def asked(cylinder: str) -> Result:
+        return CliRunner().invoke(kurbel, ["motion", "-", "--cylinder", cylinder, "--key-values"], input=NAMED)
+
+    refused = asked("2")
+    assert refused.exit_code == 2
+    assert "'2' is the name of cylinder 1 and the number of 'left'; write '1' or 'left'" in refused.stderr
+    for cylinder, stroke in (("1", 2.0), ("left", 4.0)):
+        (line,) = (line.split() for line in asked(cylinder).stdout.splitlines() if line.startswith("  s "))
+        assert (float(line[1]), line[2]) == (1000 * stroke, "mm")

@@ -22,6 +22,10 @@ FITS: dict[str, Callable[[Machine], bool]] = {
     "forces": lambda machine: bool(machine.cylinders),
     "flywheel": lambda machine: True,
     "stress": lambda machine: machine.crankshaft is not None,
+    "balance": lambda machine: (
+        any(one.masses for one in machine.cylinders)
+        and not any(one.mechanism.quick_return for one in machine.cylinders)
+    ),
 }
 MECHANISM_OF = {
     "shaper": "slotted-lever",

@@ -98,7 +98,8 @@ def test_a_full_disk_leaves_the_old_file_whole(tmp_path: Path) -> None:
         "resource.setrlimit(resource.RLIMIT_FSIZE, (512, 512)); from kurbel.cli import main; main()"
     )
     (tmp_path / "out.csv").write_text("old")
-    arguments = [sys.executable, "-c", limited, "table", "-f", "csv", "-o", str(tmp_path / "out.csv")]
+    # -B: under such a limit Python would leave its compiled modules torn behind
+    arguments = [sys.executable, "-B", "-c", limited, "table", "-f", "csv", "-o", str(tmp_path / "out.csv")]
     result = subprocess.run(arguments, capture_output=True, check=False)
     assert (result.returncode, b"cannot write" in result.stderr) == (2, True)
     assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("out.csv", "old")]

@@ -21,6 +21,9 @@ from kurbel.machine.masses import Masses
 from kurbel.mechanisms import MECHANISMS, Mechanism, every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.forces import forces_report
+from kurbel.solver.balance.columns import BalanceColumns
+from kurbel.solver.balance.locomotive import LocomotiveBalance
+from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.motion import Motion
@@ -38,6 +41,7 @@ RESULTS = {
     "forces": (CylinderForces, Motion),
     "flywheel": (MachineTurning, ElasticCoupling),
     "stress": (CrankshaftStrength,),
+    "balance": (MachineBalance, LocomotiveBalance, BookBalance),
 }
 
 
@@ -51,7 +55,13 @@ def test_every_key_value_has_a_definition(command: str) -> None:
 
 @pytest.mark.parametrize(
     ("command", "results"),
-    [("motion", State), ("forces", State), ("flywheel", TurningColumns), ("stress", StrengthColumns)],
+    [
+        ("motion", State),
+        ("forces", State),
+        ("flywheel", TurningColumns),
+        ("stress", StrengthColumns),
+        ("balance", BalanceColumns),
+    ],
 )
 def test_every_common_column_has_a_definition(command: str, results: type) -> None:
     for id, column in COMMON.columns(command).items():

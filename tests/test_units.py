@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 from kurbel.cli import kurbel
 from kurbel.declared.numerals import parse_number
-from kurbel.declared.unit_systems import SI, SYSTEMS, convert, show, shown_unit
+from kurbel.declared.unit_systems import SI, SYSTEMS, convert, show, shown_unit, told_in
 from kurbel.declared.units import kinds, parse_quantity, unit_names
 from kurbel.errors import UnitError
+from kurbel.machine_file import load
+from kurbel.solver.case import Case
 
 G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
 
@@ -205,3 +208,35 @@ def test_kurbel_units_lists_every_unit_that_can_be_read() -> None:
         assert {"length": "mm", "pressure": "at", "speed": "rpm"}.get(kind, named[0]) in named
         for unit in named:
             assert parse_quantity(f"1 {unit}", kind) > 0
+
+
+@pytest.mark.parametrize(
+    ("words", "length", "metres", "force", "newtons"),
+    [
+        ((), "mm", 1e-3, "kN", 1e3),
+        (("--units", "technical"), "mm", 1e-3, "kgf", G),
+        (("--units", "imperial"), "in", 0.0254, "lbf", 0.45359237 * G),
+        (("--units", "si"), "m", 1.0, "N", 1.0),
+        (("-f", "json"), "mm", 1e-3, "kN", 1e3),
+    ],
+)
+def test_messages_are_told_in_the_units_asked_for(
+    words: tuple[str, ...], length: str, metres: float, force: str, newtons: float
+) -> None:
+    machine = Path(__file__).parent.parent / "configs" / "waterworks.yaml"
+    largest = Case(load(machine)).cylinders[0]["P_max"].value
+    for condition, expected, unit in (("x = 9 m", 0.8 / metres, length), ("P = 9 MN", largest / newtons, force)):
+        result = CliRunner().invoke(kurbel, ["forces", str(machine), "--where", condition, *words])
+        assert result.exit_code == 3
+        number, told = result.stderr.strip().rpartition(" to ")[2].split()
+        assert (float(number), told) == (pytest.approx(expected, rel=1e-5), unit)
+
+
+def test_the_units_of_one_run_are_not_those_of_the_next() -> None:
+    assert show(0.3, "length") == "300 mm"
+    with told_in("imperial"):
+        assert show(0.254, "length") == "10 in"
+        with told_in("si"):
+            assert show(0.3, "length") == "0.3 m"
+        assert show(0.254, "length") == "10 in"
+    assert show(0.3, "length") == "300 mm"

@@ -135,3 +135,7 @@ class NoSolutionError(KurbelError):
     """The machine as described does not run: it locks itself or stalls."""
 
     exit_status = 3
+
+
+class Nowhere(NoSolutionError):
+    """A column of one cylinder does not reach the value at which rows are sought; another cylinder's may."""

@@ -27,11 +27,12 @@ POUND, POUND_FORCE, FOOT = 0.45359237, 4.4482216152605, 0.3048
 SI = {
     **dict.fromkeys(("", "deg", "m", "m/s", "m/s2", "rad/s", "rad/s2", "kg", "kg m2", "N", "N m", "Pa"), 1.0),
     **{"mm": 1e-3, "cm": 1e-2, "in/s": FOOT / 12, "kN": 1e3, "kW": 1e3, "percent": 1e-2},
-    **{"lbf": POUND_FORCE, "lb ft2": POUND * FOOT**2, "ton": 2240 * POUND},
+    **{"lb": POUND, "lbf": POUND_FORCE, "lb ft2": POUND * FOOT**2, "ton": 2240 * POUND},
     **{"hp": 550 * FOOT * POUND_FORCE, "PS": 735.49875},
 }
 QUESTION = re.compile(
-    r"(?P<command>\w+) (?P<id>\w+)(?:\[(?P<nth>\d)\])?(?:(?P<at>@)(?P<angle>\d*))?(?: where (?P<where>.+))?"
+    r"(?P<command>\w+) (?:(?P<table>\w+)\.)?"
+    r"(?P<id>\w+)(?:\[(?P<nth>\d)\])?(?:(?P<at>@)(?P<angle>\d*))?(?: where (?P<where>.+))?"
 )
 
 
@@ -62,6 +63,9 @@ def told(row: dict[str, Any]) -> Any:
     asked = question(row)
     parsed = answer(row["file"], asked["command"] or "", asked["where"])
     parts = [{key.removeprefix("machine_"): what for key, what in parsed.items()}, *parsed.get("cylinders", ())]
+    if asked["table"]:
+        table = next(one for part in parts for one in part.get("place_tables", ()) if one["id"] == asked["table"])
+        return next(one for one in table["columns"] if one["id"] == asked["id"])["values"][int(asked["nth"] or 0)]
     kind = "columns" if asked["angle"] or asked["where"] else "key_values"
     one = next(one for part in parts for one in part.get(kind, ()) if one["id"] == asked["id"])
     if asked["angle"]:
@@ -78,7 +82,8 @@ def expected(row: dict[str, Any]) -> tuple[Any, Any]:
     figures = row.get("strict", row["exact"])
     figures = figures if isinstance(figures, list) else [figures]
     digits = 12 if "strict" in row else row.get("digits", 12)
-    last = [10.0 ** (math.floor(math.log10(abs(one))) + 1 - digits) for one in figures]
+    # nothing is to be nothing
+    last = [10.0 ** (math.floor(math.log10(abs(one))) + 1 - digits) if one else 0.0 for one in figures]
     return [factor * one + row.get("plus", 0) for one in figures], [abs(factor) * one for one in last]
 
 

@@ -87,9 +87,9 @@ def test_the_schema_states_the_sizes() -> None:
 @pytest.mark.parametrize(
     ("text", "note"),
     [
-        (ENGINE + "bore: 450 m\n", "a bore of 450000 mm is beyond anything built; is its unit right?"),
+        (ENGINE + "bore: 450 m\n", "a bore of 450 m is beyond anything built; is its unit right?"),
         (ENGINE.replace("60 rpm", "1e6 rpm"), "a speed of 1e+06 rpm is beyond anything built; is its unit right?"),
-        (ENGINE + "masses: {piston: 300000 t}\n", "a mass of 3e+08 kg in moving parts is beyond anything built"),
+        (ENGINE + "masses: {piston: 300000 t}\n", "a mass of 300000 t in moving parts is beyond anything built"),
     ],
 )
 def test_what_was_never_built_gets_a_note(text: str, note: str) -> None:

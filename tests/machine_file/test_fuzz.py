@@ -15,7 +15,9 @@ from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine import Machine
 from kurbel.machine_file import reader, source
 
-SETTINGS = settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+SETTINGS = settings(
+    max_examples=3 * settings.default.max_examples, suppress_health_check=[HealthCheck.too_slow], derandomize=True
+)
 INFINITE_BY_WORD = {"rod", "link"}  # `rod: infinite`
 SNIPPETS = [
     *(

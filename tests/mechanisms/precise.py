@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import mpmath as mp
 
@@ -14,6 +15,12 @@ DEGREE = mp.pi / 180
 
 def exact_angle(degrees):
     """A CrankAngle whose sine and cosine are mpmath numbers; `degrees` may be one, too."""
+    return _exact_angle(degrees, mp.mp.prec)
+
+
+@cache
+def _exact_angle(degrees, prec):
+    """Once for each precision in which it is asked: tests ask the same angles of many mechanisms."""
     turn = mp.mpf(degrees) / 180
     return CrankAngle(degrees, mp.sinpi(turn), mp.cospi(turn))
 

@@ -74,7 +74,6 @@ def linkages(draw):
 
 
 @given(linkages())
-@settings(max_examples=100, deadline=None)
 def test_the_loop_stays_closed_on_one_side(machine):
     angle = CrankAngle.of(np.linspace(0, 360, 91))
     sin, cos = machine.direction(angle)
@@ -88,7 +87,6 @@ def test_the_loop_stays_closed_on_one_side(machine):
 
 
 @given(linkages(), st.floats(0, 1), st.booleans())
-@settings(max_examples=100, deadline=None)
 def test_inverse_and_limits(machine, fraction, rising):
     low, high = machine.limits
     assert machine.swing == pytest.approx(high - low, rel=1e-9, abs=1e-12)
@@ -100,7 +98,6 @@ def test_inverse_and_limits(machine, fraction, rising):
 
 
 @given(linkages())
-@settings(max_examples=60, deadline=None)
 def test_transmission_angle_at_its_ends(machine):
     for extreme in machine.transmission:
         diagonal = machine.frame - machine.crank * math.cos(math.radians(extreme.degrees))
@@ -192,7 +189,7 @@ def test_loops_that_do_not_turn(lengths, message):
 
 
 @given(st.tuples(*[st.integers(1, 60)] * 4))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=3 * settings.default.max_examples)
 def test_grashof_decides(lengths):
     """Every linkage of whole centimetres is taken exactly when the triangle on its diagonal closes all round.
 

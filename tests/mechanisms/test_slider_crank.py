@@ -154,7 +154,7 @@ def test_extreme_sizes_stay_finite(crank, rod):
     st.floats(0, 1),
     st.booleans(),
 )
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=2 * settings.default.max_examples)
 def test_inverse_everywhere(lam, share, fraction, outstroke):
     machine = SliderCrank(lam, 1.0, share * (1 - lam))
     way = fraction * machine.stroke
@@ -165,7 +165,7 @@ def test_inverse_everywhere(lam, share, fraction, outstroke):
 
 
 @given(st.floats(0.01, 0.95), st.floats(-0.9, 0.9), st.floats(0, 360))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=2 * settings.default.max_examples)
 def test_the_mirrored_offset_runs_backwards(lam, share, degrees):
     offset = share * (1 - lam)
     ahead, behind = SliderCrank(lam, 1.0, offset), SliderCrank(lam, 1.0, -offset)

@@ -7,7 +7,7 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from precise import exact_angle
 
@@ -72,7 +72,6 @@ def test_working_and_return_angle():
 
 
 @given(st.floats(0.01, 0.99), st.floats(0, 360))
-@settings(max_examples=100, deadline=None)
 def test_crank_and_frame_trade_places_between_swinging_and_turning_lever(kappa, degrees):
     """The triangle shaft, pivot, pin with r and e exchanged: the two levers stand at θ and φ − θ."""
     swinging, turning = SlottedLever(kappa, 1.0, 1.0), SlottedLever(1.0, kappa, 1.0)

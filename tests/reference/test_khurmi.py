@@ -12,7 +12,8 @@ import pytest
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import crank_formulas as formulas
-from kurbel.mechanisms.four_bar import FourBar, Loop
+from kurbel.mechanisms.four_bar import FourBar
+from kurbel.mechanisms.four_bar_loop import Loop
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.solver.cylinder.motion import Motion

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms.four_bar import Loop
+from kurbel.mechanisms.four_bar_loop import Loop
 from kurbel.mechanisms.slider_crank import SliderCrank
 
 

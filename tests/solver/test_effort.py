@@ -242,9 +242,10 @@ def precise_swing(cylinders: list[Cylinder], rpm: float) -> mpmath.mpf:
 
     def motion(c: Cylinder, phi: Any) -> tuple[Any, Any]:
         crank, rod = mp.mpf(c.mechanism.crank), mp.mpf(c.mechanism.rod)
-        reach = mp.sqrt(rod**2 - (crank * mp.sin(phi)) ** 2)
-        x = crank + rod - crank * mp.cos(phi) - reach
-        return x, crank * mp.sin(phi) + crank**2 * mp.sin(phi) * mp.cos(phi) / reach
+        cos, sin = mp.cos_sin(phi)
+        reach = mp.sqrt(rod**2 - (crank * sin) ** 2)
+        x = crank + rod - crank * cos - reach
+        return x, crank * sin + crank**2 * sin * cos / reach
 
     def area(points: list[tuple[Any, Any]], z: Any, forward: bool) -> Any:
         """∫ p dz along a line from its start to the fraction z."""
@@ -260,10 +261,9 @@ def precise_swing(cylinders: list[Cylinder], rpm: float) -> mpmath.mpf:
                 break
         return total
 
-    def work(c: Cylinder, phi: Any) -> Any:
-        turns, rest = mp.floor(phi / (2 * mp.pi)), phi - 2 * mp.pi * mp.floor(phi / (2 * mp.pi))
-        x, slope = motion(c, rest)
-        total = -mp.mpf(c.masses.parts) / 2 * slope**2 * omega**2
+    def ends(c: Cylinder) -> list[Any]:
+        """Surface, stroke, lines, work of both lines and side of every piston face."""
+        found = []
         for piston in c.pistons:
             for card, bore, rod, head in (
                 (piston.indicator.head_end, piston.bore, piston.head_end_rod, True),
@@ -273,14 +273,23 @@ def precise_swing(cylinders: list[Cylinder], rpm: float) -> mpmath.mpf:
                 lines = [
                     [(mp.mpf(z), mp.mpf(p)) for z, p in zip(line.fractions, line.pressures)] for line in card.lines
                 ]
-                stroke = 2 * mp.mpf(c.mechanism.crank)
-                z = x / stroke if head else 1 - x / stroke
                 out, back = area(lines[0], mp.mpf(1), True), area(lines[1], mp.mpf(0), False)
-                if head:
-                    part = area(lines[0], z, True) if rest < mp.pi else out + area(lines[1], z, False)
-                else:
-                    part = area(lines[1], z, False) if rest < mp.pi else back + area(lines[0], z, True)
-                total += surface * stroke * (part + turns * (out + back))
+                found.append((surface, 2 * mp.mpf(c.mechanism.crank), lines, out, back, head))
+        return found
+
+    faces = {id(c): ends(c) for c in cylinders}
+
+    def work(c: Cylinder, phi: Any) -> Any:
+        turns, rest = mp.floor(phi / (2 * mp.pi)), phi - 2 * mp.pi * mp.floor(phi / (2 * mp.pi))
+        x, slope = motion(c, rest)
+        total = -mp.mpf(c.masses.parts) / 2 * slope**2 * omega**2
+        for surface, stroke, lines, out, back, head in faces[id(c)]:
+            z = x / stroke if head else 1 - x / stroke
+            if head:
+                part = area(lines[0], z, True) if rest < mp.pi else out + area(lines[1], z, False)
+            else:
+                part = area(lines[1], z, False) if rest < mp.pi else back + area(lines[0], z, True)
+            total += surface * stroke * (part + turns * (out + back))
         return total
 
     def energy(phi: Any) -> Any:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.crank_angle import CrankAngle
@@ -49,7 +49,6 @@ def machines(draw: st.DrawFn) -> CylinderForces:
     )
 
 
-@settings(max_examples=60, deadline=None)
 @given(machines())
 def test_energy_goes_in_and_comes_out(forces: CylinderForces) -> None:
     """Quadrature of the torque against closed work of cards and quadrature of the friction."""
@@ -61,7 +60,6 @@ def test_energy_goes_in_and_comes_out(forces: CylinderForces) -> None:
     assert abs(residual) < 1e-13
 
 
-@settings(max_examples=40, deadline=None)
 @given(machines(), st.lists(st.floats(0, 360), min_size=1, max_size=20))
 def test_forces_balance_at_crosshead_and_pin(forces: CylinderForces, degrees: list[float]) -> None:
     state = forces.at(degrees)
@@ -77,7 +75,6 @@ def test_forces_balance_at_crosshead_and_pin(forces: CylinderForces, degrees: li
     assert (abs(np.hypot(state.D, state.T) - abs(rod)) <= 1e-13 * scale / np.cos(psi)).all()
 
 
-@settings(max_examples=40, deadline=None)
 @given(machines())
 def test_no_angle_beats_the_extremes(forces: CylinderForces) -> None:
     dense = forces.at(np.linspace(0, 360, 3001))

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from kurbel.cli import kurbel
 from kurbel.machine_file import loads
 from kurbel.report.forces import forces_report
 from kurbel.solver.case import Case
@@ -29,7 +31,8 @@ def case(rotation: str = "", out: str = "3 bar", back: str = "0 bar", **changed:
 
 
 def note(solved: Case) -> str:
-    (found,) = forces_report(solved, (0.0,), None, "si").notes
+    report = forces_report(solved, (0.0,), None, "si")
+    (found,) = (*report.notes, *report.parts[0].warnings)
     return found
 
 
@@ -66,6 +69,18 @@ def test_engines_turn_over_and_driven_machines_under() -> None:
     assert "turning under it would rest on the lower guide all round" in note(case("over", **pump))
 
 
+@pytest.mark.parametrize("command", ["check", "forces", "flywheel", "stress"])
+def test_every_command_warns_that_it_lifts(command: str) -> None:
+    shaft = "a: 300 mm, b: 300 mm, web_distance: 200 mm, web_thickness: 100 mm, web_width: 200 mm"
+    pin = "pin_diameter: 150 mm, pin_length: 150 mm"
+    text = ENGINE.replace("EXPANSION", "3 bar").replace("COMPRESSION", "0 bar")
+    text += f"rotation: under\nflywheel: {{inertia: 900 kg m2}}\ncrankshaft: {{{shaft}, {pin}}}\n"
+    result = CliRunner().invoke(kurbel, [command, "-"], input=text)
+    assert result.exit_code == 0, result.output
+    (line,) = (line for line in result.stdout.splitlines() if "the crosshead lifts off the lower guide" in line)
+    assert line.strip().startswith("note" if command == "check" else "Turning under")
+
+
 def test_where_it_lifts() -> None:
     """Without inertia N = P tan ψ − G: it lifts where tan ψ = G/P, from there to its mirror image about 90°."""
     solved = case("under", speed="0 rpm")
@@ -93,4 +108,9 @@ def test_guide_pressure_and_wear() -> None:
     assert at.wear == pytest.approx(0.1 * abs(at.N * at.c), rel=1e-12)
     assert at.wear.mean() * 1.0 == pytest.approx(forces.crosshead_work, rel=1e-5)  # one turn a second
     assert at.p_guide.max() == pytest.approx(forces.p_guide_max.value, rel=1e-6)
+    assert forces.wear_max.value == pytest.approx(at.wear.max(), rel=1e-7)
+    assert forces.wear_max.degrees == pytest.approx(phi[at.wear.argmax()], abs=0.1)
+    assert forces.wear_mean == pytest.approx(at.wear.mean(), rel=1e-5)
+    mean_over_way = (at.p_guide * abs(at.slope)).sum() / abs(at.slope).sum()
+    assert forces.p_guide_mean == pytest.approx(mean_over_way, rel=1e-5)
     assert case().cylinders[0].at([0.0]).p_guide is None

@@ -486,7 +486,7 @@ def test_firing_in_the_gas_exchange() -> None:
 def test_indicated_below_brake_power(tmp_path: Path) -> None:
     machine = machine_of(tmp_path, "\n".join(GOOD), more="brake_power: 500 kW\n")
     (warning,) = brake_warnings(machine, Case(machine).cylinders)
-    assert "is below the brake power, 500000 W" in warning
+    assert "is below the brake power, 500 kW" in warning
     notes = [entry.text for section in checked(machine).sections for entry in section.entries]
     assert warning in notes
 

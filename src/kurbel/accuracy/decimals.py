@@ -63,16 +63,17 @@ def sin_cos(degrees: Decimal) -> tuple[Decimal, Decimal]:
         context.prec += max(6, degrees.adjusted() + 6)
         quarter = (degrees / 90).to_integral_value()
         rest = (degrees - 90 * quarter) * pi() / 180
-        sin, cos = _series(rest, rest), _series(Decimal(1), rest)
+        sin = _sine(rest)
+        cos = (1 - sin * sin).sqrt()  # of no more than 45°: nothing is lost
         turned = ((sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin))[int(quarter) % 4]
     return +turned[0], +turned[1]
 
 
-def _series(first: Decimal, rest: Decimal) -> Decimal:
-    """Return first − first·r²/… as the series of the sine (first = r) or of the cosine (first = 1)."""
+def _sine(rest: Decimal) -> Decimal:
+    """Return r − r³/3! + … of an angle in radians."""
     square = rest * rest
-    term = total = first
-    k = 2 if first is rest else 1
+    term = total = rest
+    k = 2
     while term and term.adjusted() > total.adjusted() - getcontext().prec - 2:
         term = -term * square / (k * (k + 1))
         k += 2

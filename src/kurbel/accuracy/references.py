@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 
 from kurbel.accuracy.decimals import integral, largest, pi, root
@@ -120,6 +120,7 @@ class MachineOracle:
         angles = sorted(angle + self.cycle if angle < 0 else angle for angle in found)
         return tuple(a for i, a in enumerate(angles) if not i or a - angles[i - 1] > Decimal("1e-20"))
 
+    @cache  # noqa: B019, an oracle lives for one question, and is asked most pieces twice
     def work(self, low: Decimal, high: Decimal) -> Decimal:
         """Return ∫ M dφ in J within one piece, from low to high in degrees."""
         within = (low + high) / 2

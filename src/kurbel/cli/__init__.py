@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 COMMANDS = (
-    *("table", "motion", "forces", "flywheel", "stress", "accuracy"),
+    *("table", "motion", "forces", "flywheel", "stress", "balance", "accuracy"),
     *("sweep", "friction", "check", "example", "keys", "units", "schema"),
 )
 """In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""
@@ -178,6 +178,7 @@ def kurbel() -> None:
       kurbel motion engine.yaml                 displacement, velocity, acceleration
       kurbel forces engine.yaml                 forces and key values
       kurbel flywheel engine.yaml               turning effort, flywheel, speed
+      kurbel balance engine.yaml                free forces and moments, counterweights
 
     Results go to standard output, everything else to standard error.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from kurbel.cli.exit_status import BROKEN, DONE, NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import format_of, loaded, machine_file
+from kurbel.cli.output_options import format_of, loaded, machine_file, width_option
 
 
 @click.command(short_help="Read and check a machine file and its limits.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
@@ -18,7 +18,8 @@ from kurbel.cli.output_options import format_of, loaded, machine_file
     help="json: every finding with its place. By the suffix of --output, or table, if not given.",
 )
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
-def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: str | None) -> int:
+@width_option
+def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: str | None, width: int | None) -> int:
     """Read the machine in FILE and say what will be computed, what is left out and why.
 
     Where the file gives 'limits', hold the key values to them; where it gives 'expect', compare them with the figures
@@ -37,6 +38,7 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
 
     result = checked(loaded(file, overrides, file_name))
     look = Look() if file_name else stdout_look()
+    look = look._replace(width=width or look.width)
     write_out((listing(result, look),), file_name)
     if result.errors:  # all of them, as one of the gravest kind
         gravest = min(result.errors, key=lambda error: error.exit_status)

@@ -150,7 +150,7 @@ columns_option = click.option(
 )
 _part_options = stacked(
     click.option(
-        "--cylinder", metavar="NAME", help="Only the results of this cylinder.", shell_complete=complete_cylinder
+        "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
     ),
     click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
 )
@@ -159,6 +159,9 @@ units_option = click.option(
     type=click.Choice(["si", "metric", "technical", "imperial"]),
     help="metric: mm, bar, kN, the default of tables and markdown; technical: mm, kgf, at, as the old books; "
     "imperial: in, lbf, psi; si: the default of csv and json.",
+)
+width_option = click.option(
+    "--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill; a terminal's own if not given."
 )
 _look_options = stacked(
     click.option(
@@ -181,9 +184,7 @@ _look_options = stacked(
     click.option(
         "--digits", type=click.IntRange(1, 17), help="Significant digits; if not given 4, and all in csv and json."
     ),
-    click.option(
-        "--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill; a terminal's own if not given."
-    ),
+    width_option,
 )
 
 
@@ -327,6 +328,9 @@ def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
     ) -> None:
         system = units or ("si" if output.look.format in ("csv", "json") else "metric")
         asked = Asked(file, overrides, step, angles, columns, system, cylinder, key_values_only, output)
-        command(asked=asked, **others)
+        from kurbel.declared.unit_systems import told_in
+
+        with told_in(units or "metric"):
+            command(asked=asked, **others)
 
     return stacked(machine_file, angle_options, columns_option, _part_options, units_option)(output_options(with_asked))

@@ -18,11 +18,11 @@ class AskedRows(NamedTuple):
     """What is asked of the rows: `where` a column has a value, or `over` the stroke; `compare` with the book's."""
 
     where: str | None
-    over: str | None
-    compare: bool
+    over: str | None = None
+    compare: bool = False
 
-    def rows(self, asked: Asked) -> Rows | None:
-        """Return what finds the crank angles, None for a table over the angle itself."""
+    def rows(self, asked: Asked, command: str = "forces") -> Rows | None:
+        """Return what finds the crank angles, None for a table over the angle itself; command: whose columns."""
         ways = {"--where": self.where, "--over": self.over, "--angles": asked.angles or None}
         if len(given := [way for way, said in ways.items() if said is not None]) > 1:
             raise click.UsageError(f"{' and '.join(given)} both say at which crank angles; leave one of them out.")
@@ -30,20 +30,21 @@ class AskedRows(NamedTuple):
             return None
         from kurbel.report.rows import Place, over_stroke
 
-        return over_stroke(asked.step) if self.where is None else Place.parsed(self.where).angles
+        return over_stroke(asked.step) if self.where is None else Place.parsed(self.where, command).angles
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The columns that are shown besides."""
+        from kurbel.report.frame import APPROXIMATIONS
+
         return (*(("z",) if self.over else ()), *(APPROXIMATIONS if self.compare else ()))
 
 
-APPROXIMATIONS = ("x_book", "c_book", "b_book", "P_gas_book")
-
+where_option = click.option(
+    "--where", metavar="'COLUMN = VALUE'", help="Rows where a column has a value, such as 'b = 1/6 b_max'."
+)
 _options = (
-    click.option(
-        "--where", metavar="'COLUMN = VALUE'", help="Rows where a column has a value, such as 'b = 1/6 b_max'."
-    ),
+    where_option,
     click.option(
         "--over", type=click.Choice(["x"]), help="Rows over the stroke, both ways, every --step percent of it."
     ),

@@ -37,6 +37,7 @@ SIZES: dict[str, tuple[float, float]] = {
     "energy": (0, 1e18),
     "power": (0, 1e18),
     "inertia": (1e-18, 1e18),
+    "unbalance": (1e-15, 1e18),
     "gd2": (1e-18, 1e18),
     "stiffness": (1e-12, 1e18),
     "damping": (1e-15, 1e18),

@@ -42,7 +42,7 @@ class Form(ABC):
         return "…"
 
     def written(self) -> str:
-        """Return in a few words what is written for a key, for the page of symbols."""
+        """Return in a few words what is written for a key, for the page of keys."""
         return self.expected() if self.shape is str else "a mapping"
 
     def suits(self, value: Any) -> bool:

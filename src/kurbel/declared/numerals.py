@@ -12,6 +12,9 @@ NUMBER = re.compile(r"[-+]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+
 RATIO = rf"({NUMBER.pattern})\s*(?:/\s*({NUMBER.pattern})|%)"
 """What stands for a number by a division; compiled only where something is no number."""
 
+WRITTEN = rf"(?:[0-9]{{1,4}}[ -])?{NUMBER.pattern}(?:\s*/\s*{NUMBER.pattern})?"
+"""A number before a unit, as inches have it, too: 2 1/4."""
+
 SPACES = "\xa0\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000"
 """White space that no keyboard has; who wrote it meant a space."""
 _ALIKE: dict[int, int | str] = {

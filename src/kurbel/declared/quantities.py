@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
 
+from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
 
@@ -23,7 +24,7 @@ _COLUMNS = (
         "angle",
         "Crank angle from the inner dead centre, in the sense of rotation",
         "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS),
+        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "balance"),
     ),
     _motion(
         "z",
@@ -50,8 +51,8 @@ _COLUMNS = (
             ("b_point", "b_Q", "acceleration", "Magnitude of the acceleration of the point of the rod"),
         )
     ),
-    _forces("p_head", "p_H", "pressure", "Gauge pressure in the head-end chamber, just after a jump"),
-    _forces("p_crank", "p_C", "pressure", "Gauge pressure in the crank-end chamber, just after a jump"),
+    _forces("p_head", "p_H", "pressure", "Gauge pressure in the head-end chamber, just after a jump", gauge=True),
+    _forces("p_crank", "p_C", "pressure", "Gauge pressure in the crank-end chamber, just after a jump", gauge=True),
     _forces("P_gas", "P_gas", "force", "Force of gas, steam or water on all pistons of the rod"),
     _forces(
         "P_gas_book",
@@ -148,6 +149,7 @@ _COLUMNS = (
     ),
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
     *STRENGTH_COLUMNS,
+    *BALANCE_COLUMNS,
 )
 
 
@@ -189,10 +191,15 @@ _MOTION_VALUES = (
 _CYLINDER_VALUES = (
     _forces("A_head", "A_H", "area", "Piston area at the head end"),
     _forces("A_crank", "A_C", "area", "Piston area at the crank end"),
-    _forces("p_max", "p_max", "pressure", "Largest gauge pressure in the cylinder's own piston"),
+    _forces("p_max", "p_max", "pressure", "Largest gauge pressure in the cylinder's own piston", gauge=True),
     _forces(
-        "p_guide_max", "p_g,max", "pressure", "Largest pressure of the crosshead's shoe on its guide", after="T_min"
+        "p_guide_max", "p_g,max", "pressure", "Largest pressure of the crosshead's shoe on its guide", after="T_peak"
     ),
+    _forces(
+        "p_guide_mean", "p_g,m", "pressure", "Mean over the way of the shoe's pressure on its guide", after="T_peak"
+    ),
+    _forces("wear_max", "f N c_max", "power", "Largest value of the wear line of the guide", after="T_peak"),
+    _forces("wear_mean", "f N c_m", "power", "Mean of the wear line: power lost on the guide", after="T_peak"),
     _forces("m", "m", "mass", "Reciprocating mass with its share of the connecting rod"),
     _forces("P_inertia_max", "P_b,max", "force", "Largest inertia force toward the shaft", after="P_start_min"),
     _forces(
@@ -313,8 +320,14 @@ class Lists(NamedTuple):
             *extremes(found, "flywheel"),
             *_FLYWHEEL_VALUES,
             *STRENGTH_VALUES,
+            *BALANCE_VALUES,
         )
         return cls(found, placed((*common, *key_values)))
+
+    @property
+    def absolute(self) -> Lists:
+        """The same for a machine whose pressures are absolute."""
+        return Lists(*(tuple(one.absolute() for one in each) for each in self))
 
     def columns(self, command: str) -> dict[str, Quantity]:
         """Return the columns of a command, by id."""

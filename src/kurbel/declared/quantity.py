@@ -27,6 +27,7 @@ class Quantity(NamedTuple):
     people are not shown what of it is only that. On what is `listed`, a list of values, no bound can be put.
     `peak`: a column with extremes that has, besides, its largest magnitude as key value `<id>_peak`.
     `on_request`: the commands that print it only where it is asked for by name.
+    `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
     """
 
     id: str
@@ -44,6 +45,8 @@ class Quantity(NamedTuple):
     listed: bool = False
     peak: bool = False
     on_request: tuple[str, ...] = ()
+    gauge: bool = False
+    mark: str = ""
 
     @property
     def ascii_symbol(self) -> str:
@@ -53,6 +56,15 @@ class Quantity(NamedTuple):
     def is_noise(self, value: float) -> bool:
         """Whether this value is a residual of rounding alone."""
         return self.residual and abs(value) < 10.0**NOISE_POWER
+
+    def absolute(self) -> Quantity:
+        """Return the quantity of a machine whose pressures are absolute."""
+        text = self.text.replace("Gauge", "Absolute").replace("gauge", "absolute")
+        return self._replace(text=text, mark="abs") if self.gauge else self
+
+    def marked(self, unit: str) -> str:
+        """Return the unit as it is shown."""
+        return f"{unit} {self.mark}".rstrip()
 
     def extreme(self, word: str, end: str, commands: tuple[str, ...]) -> Quantity:
         """Return the key value that is the largest (`max`), smallest (`min`), or largest magnitude of this column.

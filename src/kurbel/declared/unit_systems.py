@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 from kurbel.declared.units import unit_factor
@@ -24,6 +27,7 @@ SI = {
     "energy": "J",
     "power": "W",
     "inertia": "kg m^2",
+    "unbalance": "kg m",
     "gd2": "kg m^2",
     "stiffness": "N m/rad",
     "damping": "N m s/rad",
@@ -44,6 +48,7 @@ TECHNICAL = SI | {
     "power": "PS",
     "gd2": "kgf m^2",
     "pressure_velocity": "kgf m/s/cm^2",
+    "spring": "mm/at",
 }
 _METRIC: dict[str, Any] = {
     **SI,
@@ -58,6 +63,7 @@ _METRIC: dict[str, Any] = {
     "energy": ("J", "kJ", "MJ"),
     "power": ("W", "kW", "MW"),
     "pressure_velocity": "N/mm^2 m/s",
+    "spring": "mm/bar",
 }
 _IMPERIAL: dict[str, Any] = {
     **SI,
@@ -74,26 +80,29 @@ _IMPERIAL: dict[str, Any] = {
     "energy": "lbf ft",
     "power": "hp",
     "inertia": "lb ft^2",
+    "unbalance": "lb in",
     "gd2": "lb ft^2",
     "stiffness": "lbf ft/rad",
     "damping": "lbf ft s/rad",
     "pressure_velocity": "psi ft/s",
+    "spring": "in/psi",
 }
 SYSTEMS: dict[str, dict[str, Any]] = {"si": SI, "metric": _METRIC, "technical": TECHNICAL, "imperial": _IMPERIAL}
 """Unit system -> kind -> the unit in which results are shown, or several, of which the size decides."""
 _TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3}
 """Base value from which a larger unit is taken, where that is not one of the unit itself."""
 
-_IN_MESSAGES = TECHNICAL | {
-    "spring": "mm/at",
-    "force": "N",
-    "pressure": "bar",
-    "stress": "N/mm2",
-    "torque": "N m",
-    "energy": "J",
-    "power": "W",
-    "area": "mm^2",
-}
+_TOLD: ContextVar[str] = ContextVar("told", default="metric")
+
+
+@contextmanager
+def told_in(system: str) -> Iterator[None]:
+    """Let messages, too, tell values in a unit system: they arise where nobody knows of it, as numpy's warnings do."""
+    before = _TOLD.set(system)
+    try:
+        yield
+    finally:
+        _TOLD.reset(before)
 
 
 def shown_unit(kind: str, system: str, largest: float = 0.0) -> str:
@@ -124,10 +133,10 @@ def convert_back(value: float, kind: str, unit: str) -> float:
 
 
 def show(value: float, kind: str) -> str:
-    """Write a base value for a message, in the unit that engineers use.
+    """Write a base value for a message, in the unit in which people are told (`told_in`; metric otherwise).
 
-    >>> show(0.3, "length")
-    '300 mm'
+    >>> show(0.3, "length"), show(5e5, "pressure")
+    ('300 mm', '5 bar')
     """
-    unit = _IN_MESSAGES[kind]
+    unit = shown_unit(kind, _TOLD.get(), value)
     return f"{convert(value, kind, unit):.6g} {unit}".rstrip()

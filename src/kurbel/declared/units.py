@@ -12,7 +12,7 @@ import re
 from collections.abc import Callable
 from functools import cache
 
-from kurbel.declared.numerals import NUMBER, plain
+from kurbel.declared.numerals import NUMBER, parse_ratio, plain
 from kurbel.errors import UnitError
 
 Factor = tuple[float, float]
@@ -124,6 +124,7 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         **_product(_MASS, _AREA, " "),
         **{f"lbf {name} s2": (_LBF * up, down) for name, (up, down) in _LENGTH.items() if name in ("in", "ft")},
     },
+    "unbalance": lambda: _product({**_MASS, "mg": (1, 1e6)}, _LENGTH, " "),
     "gd2": lambda: {
         **_product({"kg": (1, 1), "t": (1e3, 1)}, {"m2": (1, 1), "cm2": (1, 1e4)}, " "),
         "kgf m2": (1, 1),
@@ -193,7 +194,9 @@ def unit_factor(unit: str, kind: str) -> Factor:
 
 
 def _kind_name(kind: str) -> str:
-    return {"gd2": "GD²", "speed": "speed of rotation"}.get(kind, kind.replace("_", " "))
+    return {"gd2": "GD²", "speed": "speed of rotation", "unbalance": "mass-times-radius"}.get(
+        kind, kind.replace("_", " ")
+    )
 
 
 def _known_text(kind: str) -> str:
@@ -229,7 +232,7 @@ def parse_quantity(text: str, kind: str) -> float:
     Raises UnitError when there is no number, no unit, or a unit of another kind.
     """
     stripped = plain(text)
-    number = _INCHES.match(stripped) or NUMBER.match(stripped)
+    number = _number_of(stripped)
     if not number:
         raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
     unit = stripped[number.end() :].strip()
@@ -258,19 +261,24 @@ def written_unit(text: str) -> str:
     ('at', 'in', '%', '')
     """
     stripped = plain(text)
-    number = _INCHES.match(stripped) or NUMBER.match(stripped)
+    number = _number_of(stripped)
     unit = stripped[number.end() :].strip() if number else ""
     return "" if re.match(r"/\s*[0-9.]", unit) else unit
 
 
 _INCHES = re.compile(r"([-+]?)(?:([0-9]{1,4})[ -])?([0-9]{1,4})/([1-9][0-9]{0,3})(?=\s*[A-Za-z]|$)")
 """A number as drawings in inches have it: 2 1/4, 2-1/4, 3/8."""
+_QUOTIENT = re.compile(rf"{NUMBER.pattern}\s*/\s*{NUMBER.pattern}(?=\s*[A-Za-z°]|$)")
+
+
+def _number_of(text: str) -> re.Match[str] | None:
+    return _INCHES.match(text) or _QUOTIENT.match(text) or NUMBER.match(text)
 
 
 def _value(number: re.Match[str]) -> float:
-    """Return the float of a match of NUMBER or _INCHES."""
+    """Return the float of a match of `_number_of`."""
     if number.re is not _INCHES:
-        return float(number.group())
+        return parse_ratio(number.group()) if number.re is _QUOTIENT else float(number.group())
     sign, whole, above, below = number.groups()
     return float(f"{sign}1") * (int(whole or 0) * int(below) + int(above)) / int(below)
 
@@ -304,6 +312,7 @@ def _unit_example(kind: str) -> str:
         "gd2": "kgf m2",
         "spring": "mm/at",
         "inertia": "kg m2",
+        "unbalance": "kg m",
     }.get(kind, next(iter(_units_of(kind))))
 
 

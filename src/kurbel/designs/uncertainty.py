@@ -39,6 +39,10 @@ _ROUNDING = 1e-9
 """What is less than this beside the value itself bends nothing."""
 
 
+_NOISE = 1e-12
+"""Of a value: what is less is no uncertainty but rounding."""
+
+
 class Uncertain(NamedTuple):
     """The standard uncertainty of a key value in SI, and the share of each input in its square.
 
@@ -63,7 +67,7 @@ class Uncertainty:
         texts = written_texts(source, overrides, self.keys)
         self._binder = Binder(source, overrides, self.keys, texts)
         self._kinds = [kind_of_form(self._binder.form(number)) for number in range(len(spreads))]
-        self._values = [_number(*pair, key) for *pair, key in zip(texts, self._kinds, self.keys)]
+        self._values = [_number(text, kind, key) for text, kind, key in zip(texts, self._kinds, self.keys)]
         told = zip(spreads, self._kinds, self._values)
         self._spreads = [_spread(text, kind, value, key) for (key, text), kind, value in told]
 
@@ -85,9 +89,9 @@ class Uncertainty:
 
     def of(self, asked: Sequence[Answer]) -> list[Uncertain]:
         """Return the uncertainties of those key values that are numbers."""
-        places = [np.zeros(len(self.keys))]
-        for number in range(len(self.keys)):
-            places += [_unit(number, len(self.keys)) * step for step in (_STEP, _STEP / 2, 1.0) for step in (step, -step)]
+        steps = [sign * step for step in (_STEP, _STEP / 2, 1.0) for sign in (1, -1)]
+        units = np.eye(len(self.keys))
+        places = [0 * units[0], *(unit * step for unit in units for step in steps)]
         found = self._answers([one.tolist() for one in places], asked)
         there = [place for place in range(len(asked)) if math.isfinite(found[0, place])]
         kept, found = [asked[place] for place in there], found[:, there]
@@ -123,10 +127,6 @@ def _of_sample(one: Uncertain, shifts: Any, values: Any) -> Uncertain:
     own = shifts[there]
     shares = tuple(float(np.corrcoef(own[:, k], values[there])[0, 1]) ** 2 for k in range(own.shape[1]))
     return one._replace(spread=spread, shares=shares, sample=int(there.sum()))
-
-
-def _unit(number: int, count: int) -> Any:
-    return (np.arange(count) == number).astype(float)
 
 
 def _shares(squares: Any) -> tuple[float, ...]:
@@ -175,8 +175,8 @@ def with_uncertainty(report: Report, case: Case, more: Sequence[tuple[str, str]]
     asked = [
         Answer(quantity, report.command, subject.name)
         for subject in subjects(case, report.command)
-        for quantity, value in subject.key_values(report.command)
-        if not (quantity.listed or quantity.residual or isinstance(value, tuple))
+        for quantity, _ in subject.key_values(report.command)
+        if not (quantity.listed or quantity.residual)
     ]
     found = uncertainty.of(asked)
     parts = [_with_table(part, found, uncertainty.keys, system) for part in report.all_parts]
@@ -185,7 +185,7 @@ def with_uncertainty(report: Report, case: Case, more: Sequence[tuple[str, str]]
 
 
 def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], system: str) -> Part:
-    own = [one for one in found if one.answer.subject == part.name and one.spread > 0]
+    own = [one for one in found if one.answer.subject == part.name and one.spread > _NOISE * abs(one.value)]
     if not own:
         return part
     names, spreads = [], []
@@ -194,14 +194,19 @@ def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], sys
         unit = shown_unit(kind, system, abs(one.value))
         names.append((one.answer.quantity.id, f"{convert(one.value, kind, unit):.6g}", unit or "1"))
         spreads.append(convert(one.spread, kind, unit))
-    columns = [Column("uncertainty", "±", "+-", "", tuple(spreads), alone=True)]
+    columns = [Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2)]
     for place, key in enumerate(keys):
-        columns.append(Column(key, key, key, "%", tuple(100 * one.shares[place] for one in own), alone=True))
-    columns.append(Column("sample", "sample", "sample", "", tuple(one.sample or None for one in own), alone=True))
+        columns.append(Column(key, key, key, "%", tuple(_percent(one.shares[place]) for one in own), alone=2))
+    columns.append(Column("sample", "sample", "sample", "", tuple(one.sample or None for one in own), alone=2))
     title = "Standard uncertainty, and the share of each input in its square"
     heads = ("key_value", "value", "unit")
     table = PlaceTable("uncertainty", title, heads, tuple(names), tuple(columns), headed=True)
     return part._replace(place_tables=(*part.place_tables, table))
+
+
+def _percent(share: float) -> float:
+    """Return a share in percent, to a tenth."""
+    return round(100 * share, 1)
 
 
 def _notes(found: Sequence[Uncertain]) -> Iterable[str]:

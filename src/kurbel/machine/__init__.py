@@ -19,6 +19,7 @@ from kurbel.declared.forms import (
     FiringOrder,
     Inline,
     Limits,
+    Listing,
     Number,
     OneOf,
     Physical,
@@ -29,11 +30,12 @@ from kurbel.declared.forms import (
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, refuse
 from kurbel.machine.angle_points import CYCLES
-from kurbel.machine.cylinder import Cylinder
+from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder, crowded
 
 if TYPE_CHECKING:
     from kurbel.declared.forms.figures import Expected
     from kurbel.declared.quantity import Quantity
+    from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.equal import EqualCylinders
     from kurbel.machine.origin import Origin
@@ -74,8 +76,9 @@ class Machine(Described):
     speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
     pressure in Pa; efficiency η multiplies the turning effort of the whole machine, or divides it where the machine is
     driven; brake_power: measured, in W; limits: key-value id -> bound in SI; expect: key-value id -> the smallest and
-    the largest value in SI that are met; uncertainty: dotted key -> its standard uncertainty as a text; rotation: `over` or `under`, the sense in which it turns, None where it is
-    not told.
+    the largest value in SI that are met; uncertainty: dotted key -> its standard
+    uncertainty as a text; rotation: `over` or `under`, the sense in which it turns, None where it is
+    not told; moment_reference: place along the shaft in m about which free moments are taken, None for the middle.
     """
 
     cylinders: tuple[Cylinder, ...]
@@ -90,6 +93,10 @@ class Machine(Described):
     effort: Effort | Harmonics | None = None
     coupling: Coupling | None = None
     crankshaft: Crankshaft | None = None
+    counterweights: SharedCounterweights | tuple[Counterweight, ...] = ()
+    balance_shafts: tuple[BalanceShaft, ...] = ()
+    moment_reference: float | None = None
+    locomotive: Locomotive | None = None
     limits: tuple[tuple[str, float], ...] = ()
     expect: tuple[tuple[str, Expected], ...] = ()
     uncertainty: tuple[tuple[str, str], ...] = ()
@@ -165,6 +172,23 @@ class Machine(Described):
             "One throw between bearings A and B",
             absent="no strength check",
         ),
+        "counterweights": COUNTERWEIGHTS,
+        "balance_shafts": Key(
+            Listing(Record("kurbel.machine.balance:BalanceShaft")),
+            "Shafts with weights that turn once, twice, … in a turn of the crank, with it or against it",
+            absent="none",
+        ),
+        "moment_reference": Key(
+            Physical("length"),
+            "Place along the shaft about which free moments are taken",
+            "z_0",
+            absent="the middle of the outer cylinders",
+        ),
+        "locomotive": Key(
+            Record("kurbel.machine.balance:Locomotive"),
+            "Driven wheels, for hammer blow and swaying couple",
+            absent="no locomotive",
+        ),
         "limits": Key(Limits(_key_values), "Bounds for key values, checked by `kurbel check`", absent="none"),
         "expect": Key(
             Expectations(_key_values), "Figures that key values are to meet, compared by `kurbel check`", absent="none"
@@ -210,6 +234,7 @@ class Machine(Described):
             if name in names[:index]:
                 refuse(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
         faults = [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
+        faults += crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
                 faults.append(Fault((key, getattr(diagram, "key", "points")), message))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Choice, Inline, Listing, Physical, Record, Text, Variant
+from kurbel.declared.forms import Choice, Inline, Listing, OneOf, Physical, Record, Text, Variant
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
@@ -16,6 +16,7 @@ from kurbel.machine.angle_points import CYCLES
 from kurbel.mechanisms import MECHANISMS, Mechanism
 
 if TYPE_CHECKING:
+    from kurbel.machine.balance import Counterweight, SharedCounterweights
     from kurbel.machine.friction import Friction
     from kurbel.machine.masses import ConnectingRod, Masses
     from kurbel.machine.piston import Piston
@@ -33,6 +34,17 @@ _OTHER_NAMES = {
     "parallelogram": "parallel-crank",
 }
 """What people call a mechanism -> the word of the machine file."""
+
+
+COUNTERWEIGHTS = Key(
+    OneOf(
+        Record("kurbel.machine.balance:SharedCounterweights"),
+        Listing(Record("kurbel.machine.balance:Counterweight")),
+    ),
+    "Counterweights on the crank: a share of the reciprocating mass, or a list of them",
+    absent="none",
+)
+"""Of a cylinder beside its throw, or of the whole machine."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +67,7 @@ class Cylinder(Described):
     crank_position: float = 0.0
     bank_angle: float = 0.0
     axial_position: float | None = None
+    counterweights: SharedCounterweights | tuple[Counterweight, ...] = ()
     ram_force: RamForce | None = None
     moment: Moment | None = None
     cycle: str | None = None
@@ -92,9 +105,8 @@ class Cylinder(Described):
             "γ",
             absent="0 deg",
         ),
-        "axial_position": Key(
-            Physical("length"), "Place along the shaft; no figure hangs on it yet", "z", absent="not known"
-        ),
+        "axial_position": Key(Physical("length"), "Place along the shaft", "z", absent="free moments left out"),
+        "counterweights": COUNTERWEIGHTS,
         "ram_force": Key(
             Record("kurbel.machine.resistance:RamForce"),
             "Force on a ram against its motion, constant on each stroke",
@@ -130,6 +142,20 @@ class Cylinder(Described):
         at_point = self.point.faults_on(self.mechanism) if self.point else ()
         refuse(*(fault.below(("point",)) for fault in at_point))
         refuse(*_of_output(self), *(_of_rod(self) if self.mechanism.slides else ()))
+
+
+def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Fault]:
+    """Yield a fault for every cylinder that stands where another one does, on one stroke line and at one place."""
+    first: dict[tuple[float, float], str] = {}
+    for index, one in enumerate(cylinders):
+        if one.axial_position is None:
+            continue
+        where = round(one.axial_position, 9), round(one.bank_angle % 360.0, 6) % 360.0
+        if where in first:
+            place = f"{show(one.axial_position, 'length')} along the shaft, on the same stroke line"
+            message = f"stands where '{first[where]}' does, {place}; give another 'axial_position' or 'bank_angle'"
+            yield Fault(("cylinders", index, "axial_position"), message)
+        first.setdefault(where, one.name)
 
 
 def may_lock(cylinder: Cylinder) -> bool:

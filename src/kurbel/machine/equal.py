@@ -34,8 +34,8 @@ class EqualCylinders(Described):
         ),
         "spacing": Key(
             Physical("length", above=0),
-            "From one cylinder of a bank to the next along the shaft; no figure hangs on it yet",
-            absent="not known",
+            "From one cylinder of a bank to the next along the shaft",
+            absent="free moments left out",
         ),
         "bank_angles": Key(
             Listing(Physical("angle", least=-360, most=360)),

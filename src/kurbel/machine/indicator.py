@@ -258,7 +258,11 @@ class Indicator(Described):
     absolute: bool = False
 
     KEYS: ClassVar[Keys] = {
-        "pressures": Key(Choice(("gauge", "absolute")), "What the pressures count from", absent="gauge"),
+        "pressures": Key(
+            Choice(("gauge", "absolute")),
+            "What the pressures count from, also where `p_head`, `p_crank` and `p_max` are shown, asked for or limited",
+            absent="gauge",
+        ),
         "head_end": Key(
             OneOf(_ONE_PRESSURE, _CHAMBER),
             "Pressure at the head end: one for all strokes, or a card",

@@ -82,10 +82,14 @@ class ConnectingRod(Described):
 
 @dataclass(frozen=True, eq=False)
 class Masses(Described):
-    """Reciprocating masses in kg: the sum of piston, piston rod, crosshead and others, and the connecting rod."""
+    """Moving masses in kg: the sum of piston, piston rod, crosshead and others, the connecting rod, and what turns.
+
+    rotating: at the radius of the crank pin, beside what of the connecting rod turns with it.
+    """
 
     parts: float
     connecting_rod: ConnectingRod | None = None
+    rotating: float = 0.0
 
     KEYS: ClassVar[Keys] = {
         "reciprocating": Key(
@@ -102,18 +106,33 @@ class Masses(Described):
             "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
             instead="reciprocating",
         ),
+        "rotating": Key(
+            Physical("mass", least=0),
+            "Unbalanced mass of the crank, as one at its pin, without the connecting rod",
+            "m_rot",
+            absent="0",
+        ),
     }
 
     @classmethod
-    def of_keys(cls, connecting_rod: float | ConnectingRod | None = None, **parts: float | tuple[float, ...]) -> Masses:
+    def of_keys(
+        cls,
+        connecting_rod: float | ConnectingRod | None = None,
+        rotating: float | None = None,
+        **parts: float | tuple[float, ...],
+    ) -> Masses:
         """Return the masses that these keys of a machine file describe."""
         each = [mass for part in parts.values() for mass in (part if isinstance(part, tuple) else (part,))]
-        if not each and connecting_rod is None:
+        if not each and connecting_rod is None and rotating is None:
             refuse(
                 Fault((), "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …")
             )
         rod = ConnectingRod(connecting_rod) if isinstance(connecting_rod, float) else connecting_rod
-        return cls(math.fsum(each), rod)
+        return cls(math.fsum(each), rod, rotating or 0.0)
+
+    def at_pin(self, rod_length: float) -> float:
+        """Mass in kg that turns with the crank pin, with what of a connecting rod of this length in m does."""
+        return self.rotating + (self.connecting_rod.at_pin(rod_length) if self.connecting_rod else 0.0)
 
     @property
     def reciprocating(self) -> float:

@@ -35,7 +35,13 @@ class Rim(Described):
 
     KEYS: ClassVar[Keys] = {
         "mean_diameter": Key(Physical("length", above=0), "Mean diameter of the rim", "D", required=True),
-        "density": Key(Physical("density", above=0), "Density of its material", "ρ", absent="7250 kg/m³, cast iron"),
+        "density": Key(
+            Physical("density", above=0),
+            "Density of its material",
+            "ρ",
+            absent="7250 kg/m³, cast iron",
+            also=("material",),
+        ),
         "allowable_tension": Key(
             Physical("stress", above=0), "Tension that the rim may bear; a warning tells when it has more", "k_z"
         ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
@@ -56,7 +57,10 @@ def _set(node: Any, one: Override, place: int, step: str | int) -> Any:
     if isinstance(node, list):
         if not isinstance(step, int) or step >= len(node):
             where, number = path_text(one.path[:place]), len(node)
-            raise UsageError(f"--set {shown(one.text)}: '{where}' is a list; its items are 0 to {number - 1}")
+            instead = path_text((*one.path[:place], _near(step, number), *one.path[place + 1 :]))
+            raise UsageError(
+                f"--set {shown(one.text)}: '{where}' is a list; its items are 0 to {number - 1}: write {instead}=…"
+            )
         if last:
             node[step] = one.value
         return node[step]
@@ -72,6 +76,12 @@ def _set(node: Any, one: Override, place: int, step: str | int) -> Any:
             )
         node[str(step)] = {}
     return node[str(step)]
+
+
+def _near(step: str | int, count: int) -> int:
+    """Return the item of a list that is probably meant: counted from its end, or else the last one."""
+    from_end = int(step) if re.fullmatch("-[0-9]{1,9}", str(step)) else -1
+    return max(count + from_end, 0)
 
 
 def named(faults: Iterable[Fault], overrides: Sequence[Override]) -> list[Fault]:

@@ -64,6 +64,8 @@ def _words(context: str, problem: str, line: str, column: int) -> str:
     if "block mapping" in context or "block collection" in context:
         return "this line does not fit the lines above it; keys of one mapping have the same indentation"
     if "cannot start any token" in problem or "node content" in problem:
+        if not line[column:].strip():
+            return "a value is missing here: close the '[' or '{' that is open, or put the text into quotation marks"
         return f"a value cannot begin with '{line[column : column + 1]}'; put a text into quotation marks"
     if "sequence entries" in problem:
         return "a list with '-' begins on a line of its own; or write it as [ …, … ]"

@@ -101,6 +101,8 @@ class Mechanism(Described):
     known_across: ClassVar[bool] = False
     """Whether, without a connecting rod, nothing but its weight pushes the output across the stroke line onto N."""
     crank: float
+    offset: float = 0.0
+    """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
 
     def __init_subclass__(cls) -> None:
         own = [one for one in cls.__mro__ if issubclass(one, Mechanism) and one is not Mechanism]

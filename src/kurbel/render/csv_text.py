@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from array import array
+from collections.abc import Iterable, Iterator
 from itertools import repeat
 from typing import TYPE_CHECKING
 
@@ -24,26 +25,31 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
     without them the key values, each on a row, of a list each of its values.
     """
     separator = ";" if look.comma else ","
-    for row in _rows(report, look):
-        yield separator.join(_quoted(text, separator) for text in row) + "\n"
-
-
-def _rows(report: Report, look: Look) -> Iterator[list[str]]:
     parts = [part for part in report.all_parts if part.columns]
-    if not parts:
-        places = any(part.place_tables for part in report.all_parts)
-        yield from _place_rows(report, look) if places else _key_value_rows(report, look)
+    if parts:
+        yield from _table(report, parts, look, separator)
         return
+    places = any(part.place_tables for part in report.all_parts)
+    for row in _place_rows(report, look) if places else _key_value_rows(report, look):
+        yield _line(row, separator)
+
+
+def _line(row: Iterable[str], separator: str) -> str:
+    return separator.join(_quoted(text, separator) for text in row) + "\n"
+
+
+def _table(report: Report, parts: list[Part], look: Look, separator: str) -> Iterator[str]:
+    """Yield head and rows; a number is never quoted, so that none is looked at twice."""
     heads = _merged([[head(column) for column in part.columns] for part in parts])
-    named = report.group == "ratios" or len(parts) > 1
+    named = report.group == "ratios" or len([*parts, *(part for part in report.parts if part.nowhere)]) > 1
     first = "rod_ratio" if report.group == "ratios" else "cylinder"
-    yield [*([first] if named else []), *heads]
+    yield _line([*([first] if named else []), *heads], separator)
     for part in parts:
         columns = {head(column): column for column in part.columns}
         texts = [_texts(columns.get(name), len(part.columns[0].values), look) for name in heads]
-        name = _name(part, look)
+        name = [_quoted(_name(part, look), separator)] if named else []
         for row in zip(*texts):
-            yield [*([name] if named else []), *row]
+            yield separator.join((*name, *row)) + "\n"
 
 
 def _merged(orders: list[list[str]]) -> list[str]:
@@ -88,7 +94,7 @@ def _place_rows(report: Report, look: Look) -> Iterator[list[str]]:
 
 def head(column: Column) -> str:
     """Return id and unit: `x_m`, `b_m/s^2`, `M_Nm`, or the id alone for a ratio."""
-    unit = column.unit.replace(" ", "")
+    unit = column.unit.replace(" abs", "_abs").replace(" ", "")
     return f"{column.id}_{unit}" if unit else column.id
 
 
@@ -108,6 +114,8 @@ def _texts(column: Column | None, count: int, look: Look) -> Iterator[str]:
         return repeat("", count)
     if column.id == "phi":
         return ("" if value is None else _number(whole_if_integral(value), None, look) for value in column.values)
+    if isinstance(column.values, array) and look.digits is None and not look.comma:
+        return (repr(value + 0.0) for value in column.values)  # as `exact` writes them, in half the time
     return (_number(value, look.digits, look) for value in column.values)
 
 

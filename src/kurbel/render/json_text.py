@@ -87,7 +87,7 @@ def _place_tables(part: Part, digits: int | None) -> dict[str, Any]:
         {
             "id": table.id,
             "title": table.title,
-            "rows": [dict(zip(table.heads, names)) for names in table.names],
+            **({"rows": [dict(zip(table.heads, names)) for names in table.names]} if table.heads else {}),
             "columns": [_column(column, digits) for column in table.columns],
         }
         for table in part.place_tables

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kurbel.render.numbers import angle
 from kurbel.render.prose import list_text, sentence_text, value_text
 from kurbel.render.sheet import MARK, part_name, sheets
+from kurbel.report.alike import told_once
 
 if TYPE_CHECKING:
     from kurbel.render import Look
@@ -21,7 +22,7 @@ Block = Iterable[str]
 
 def markdown(report: Report, look: Look) -> Iterator[str]:
     """Yield the report as lines of Markdown, every number as in the printed table."""
-    for index, block in enumerate(_blocks(report, look)):
+    for index, block in enumerate(_blocks(told_once(report), look)):
         if index:
             yield "\n"
         for text in block:

@@ -101,18 +101,18 @@ def single(value: float, digits: int | None = None, comma: bool = False) -> tupl
     return cell(value, scale, comma), scale.exponent
 
 
-def alone(value: float, digits: int | None = None, comma: bool = False) -> tuple[str, int]:
-    """Return a value among others of quite another size, and its power of ten: two digits if no more are asked for.
+def alone(value: float, digits: int, comma: bool = False) -> tuple[str, int]:
+    """Return a value among others of quite another size, with so many digits, and its power of ten.
 
-    >>> alone(0.0417), alone(3.2e-16), alone(1464), alone(0)
+    >>> alone(0.0417, 2), alone(3.2e-16, 2), alone(1464, 2), alone(0, 2)
     (('0.042', 0), ('3.2', -16), ('1464', 0), ('0', 0))
     """
     if not value or isinstance(value, int):
         return str(int(value)), 0
-    power = _power(abs(value), digits or 2)
+    power = _power(abs(value), digits)
     if -3 < power < 5:
-        return _decimal(f"{value:.{max(0, (digits or 2) - 1 - power)}f}", comma), 0
-    return _decimal(f"{value / 10.0**power:.{(digits or 2) - 1}f}", comma), power
+        return _decimal(f"{value:.{max(0, digits - 1 - power)}f}", comma), 0
+    return _decimal(f"{value / 10.0**power:.{digits - 1}f}", comma), power
 
 
 def angle(value: float, comma: bool = False) -> str:

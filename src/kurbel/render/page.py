@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from kurbel.render.lines import BLANK, Line, line
 from kurbel.render.prose import folded, prose
 from kurbel.render.sheet import sheets
+from kurbel.report.alike import told_once
 
 if TYPE_CHECKING:
     from kurbel.render import Look
@@ -20,6 +21,7 @@ def page(report: Report, look: Look) -> Iterator[Line]:
         from kurbel.render.rows import table
     else:
         from kurbel.render.book import table
+    report = told_once(report)
     yield from (line(one, "title") for one in folded(look.charset.text(report.title), look.width))
     yield from (line(one) for text in report.head for one in folded(look.charset.text(text), look.width))
     for sheet in sheets(report, look):

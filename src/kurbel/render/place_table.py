@@ -40,7 +40,7 @@ def cells_of(table: PlaceTable, look: Look) -> Cells:
         if value is None:
             return look.charset.no_value
         if column.alone:
-            number, power = alone(value, look.digits, look.comma)
+            number, power = alone(value, look.digits or column.alone, look.comma)
             return number + (look.charset.times_power(power) if power else "")
         return angle(value, look.comma) if column.unit == "deg" else cell(value, scales[column.unit], look.comma)
 
@@ -64,7 +64,7 @@ def place_tables(report: Report, look: Look) -> Iterator[list[Line]]:
 
 
 def _lines(cells: Cells, look: Look, name_heads: tuple[str, ...]) -> Iterator[Line]:
-    over = name_heads or ("",) * len(cells.names[0])
+    over = name_heads or ("",) * len(cells.names[0])  # of rows without a name there are none
     name_widths = [max(map(width, names)) for names in zip(over, *cells.names)]
     symbols, units = zip(*cells.heads)
     widths = [max(map(width, texts)) for texts in zip(symbols, units, *cells.rows)]
@@ -72,12 +72,12 @@ def _lines(cells: Cells, look: Look, name_heads: tuple[str, ...]) -> Iterator[Li
     ruled = line(look.charset.rule * (side + sum(cells_ + _GAP for cells_ in widths) - _GAP), "rule")
     yield _line([left(name, wide) for name, wide in zip(over, name_widths)], symbols, widths, "head")
     if any(units):
-        yield _line([" " * (side - _GAP)], units, widths, "unit")
+        yield _line([" " * (side - _GAP)] if side else [], units, widths, "unit")
     yield ruled
     before: tuple[str, ...] = ()
     for names, texts in zip(cells.names, cells.rows):
         # what repeats the row above stays blank, so that the rows of one part stand together
-        shown = ("" if before[:1] == names[:1] else names[0], *names[1:])
+        shown = ("", *names[1:]) if names and before[:1] == names[:1] else names
         yield _line([left(name, wide) for name, wide in zip(shown, name_widths)], texts, widths, "cell")
         before = names
     yield ruled

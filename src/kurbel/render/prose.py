@@ -64,14 +64,27 @@ def key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Li
     whole = max((width(s.whole) for s in shown if s.fraction), default=0)
     # a long list stands out beyond the column of numbers instead of pushing everything aside
     number = max((w for s in shown if (w := width(_aligned(s, whole))) <= _LONGEST), default=0)
+    if look.width is not None and 2 + symbol + 2 + number + 2 + unit + 2 + place > look.width:
+        shown, place = [_placed_below(one) for one in shown], 0
     for one in shown:
         value = _aligned(one, whole)
         head = f"  {left(one.symbol, symbol)}  {left(value, number)}  {left(one.unit, unit)}  "
         head += f"{left(one.place, place)}  " if place else ""
         if width(value) > number:
-            yield line(f"  {left(one.symbol, symbol)}  {value}  {one.unit}", "cell")
+            yield from _standing_out(f"  {left(one.symbol, symbol)}  ", f"{value}  {one.unit}".rstrip(), look)
             head = " " * (4 + symbol + number + 2 + unit + 2 + (place + 2 if place else 0))
         yield from sentence(head, one.text, look)
+
+
+def _placed_below(one: _Shown) -> _Shown:
+    return one._replace(place="", text=f"{one.place}  {one.text}") if one.place else one
+
+
+def _standing_out(head: str, value: str, look: Look) -> Iterator[Line]:
+    """Yield a long list beside its symbol, in as many lines as it takes."""
+    rest = None if look.width is None else max(look.width - width(head), _LEAST_BESIDE)
+    for index, text in enumerate(folded(value, rest)):
+        yield line((" " * width(head) if index else head) + text, "cell")
 
 
 def _aligned(one: _Shown, whole: int) -> str:
@@ -129,7 +142,8 @@ def value_text(one: KeyValue, look: Look) -> tuple[str, int]:
 
 def sentence_text(text: str, look: Look) -> str:
     """Return a sentence in the characters of the output, its numbers with the decimal comma where that is asked for."""
-    text = look.charset.text(text)
+    squared = re.sub(r"(?<=[a-z])\^2", "²", text)
+    text = look.charset.text(squared if look.charset.has(squared) else text)
     return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if look.comma else text
 
 

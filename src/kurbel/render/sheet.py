@@ -114,7 +114,7 @@ def ratio_text(part: Part, look: Look) -> str:
 
 
 def _row(column: Column, look: Look, pad: str) -> Row:
-    scale = scale_of(column.values, look.digits)
+    scale = scale_of((column.size,) if column.size else column.values, look.digits)
     if column.decimals is not None:
         scale = scale._replace(decimals=column.decimals, exponent=0)
     return _scaled(column, scale, look, pad)

@@ -120,7 +120,7 @@ def _tables(one: Measured) -> Iterator[PlaceTable]:
 
 
 def _column(id: str, symbol: str, unit: str, values: Sequence[Value]) -> Column:
-    return Column(id, symbol, symbol, unit, tuple(values), alone=True)
+    return Column(id, symbol, symbol, unit, tuple(values), alone=2)
 
 
 def _row_columns(rows: Sequence[Row]) -> tuple[Column, ...]:

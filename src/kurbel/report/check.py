@@ -17,10 +17,11 @@ from kurbel.report.notes import Note, machine_notes
 
 
 class Section(NamedTuple):
-    """A head line with its entries."""
+    """A head line with its entries; cylinder: they are all of the one whose name it is."""
 
     title: str
     entries: tuple[Entry, ...]
+    cylinder: bool = False
 
 
 class Checked(NamedTuple):
@@ -45,8 +46,10 @@ def checked(machine: Machine) -> Checked:
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
+        Section("Cranks", tuple(_crank_entries(machine))),
         Section("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
         Section("Crankshaft", tuple(_crankshaft_entries(machine))),
+        Section("Balance", tuple(_balance_entries(machine))),
         Section("Limits", tuple(one for one in entries if one.path[0] == "limits")),
         Section("Expected", tuple(one for one in entries if one.path[0] == "expect")),
     )
@@ -72,7 +75,20 @@ def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note
         *_notes(found, cylinder.name, path),
         *(Entry("note", note, "info", path) for note in cylinder.mechanism.notes),
     ]
-    return Section(cylinder.name, tuple(entries))
+    return Section(cylinder.name, tuple(entries), cylinder=True)
+
+
+def _crank_entries(machine: Machine) -> Iterable[Entry]:
+    """Yield for each of several cylinders when it follows the first, and where that puts its crank pin."""
+    banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
+    for cylinder in machine.cylinders[: len(machine.cylinders) if len(machine.cylinders) > 1 else 0]:
+        pin = f", stroke line at {cylinder.bank_angle:g} deg: crank pin {_behind(cylinder):g} deg behind the first"
+        yield Entry(cylinder.name, f"{cylinder.crank_position:g} deg after the first{pin if banked else ''}")
+
+
+def _behind(cylinder: Cylinder) -> float:
+    """Return by which angle in degrees a crank pin follows that of cylinder 1: its dead centre stands at the bank."""
+    return (cylinder.crank_position - cylinder.bank_angle) % 360.0
 
 
 def _notes(found: Sequence[Note], cylinder: str | None, path: Path = ()) -> Iterable[Entry]:
@@ -111,6 +127,25 @@ def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
     yield Entry("computed", "forces on the bearings, stresses in pin and webs")
     for what, why in strength_left_out(machine):
         yield Entry("left out", f"{what}: {why}", "info", ("crankshaft",))
+
+
+def _balance_entries(machine: Machine) -> Iterable[Entry]:
+    """Yield what kurbel balance has to say of a machine of which a place, a weight or a wheel is told."""
+    placed = any(one.axial_position is not None or one.counterweights for one in machine.cylinders)
+    if not (placed or machine.counterweights or machine.balance_shafts or machine.locomotive):
+        return
+    from kurbel.report.balance import subjects
+    from kurbel.solver.case import Case
+
+    try:
+        (whole,) = subjects(Case(machine))
+        missing = tuple(whole.left_out())
+    except KurbelError as error:
+        yield Entry("left out", str(error), "info")
+        return
+    yield Entry("computed", "free forces and moments, their orders, best counterweights")
+    for what, why in missing:
+        yield Entry("left out", f"{what}: {why}", "info")
 
 
 def _described(mechanism: Mechanism) -> str:

@@ -12,6 +12,7 @@ from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
+from kurbel.report.alike import grouped, together
 
 if TYPE_CHECKING:
     from kurbel.report.limits import Found
@@ -75,8 +76,8 @@ def _all_of(path: Path, quantity: Quantity, figure: float | Expected, found: Val
         text = f"this machine has no {quantity.id}: {quantity.text[:1].lower()}{quantity.text[1:]}"
         yield Unjudged(path, UsageError(f"{path_text(path)}: {text}"))
     else:
-        for where, value in found:
-            yield compared(path, quantity, figure, where, value)
+        for equal in grouped(found, lambda one: one[1]):
+            yield compared(path, quantity, figure, together([where for where, _ in equal]), equal[0][1])
 
 
 def compared(path: Path, quantity: Quantity, figure: float | Expected, where: str, value: float) -> Judged:

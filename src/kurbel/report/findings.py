@@ -50,8 +50,13 @@ Locate = Callable[[Origin, "list[Fault]"], "list[Fault]"]
 
 def findings(machine: Machine, checked: Checked, locate: Locate) -> Findings:
     """Return what was found of a machine; locate: returns faults with their places in the machine file."""
+    several = len(machine.cylinders) > 1
     said = [
-        (one.path, f"{one.what}: {one.text}", one.severity)
+        (
+            one.path,
+            f"{f'{section.title}: ' if several and section.cylinder else ''}{one.what}: {one.text}",
+            one.severity,
+        )
         for section in checked.sections
         for one in section.entries
         if one.severity

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from kurbel.declared.unit_systems import show
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
-from kurbel.report.frame import Frame, Subject, of_state
+from kurbel.report.frame import Frame, Rows, Subject, of_state, rows_of
 from kurbel.report.left_out import flywheel_left_out
 from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.tables import Report
@@ -17,7 +17,7 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.turning.flywheel import MachineTurning
 
 
-def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] | None, system: str) -> Report:
+def flywheel_report(case: Case, angles: Sequence[float] | Rows, columns: Sequence[str] | None, system: str) -> Report:
     """Return the turning effort of the machine over the angle of crank 1; angles, columns, system: see `Frame`.
 
     Raises UsageError where nothing turns the shaft, NoSolutionError where the machine stalls.
@@ -25,7 +25,7 @@ def flywheel_report(case: Case, angles: Sequence[float], columns: Sequence[str] 
     *cylinders, whole = subjects(case)
     having = [one for one in cylinders if list(one.key_values("flywheel"))]
     notes = _notes(case.machine, case.flywheel)
-    frame = Frame("flywheel", angles, columns, system)
+    frame = Frame("flywheel", rows_of(angles, 360.0 * case.machine.revolutions), columns, system)
     return frame.report(case.machine, "Drehkraftlinie und Schwungrad", having, whole, notes)
 
 
@@ -54,6 +54,7 @@ def subjects(case: Case) -> Iterable[Subject]:
         lambda degrees: of_state(turning.at(degrees)),
         left_out=lambda: flywheel_left_out(case.machine),
         warnings=lambda: of_machine(machine_notes(case.machine, case), case.machine),
+        source=turning,
     )
 
 

@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from typing import Any
 
-from kurbel.errors import UsageError
-from kurbel.report.frame import Answer, Frame, Rows, Subject, of_state, rows_of
+from kurbel.report.frame import Answer, Frame, Rows, Subject, of_state, refuse_without_cylinder, rows_of
 from kurbel.report.guide import guide_notes
 from kurbel.report.left_out import left_out
 from kurbel.report.motion import mechanism_notes
@@ -26,9 +25,8 @@ def forces_report(
 ) -> Report:
     """Return the forces of every cylinder; angles: crank angles, or what finds them; see `Frame`."""
     machine = case.machine
-    if not machine.cylinders:
-        raise UsageError(f"{machine.name} has no cylinder; kurbel forces needs one")
-    frame = Frame("forces", rows_of(case, angles, 360.0 * machine.revolutions), columns, system, also)
+    refuse_without_cylinder(machine, "forces")
+    frame = Frame("forces", rows_of(angles, 360.0 * machine.revolutions), columns, system, also)
     notes = (*mechanism_notes(machine), *guide_notes(case), *_rod_notes(case))
     return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=notes)
 
@@ -62,7 +60,7 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
         yield from left_out(case.machine, cylinder)
         yield from _no_loss(forces)
 
-    return Subject(cylinder.name, (forces, forces.motion), at, cylinder.mechanism, left, warnings)
+    return Subject(cylinder.name, (forces, forces.motion), at, forces.lists, left, warnings, source=forces)
 
 
 def _no_loss(forces: CylinderForces) -> tuple[LeftOut, ...]:

@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.declared.quantities import COMMON, Lists
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.reading import shown
-from kurbel.errors import UsageError
+from kurbel.errors import NoSolutionError, Nowhere, UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms import every_quantity, quantities_of
+from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.figures import answered
 
-if TYPE_CHECKING:
-    from kurbel.mechanisms import Mechanism
-    from kurbel.solver.case import Case
-    from kurbel.solver.cylinder.forces import CylinderForces
+APPROXIMATIONS = ("x_book", "c_book", "b_book", "P_gas_book")
+"""Columns of the book beside the exact ones."""
 
 Answer = Callable[[Quantity], Any]
 """What answers a column with its values (n,) in SI at certain crank angles, or None where it has none."""
@@ -32,22 +30,18 @@ class Subject(NamedTuple):
     """What a command speaks of: one cylinder, or the whole machine.
 
     results: what answers its key values, the first that knows one; at: takes crank angles (n,) in degrees and returns
-    what answers its columns; mechanism: whose own quantities it has besides. left_out, warnings, place_tables: are made
-    when they are read.
+    what answers its columns; lists: the quantities that it may have. left_out, warnings, place_tables: are made
+    when they are read; source: where its columns are told of, `angles_where`, None for what has no rows.
     """
 
     name: str
     results: tuple[Any, ...]
     at: Callable[[Any], Answer] | None = None
-    mechanism: Mechanism | None = None
+    lists: Lists = COMMON
     left_out: Callable[[], Iterable[LeftOut]] = tuple
     warnings: Callable[[], Iterable[str]] = tuple
     place_tables: tuple[PlaceTable, ...] = ()
-
-    @property
-    def lists(self) -> Lists:
-        """The quantities that it may have."""
-        return quantities_of(self.mechanism) if self.mechanism else COMMON
+    source: Any = None
 
     def says(self, quantity: Quantity) -> bool:
         """Whether a quantity says something new here."""
@@ -76,16 +70,30 @@ def of_state(state: Any) -> Answer:
     return lambda column: getattr(state, column.id, None)
 
 
-Rows = Callable[["Subject", "CylinderForces", float], "Sequence[float]"]
-"""Takes what a cylinder answers, its results, and the degrees of the table; returns crank angles (n,) in degrees."""
+Rows = Callable[["Subject", float], "Sequence[float]"]
+"""Takes a subject and the degrees of its table; returns crank angles (n,) in degrees."""
 
 
-def rows_of(case: Case, angles: Sequence[float] | Rows, end: float) -> Sequence[float] | Callable[[Subject], Any]:
-    """Return angles as they are, or what tells those of each cylinder, whose table goes from 0 to `end` degrees."""
+def rows_of(angles: Sequence[float] | Rows, end: float) -> Sequence[float] | Callable[[Subject], Any]:
+    """Return angles as they are, or what tells those of each subject, whose table goes from 0 to `end` degrees."""
     if not callable(angles):
         return angles
-    found, results = angles, {forces.drive.name: forces for forces in case.cylinders}
-    return lambda subject: found(subject, results[subject.name], end)
+    found = angles
+    return lambda subject: found(subject, end)
+
+
+def refuse_without_cylinder(machine: Machine, command: str) -> None:
+    """Raise UsageError where a command has nothing to tell of."""
+    if not machine.cylinders:
+        raise UsageError(f"{machine.name} has no cylinder; kurbel {command} needs one")
+
+
+def _nowhere(parts: Sequence[Part]) -> Iterator[str]:
+    """Yield why parts have no row, in one sentence each; raises NoSolutionError where none has."""
+    without = [part.nowhere for part in parts if part.nowhere]
+    if without and not any(part.columns for part in parts):
+        raise NoSolutionError(without[0])
+    return (f"{one}." for one in without)
 
 
 class Frame(NamedTuple):
@@ -114,19 +122,27 @@ class Frame(NamedTuple):
             every = (*subjects, *((whole,) if whole else ()))
             parts = [self._part(one) for one in every]
             self._refuse_absent(every, parts)
+            told = (*notes, *self._nothing_compared(parts), *_nowhere(parts))
             last = parts.pop() if whole else None
             name = machine.name
-            report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=tuple(notes))
-            return report._replace(provenance=provenance(machine))
+            report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=told)
+            return report._replace(
+                provenance=provenance(machine), cylinders=tuple(cylinder.name for cylinder in machine.cylinders)
+            )
 
     def _part(self, subject: Subject) -> Part:
+        try:
+            columns, nowhere = self._columns(subject), ""
+        except Nowhere as error:
+            columns, nowhere = (), str(error)
         return Part(
             subject.name,
-            self._columns(subject),
+            columns,
             self._later(lambda: self._key_values(subject)),
             self._later(subject.left_out),
             self._later(subject.warnings),
             subject.place_tables,
+            nowhere,
         )
 
     def _later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:
@@ -153,6 +169,14 @@ class Frame(NamedTuple):
     def _key_values(self, subject: Subject) -> Iterator[KeyValue]:
         for quantity, value in subject.key_values(self.command):
             yield shown_key_value(quantity, value, self.system)
+
+    def _nothing_compared(self, parts: Sequence[Part]) -> Iterator[str]:
+        asked = {*self.also} & {*APPROXIMATIONS}
+        if asked and not any(column.id in asked for part in parts for column in part.columns):
+            yield (
+                "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset "
+                "and of a piston with pressures; this machine has neither."
+            )
 
     def _refuse_absent(self, subjects: Sequence[Subject], parts: Sequence[Part]) -> None:
         """Raise UsageError for a column that was asked for and that no part has."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from kurbel.report.alike import together
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
@@ -13,19 +14,32 @@ _MOST = 4
 
 
 def guide_notes(case: Case) -> Iterable[str]:
-    """Yield for each cylinder where its crosshead lifts off the lower guide, and whether the other sense avoids it."""
-    machine = case.machine
-    if machine.rotation is None:
-        return
-    for forces in case.cylinders:
-        mechanism, upright = forces.drive.mechanism, not forces.drive.down
-        if upright or forces.extremes_of("N") is None or not (mechanism.guided and mechanism.has_rod):
-            continue
-        name = f"{forces.drive.name}: " if len(machine.cylinders) > 1 else ""
-        other = _OTHER[machine.rotation]
-        turned = CylinderForces(replace(machine, rotation=other), forces.drive.cylinder)
-        there = f"; turning {other} it {_rests(turned, 'would rest', 'would lift')}" if forces.lifted else ""
-        yield f"{name}Turning {machine.rotation}, the crosshead {_rests(forces, 'rests', 'lifts')}{there} (R p. 602)."
+    """Yield of which cylinders the crosshead rests on the lower guide."""
+    resting = [forces for forces in case.cylinders if _guided(forces) and not forces.lifted]
+    if resting:
+        name = f"{together([one.drive.name for one in resting])}: " if len(case.cylinders) > 1 else ""
+        yield f"{name}{_told(resting[0])} (R p. 602)."
+
+
+def guide_warnings(forces: CylinderForces) -> Iterable[str]:
+    """Yield where the crosshead of a cylinder lifts off the lower guide, and whether the other sense avoids it."""
+    if _guided(forces) and forces.lifted:
+        machine, drive = forces.drive.machine, forces.drive
+        other = _OTHER[machine.rotation or "over"]
+        turned = CylinderForces(replace(machine, rotation=other), drive.cylinder)
+        yield f"{_told(forces)}; turning {other} it {_rests(turned, 'would rest', 'would lift')} (R p. 602)"
+
+
+def _guided(forces: CylinderForces) -> bool:
+    """Return whether there is a guide below, and a sense of rotation that is told."""
+    drive = forces.drive
+    if drive.machine.rotation is None or not drive.down or not (drive.mechanism.guided and drive.mechanism.has_rod):
+        return False
+    return forces.extremes_of("N") is not None
+
+
+def _told(forces: CylinderForces) -> str:
+    return f"Turning {forces.drive.machine.rotation}, the crosshead {_rests(forces, 'rests', 'lifts')}"
 
 
 def _rests(forces: CylinderForces, rests: str, lifts: str) -> str:

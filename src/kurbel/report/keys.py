@@ -66,6 +66,8 @@ def every_place() -> dict[str, list[Place]]:
 def places_at(path: str) -> list[Place]:
     """Return the key at a dotted path, as messages and `--set` write it; raises UsageError where there is none."""
     places = every_place()
+    if not path.strip(". "):
+        raise UsageError("no key is named; 'kurbel keys' without one lists them all")
     steps = [step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()]
     if len(steps) > 1 and steps[0] == "cylinders":
         inner = steps[2:] if steps[1] == "each" else steps[1:]

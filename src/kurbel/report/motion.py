@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.report.frame import Frame, Rows, Subject, of_state, rows_of
+from kurbel.report.frame import Frame, Rows, Subject, of_state, refuse_without_cylinder, rows_of
 from kurbel.report.left_out import motion_left_out
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
@@ -22,9 +21,8 @@ def motion_report(
 ) -> Report:
     """Return the motion of every cylinder's mechanism; angles: crank angles, or what finds them; see `Frame`."""
     machine = case.machine
-    if not machine.cylinders:
-        raise UsageError(f"{machine.name} has no cylinder; kurbel motion needs one")
-    frame = Frame("motion", rows_of(case, angles, 360.0), columns, system, also)
+    refuse_without_cylinder(machine, "motion")
+    frame = Frame("motion", rows_of(angles, 360.0), columns, system, also)
     return frame.report(machine, "Bewegung des Kurbeltriebes", subjects(case), notes=mechanism_notes(machine))
 
 
@@ -39,8 +37,9 @@ def _subject(machine: Machine, forces: CylinderForces) -> Subject:
         cylinder.name,
         (forces.motion,),
         lambda degrees: of_state(forces.at(degrees)),
-        cylinder.mechanism,
+        forces.lists,
         lambda: motion_left_out(machine, cylinder),
+        source=forces,
     )
 
 

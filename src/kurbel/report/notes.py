@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.machine import Cylinder, Machine
+from kurbel.report.alike import grouped, together
+from kurbel.report.pins import pin_notes
 from kurbel.report.sizes import size_notes, speed_notes
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
     found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
     found += [Note(None, text) for text in speed_notes(machine)]
     found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in size_notes(cylinder)]
+    found += [Note(None, text) for text in pin_notes(machine)]
     if machine.effort or any(map(_acts, machine.cylinders)):
         import numpy as np
 
@@ -83,6 +86,7 @@ def of_cylinder(found: Iterable[Note], machine: Machine, cylinder: Cylinder) -> 
 
 
 def of_machine(found: Iterable[Note], machine: Machine) -> Iterable[str]:
-    """Yield all notes, each after the name of its cylinder where there are several."""
-    for name, text in found:
-        yield f"{name}, {text}" if name is not None and len(machine.cylinders) > 1 else text
+    """Yield all notes, each after the names of its cylinders where there are several."""
+    for notes in grouped(found, lambda note: note.text):
+        names = [note.cylinder for note in notes if note.cylinder is not None]
+        yield f"{together(names)}: {notes[0].text}" if names and len(machine.cylinders) > 1 else notes[0].text

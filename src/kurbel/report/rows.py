@@ -13,7 +13,7 @@ from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import example, unit_factor
-from kurbel.errors import NoSolutionError, UnitError, UsageError
+from kurbel.errors import Nowhere, UnitError, UsageError
 from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
@@ -22,7 +22,9 @@ from kurbel.report.angles import stepped
 
 if TYPE_CHECKING:
     from kurbel.report.frame import Rows, Subject
-    from kurbel.solver.cylinder.forces import CylinderForces
+
+
+_OF_SPEED = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
 
 
 def over_stroke(step: float) -> Rows:
@@ -32,8 +34,8 @@ def over_stroke(step: float) -> Rows:
     """
     fractions = np.asarray(stepped(step, 100.0)) / 100
 
-    def angles(subject: Subject, forces: CylinderForces, end: float) -> Sequence[float]:
-        mechanism = forces.drive.mechanism
+    def angles(subject: Subject, end: float) -> Sequence[float]:
+        mechanism = subject.source.drive.mechanism
         if mechanism.turns:
             raise UsageError(f"--over x: the output of a {mechanism.name} turns on and has no stroke")
         way = mechanism.stroke * fractions
@@ -51,15 +53,16 @@ def _turns(end: float) -> list[tuple[float, int]]:
 
 
 class Place(NamedTuple):
-    """A condition such as `b = 1/6 b_max`: a column, and the value at which it is wanted, as it is written."""
+    """A condition such as `b = 1/6 b_max`: a column of a command, and the value at which it is wanted, as written."""
 
+    command: str
     column: str
-    factor: float
+    factor: float | None
     of: str
     text: str
 
     @classmethod
-    def parsed(cls, text: str) -> Place:
+    def parsed(cls, text: str, command: str) -> Place:
         """Return the condition that a text is. Raises UsageError that says what to write instead."""
         column, equals, value = plain(text).partition("=")
         number = re.match(RATIO, value.strip()) or NUMBER.match(value.strip())
@@ -67,28 +70,34 @@ class Place(NamedTuple):
         if len(text) > LONGEST_VALUE or not (text.isprintable() and column.strip() and equals and (number or of)):
             raise UsageError(f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{shown(text)}'")
         try:
-            return cls(column.strip(), parse_ratio(number.group()) if number else 1.0, of, text)
+            return cls(command, column.strip(), parse_ratio(number.group()) if number else None, of, text)
         except UnitError as error:
             raise UsageError(f"--where: {error}") from None
 
-    def angles(self, subject: Subject, forces: CylinderForces, end: float) -> Sequence[float]:
+    def angles(self, subject: Subject, end: float) -> Sequence[float]:
         """Return the crank angles in degrees, exact but for rounding; see `Rows`. Raises NoSolutionError for none."""
         column = self._column(subject)
         value = self._value(subject, column) if column else 0.0
-        found = column and forces.angles_where(column.id, value)
+        found = column and subject.source.angles_where(column.id, value)
         if column is None or found is None:
-            raise UsageError(f"--where: '{self.column}' is left out for this machine; kurbel check says why")
+            raise UsageError(f"--where: '{self.column}' is left out for this machine{self._why(subject, column)}")
         if not found.angles:
             low, high = (show(one, column.kind) for one in found.span)
-            raise NoSolutionError(
+            raise Nowhere(
                 f"{subject.name}: {column.id} is nowhere {show(value, column.kind)}: it goes from {low} to {high}"
             )
         # a table over one turn has what a cycle of two has in either
         return ascending(np.mod(found.angles, end), 1e-9).tolist()  # type: ignore[no-any-return]
 
+    def _why(self, subject: Subject, column: Quantity | None) -> str:
+        """Return why a column is left out, as far as the speed is the reason."""
+        if column is None or column.kind not in _OF_SPEED or subject.source.omega is not None:
+            return "; kurbel check says why"
+        return ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
+
     def _column(self, subject: Subject) -> Quantity | None:
         """Return the column that is meant, by id or printed symbol; None for one of other machines alone."""
-        own, every = (lists.columns("forces") for lists in (subject.lists, every_quantity()))
+        own, every = (lists.columns(self.command) for lists in (subject.lists, every_quantity()))
         ids = called(self.column, own.values()) or called(self.column, every.values())
         if not ids:
             near = did_you_mean(self.column, tuple(every))
@@ -99,18 +108,21 @@ class Place(NamedTuple):
 
     def _value(self, subject: Subject, column: Quantity) -> float:
         """Return the value in SI: a number with a unit of the column's kind, or a fraction of a key value."""
+        factor = 1.0 if self.factor is None else self.factor
         if not self.of:
-            if self.factor and column.kind != "ratio":
+            if factor and column.kind != "ratio":
                 raise UsageError(f"--where: {self.text} has no unit; write for instance {example(column.kind)}")
-            return self.factor
+            return factor
         try:
             up, down = unit_factor(self.of, column.kind)
         except UnitError as error:
-            return self.factor * self._key_value(subject, column, str(error))
-        return self.factor * up / down
+            return factor * self._key_value(subject, column, str(error))
+        if self.factor is None:
+            raise UsageError(f"--where: {shown(self.text)} has no number before the unit; write {example(column.kind)}")
+        return factor * up / down
 
     def _key_value(self, subject: Subject, column: Quantity, no_unit: str) -> float:
-        known = subject.lists.key_values("forces")
+        known = subject.lists.key_values(self.command)
         quantity = next((known[id] for id in called(self.of, known.values()) if known[id].kind == column.kind), None)
         if quantity is None:
             alike = [one.id for one in known.values() if one.kind == column.kind and not one.listed]

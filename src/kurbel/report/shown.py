@@ -17,6 +17,10 @@ from kurbel.report.tables import Column, KeyValue
 
 _AT_ONCE = 8192
 """Crank angles computed at once: what a table of any length costs in memory beside its own numbers."""
+_EVERYWHERE = np.arange(0.0, 720.0, 7.5)
+"""Crank angles in degrees over the longest cycle, of which one shows the size of a curve."""
+_ROUNDING = 1e-12
+"""Values no larger than this beside the largest of their curve are the rounding of a zero."""
 
 
 def shown_columns(
@@ -31,7 +35,7 @@ def shown_columns(
     at: takes angles (k,) and returns what answers a column with values (k,) in SI, or None where there are none.
     Raises UsageError where one is not finite.
     """
-    wanted = dict.fromkeys((phi, *columns))
+    wanted, everywhere = dict.fromkeys((phi, *columns)), at(_EVERYWHERE)
     found: dict[Quantity, array[float]] = {}
     for start in range(0, len(angles), _AT_ONCE):
         degrees = np.asarray(angles[start : start + _AT_ONCE], dtype=float)
@@ -40,22 +44,31 @@ def shown_columns(
             values = degrees if column is phi else value_of(column)
             if values is not None:
                 found.setdefault(column, array("d")).frombytes(np.asarray(values, dtype=float).tobytes())
-    return tuple(shown_column(column, values, system) for column, values in found.items())
+    return tuple(
+        shown_column(column, values, system, 0.0 if column is phi else float(np.abs(everywhere(column)).max()))
+        for column, values in found.items()
+    )
 
 
-def shown_column(quantity: Quantity, values: Sequence[float | None], system: str) -> Column:
-    """Return the column of a quantity; values (n,) in SI, None where there is none.
+def shown_column(
+    quantity: Quantity, values: Sequence[float | None], system: str, size: float = 0.0, beside: float = 0.0
+) -> Column:
+    """Return the column of a quantity; values (n,) in SI, None where there is none; size: of the largest of its curve.
 
-    Raises UsageError where one is not finite.
+    beside: the largest value in SI of what is to have the same unit. Raises UsageError where one is not finite.
     """
     given = np.frombuffer(values) if isinstance(values, array) else np.array([v for v in values if v is not None])
-    if not np.isfinite(given).all():
+    if not (np.isfinite(given).all() and math.isfinite(size)):
         raise too_large(quantity)
-    unit = shown_unit(quantity.kind, system, max(given.max(initial=0.0), -given.min(initial=0.0)))
+    largest = max(given.max(initial=0.0), -given.min(initial=0.0))
+    size = size if largest <= _ROUNDING * size else 0.0
+    unit = shown_unit(quantity.kind, system, max(size or largest, beside))
     given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
     given += 0.0
     shown = values if isinstance(values, array) else _filled(values, given.tolist())
-    return Column(quantity.id, quantity.symbol, quantity.ascii_symbol, unit, shown, quantity.text)
+    size = convert(size, quantity.kind, unit)
+    symbols = quantity.symbol, quantity.ascii_symbol
+    return Column(quantity.id, *symbols, quantity.marked(unit), shown, quantity.text, size=size)
 
 
 def _filled(values: Sequence[float | None], given: list[float]) -> tuple[float | None, ...]:
@@ -74,7 +87,8 @@ def shown_key_value(quantity: Quantity, value: Any, system: str) -> KeyValue:
     shown = [float(convert(one, quantity.kind, unit)) + 0.0 for one in each]
     number = tuple(shown) if isinstance(raw, tuple) else shown[0]
     noise = any(map(quantity.is_noise, shown))
-    return KeyValue(quantity.id, quantity.symbol, quantity.ascii_symbol, unit, number, quantity.text, at, noise)
+    symbols = (quantity.symbol, quantity.ascii_symbol)
+    return KeyValue(quantity.id, *symbols, quantity.marked(unit), number, quantity.text, at, noise)
 
 
 def too_large(quantity: Quantity) -> UsageError:

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import NamedTuple, TypeVar, Union
 
 from kurbel.declared.reading import shown
-from kurbel.errors import UsageError
+from kurbel.errors import NoSolutionError, UsageError
 
 Value = Union[float, int, None]
 Item = TypeVar("Item")
@@ -38,8 +38,9 @@ class Column(NamedTuple):
 
     values: a tuple, or an array of doubles, which takes a quarter of the memory;
     decimals: fixed number of decimals in printed tables, where the digits of a source are to be kept;
-    marked: indices of the values that the printed table marks with an asterisk; alone: each value has a scale of its
-    own, since they run over many powers of ten, as errors do.
+    marked: indices of the values that the printed table marks with an asterisk; alone: the digits of values of which
+    each has a scale of its own, since they run over many powers of ten, as errors do, 0 where they share one; size: of
+    the largest value of the whole curve, where the values here are but rounding beside it, and 0 where they are not.
     """
 
     id: str
@@ -50,7 +51,8 @@ class Column(NamedTuple):
     text: str = ""
     decimals: int | None = None
     marked: tuple[int, ...] = ()
-    alone: bool = False
+    alone: int = 0
+    size: float = 0.0
 
 
 class KeyValue(NamedTuple):
@@ -79,9 +81,9 @@ class LeftOut(NamedTuple):
 class PlaceTable(NamedTuple):
     """A table whose rows are named places instead of crank angles; `id` names it in csv and json.
 
-    heads: what the names are, such as (part, place); names: those of each row, one to a head, with _ for a blank;
-    columns: as over the crank angle, one value to a row; headed: the heads are printed too, and the names are texts as
-    they stand.
+    heads: what the names are, such as (part, place), or none; names: those of each row, one to a head, with _ for a
+    blank; columns: as over the crank angle, one value to a row; headed: the heads are printed too, and the names are
+    texts as they stand.
     """
 
     id: str
@@ -95,7 +97,7 @@ class PlaceTable(NamedTuple):
 class Part(NamedTuple):
     """The results of one cylinder, L/R or scene, or of the whole machine; the first column is the crank angle.
 
-    `name` is the cylinder's name or the L/R as a number.
+    `name` is the cylinder's name or the L/R as a number. nowhere: why it has no row, where rows are sought.
     """
 
     name: str | float
@@ -104,6 +106,7 @@ class Part(NamedTuple):
     left_out: Collection[LeftOut] = ()
     warnings: Collection[str] = ()
     place_tables: tuple[PlaceTable, ...] = ()
+    nowhere: str = ""
 
 
 class Input(NamedTuple):
@@ -127,7 +130,8 @@ class Report(NamedTuple):
     title: head line over the printed table, with its German title; command and machine as in JSON (`machine` is None
     for `kurbel table`); group: `cylinders`, `ratios` or `scenes`, the JSON key of `parts`; whole: the results of the
     whole machine, if any; mirrored: what changes under a second head line of the angles 360° − φ (empty: no such line);
-    notes: sentences below the table; head: sentences right below the title; provenance: None where no file was read.
+    notes: sentences below the table; head: sentences right below the title; provenance: None where no file was read;
+    cylinders: the names of all that the machine has.
     """
 
     title: str
@@ -140,6 +144,7 @@ class Report(NamedTuple):
     notes: tuple[str, ...] = ()
     head: tuple[str, ...] = ()
     provenance: Provenance | None = None
+    cylinders: tuple[str, ...] = ()
 
     @property
     def all_parts(self) -> tuple[Part, ...]:
@@ -147,13 +152,27 @@ class Report(NamedTuple):
         return self.parts if self.whole is None else (*self.parts, self.whole)
 
     def of_cylinder(self, name: str) -> Report:
-        """Return the results of one cylinder alone. Raises UsageError where there are none by that name."""
+        """Return the results of one cylinder alone, by its name or its number.
+
+        Raises UsageError where there are none, and where one is called by the number of another; NoSolutionError where
+        no row of it is found.
+        """
+        numbered = dict(zip(map(str, range(1, len(self.cylinders) + 1)), self.cylinders))
+        if numbered.get(name, name) != name and name in self.cylinders:
+            own = self.cylinders.index(name) + 1
+            raise UsageError(
+                f"--cylinder: '{name}' is the name of cylinder {own} and the number of '{shown(numbered[name])}'; "
+                f"write '{own}' or '{shown(numbered[name])}'"
+            )
+        name = numbered.get(name, name)
         names = tuple(str(part.name) for part in self.parts)
         if name not in names:
             there = ", ".join(names) or "the whole machine only"
             raise UsageError(
                 f"--cylinder: kurbel {self.command} has no results of '{shown(name)}'; it has those of {there}"
             )
+        if nowhere := self.parts[names.index(name)].nowhere:
+            raise NoSolutionError(nowhere)
         title = f"{self.title}: {name}" if len(self.all_parts) > 1 else self.title
         return self._replace(title=title, parts=(self.parts[names.index(name)],), whole=None)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
+from kurbel.report.guide import guide_warnings
 
 if TYPE_CHECKING:
     from kurbel.solver.case import Case
@@ -27,6 +28,7 @@ def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
                 "counted as Druckwechsel"
             )
         yield from _bound_warnings(forces)
+        yield from guide_warnings(forces)
 
     return _as_far_as_solved(found, "forces")
 
@@ -96,10 +98,11 @@ def _bound_warnings(forces: CylinderForces) -> Iterable[str]:
 def _of_turning(turning: MachineTurning) -> Iterable[str]:
     machine = turning.machine
     if turning.deficit is not None:
+        word = "more" if turning.deficit > 0 else "less"
         yield (
             f"mean effort {show(turning.M_mean, 'torque')} and mean resistance "
             f"{show(turning.M_mean - turning.deficit, 'torque')} differ: the machine does not run steadily like this; "
-            f"E and ω count {show(turning.deficit, 'torque')} more resistance all the time"
+            f"E and ω count {show(abs(turning.deficit), 'torque')} {word} resistance all the time"
         )
     if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
         yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
@@ -138,7 +141,7 @@ def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
         return
     for near in turning.elastic.resonances:
         yield (
-            f"resonance: harmonic {near.order:g} of the torque ({near.amplitude:.4g} N m) lies "
+            f"resonance: harmonic {near.order:g} of the torque ({show(near.amplitude, 'torque')}) lies "
             f"{100 * abs(near.distance):.2g} % from the natural order {turning.elastic.natural_order:.4g} and is "
             f"amplified {near.amplification:.3g} times"
         )

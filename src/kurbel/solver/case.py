@@ -14,8 +14,13 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Figure, Results
 
 if TYPE_CHECKING:
+    from kurbel.solver.balance.machine_balance import MachineBalance
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
     from kurbel.solver.turning.flywheel import MachineTurning
+
+
+_WHOLE = {"stress": "strength", "flywheel": "flywheel", "balance": "balance"}
+"""Command of the whole machine -> the results of a case that answer it."""
 
 
 class Case:
@@ -40,9 +45,14 @@ class Case:
         commands = {word for id in called(name, known.all_key_values) for word in known.commands_of(id)}
         if "forces" in commands and len(self.cylinders) == 1:
             return self.cylinders[0][name]
-        if "forces" in commands and not commands & {"flywheel", "stress"}:
+        whole = next((_WHOLE[command] for command in _WHOLE if command in commands), "")
+        if "forces" in commands and not whole:
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
-        return (self.strength if "stress" in commands else self.flywheel)[name]
+        results: Results = getattr(self, whole or "flywheel")
+        return results[name]
+
+    def __repr__(self) -> str:
+        return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
 
     def _repr_html_(self) -> str:
         from html import escape
@@ -65,6 +75,18 @@ class Case:
         from kurbel.solver.strength.crankshaft import CrankshaftStrength
 
         return CrankshaftStrength(self.machine, self.cylinders)
+
+    @property
+    def stress(self) -> CrankshaftStrength:
+        """What `kurbel stress` answers, by the name of the command as the others are."""
+        return self.strength
+
+    @cached_property
+    def balance(self) -> MachineBalance:
+        """Free forces and moments of the whole machine. Raises UsageError where no masses move."""
+        from kurbel.solver.balance.machine_balance import MachineBalance
+
+        return MachineBalance(self.machine, self.cylinders)
 
     @cached_property
     def flywheel(self) -> MachineTurning:

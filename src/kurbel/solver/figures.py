@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from kurbel.declared.quantities import COMMON, Lists
 from kurbel.declared.quantity import NOISE_POWER, Quantity, ambiguity, called
+from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.errors import KurbelError, UsageError
 from kurbel.near_words import did_you_mean
@@ -44,38 +44,72 @@ class Results:
 
     def __getitem__(self, name: str) -> Figure:
         """Return a key value by its id or printed symbol; raises UsageError where there is none."""
-        known = self.lists.key_values(self.command)
-        found = called(name, known.values())
-        if not found or ambiguity(name, found):
-            raise UsageError(ambiguity(name, found) or f"no key value '{name}'{did_you_mean(name, tuple(known))}")
-        value = answered(self.answering, known[found[0]])
+        quantity = self._known[_only(name, self._known, "key value")]
+        value = answered(self.answering, quantity)
         if value is None:
-            raise UsageError(f"this machine has no {found[0]}: {known[found[0]].text}")
-        return _figure(known[found[0]], value)
+            raise UsageError(f"this machine has no {quantity.id}: {quantity.text}")
+        return _figure(quantity, value)
 
-    def figures(self) -> Iterator[Figure]:
-        """Yield every key value that there is, in the order in which it is printed."""
-        for quantity in self.lists.key_values(self.command).values():
-            value = answered(self.answering, quantity)
-            if value is not None:
-                yield _figure(quantity, value)
+    def key_values(self) -> dict[str, Figure]:
+        """Return every key value that there is by its id, in the order in which they are printed."""
+        found = {quantity: answered(self.answering, quantity) for quantity in self._known.values()}
+        return {quantity.id: _figure(quantity, value) for quantity, value in found.items() if value is not None}
 
-    def columns(self, degrees: Any) -> dict[str, Array]:
-        """Return every column (n,) that there is, in SI by its id, at crank angles (n,) in degrees."""
-        angles = np.atleast_1d(np.asarray(degrees, dtype=float))
+    @property
+    def _known(self) -> dict[str, Quantity]:
+        return self.lists.key_values(self.command)
+
+    def columns(self, degrees: Any, *names: str) -> dict[str, Array]:
+        """Return φ and these columns (n,), or all that there are, in SI by id, at crank angles (n,) in degrees.
+
+        names: ids or printed symbols. Raises UsageError for angles that are no numbers and for what is no column here.
+        """
+        angles = np.atleast_1d(crank_angles(degrees))
         state: Any = self.at(angles)  # type: ignore[attr-defined]
-        found = {id: getattr(state, id, None) for id in self.lists.columns(self.command) if id != "phi"}
+        known = self.lists.columns(self.command)
+        ids = [_only(name, known, "column") for name in names] if names else list(known)
+        found = {id: getattr(state, id, None) for id in ids if id != "phi"}
+        for id, values in found.items() if names else ():
+            if values is None:
+                raise UsageError(f"this machine has no {id}: {known[id].text}")
         return {"phi": angles, **{id: np.asarray(one, float) for id, one in found.items() if one is not None}}
+
+    @property
+    def _of(self) -> str:
+        """What the results are of."""
+        return "the whole machine"
+
+    def __repr__(self) -> str:
+        return f"<kurbel {self.command} of {self._of}: ['id'], key_values(), columns(degrees)>"
 
     def _repr_html_(self) -> str:
         from html import escape
 
         try:
             with np.errstate(all="ignore"):
-                rows = "".join(map(_row, self.figures()))
+                rows = "".join(map(_row, self.key_values().values()))
         except KurbelError as error:
             return f"<p>{escape(str(error))}</p>"
         return f"<table>{rows}</table>"
+
+
+def crank_angles(degrees: Any) -> Array:
+    """Return crank angles in degrees as an array; raises UsageError for what are no finite numbers."""
+    try:
+        angles = np.asarray(degrees, dtype=float)
+    except (TypeError, ValueError):
+        raise UsageError(f"crank angles are numbers of degrees, not {shown(repr(degrees))}") from None
+    if not np.isfinite(angles).all():
+        raise UsageError("crank angles are finite numbers of degrees, not nan or inf")
+    return angles
+
+
+def _only(name: str, known: dict[str, Quantity], what: str) -> str:
+    """Return the one id that a name means; raises UsageError for none and for several."""
+    found = called(name, known.values())
+    if not found or ambiguity(name, found):
+        raise UsageError(ambiguity(name, found) or f"no {what} '{shown(name)}'{did_you_mean(name, tuple(known))}")
+    return found[0]
 
 
 def answered(results: tuple[Any, ...], quantity: Quantity) -> Any:
@@ -96,7 +130,7 @@ def _asked(results: Any, name: str, argument: str = "", part: str = "") -> Any:
 
 def _figure(quantity: Quantity, value: Any) -> Figure:
     number, degrees = value if isinstance(value, Extreme) else (value, None)
-    return Figure(number, SI[quantity.kind], degrees, quantity)
+    return Figure(number, quantity.marked(SI[quantity.kind]), degrees, quantity)
 
 
 def _row(figure: Figure) -> str:
@@ -109,5 +143,5 @@ def _row(figure: Figure) -> str:
     if any(map(quantity.is_noise, each)):
         numbers = f"< 1e{NOISE_POWER}"
     at = "" if figure.degrees is None else f"at {figure.degrees:.2f}°"
-    cells = (quantity.symbol, numbers, unit, at, quantity.text)
+    cells = (quantity.symbol, numbers, quantity.marked(unit), at, quantity.text)
     return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 from kurbel.declared.bounds import SIZES, out_of_size, range_of
 from kurbel.declared.keys import Form, Schema
-from kurbel.declared.numerals import NUMBER, RATIO, parse_ratio
+from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio
 from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import example, parse_quantity, unit_factor, unit_names
@@ -138,7 +138,7 @@ class Physical(_Bounded):
         name, units = f"quantity_{self.kind}", ", ".join(unit_names(self.kind))
         definitions[name] = {
             "type": "string",
-            "pattern": f"^\\s*{NUMBER.pattern}\\s*{_units(self.kind)}\\s*$",
+            "pattern": f"^\\s*{WRITTEN}\\s*{_units(self.kind)}\\s*$",
             "description": f"{self.expected()}; in size {range_of(self.kind)}; units: {units}",
             # draft-07 has no words for a fault; editors (YAML and JSON language servers, ajv) take them from these
             "errorMessage": f"write {self.expected()}",

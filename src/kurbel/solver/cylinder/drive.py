@@ -55,7 +55,7 @@ class Drive:
         return None if self.machine.speed is None else 2 * math.pi * self.machine.speed
 
     @cached_property
-    def mass(self) -> Any:
+    def mass(self) -> float:
         """Reciprocating mass in kg, 0 without masses."""
         masses = self.cylinder.masses
         return masses.at_crosshead(self.mechanism.rod_length) if masses else 0.0
@@ -73,11 +73,9 @@ class Drive:
 
     @cached_property
     def pin_inertia(self) -> Any:
-        """Moment of inertia m R² in kg m² of the part of the connecting rod that turns with the crank pin."""
+        """Moment of inertia m R² in kg m² of what turns with the crank pin."""
         masses = self.cylinder.masses
-        if not (masses and masses.connecting_rod and self.mechanism.has_rod):
-            return 0.0
-        return masses.connecting_rod.at_pin(self.mechanism.rod_length) * self.mechanism.crank**2
+        return masses.at_pin(self.mechanism.rod_length) * self.mechanism.crank**2 if masses else 0.0
 
     @property
     def _incline(self) -> CrankAngle | None:

@@ -11,7 +11,7 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
 from kurbel.mechanisms import quantities_of
-from kurbel.numerics.arithmetic import every, total, where
+from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, largest, smallest
 from kurbel.numerics.grid import Pieces, integral
 from kurbel.solver.cylinder.assembled import Assembled
@@ -19,7 +19,7 @@ from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.searched import Searched
 from kurbel.solver.cylinder.state import State
-from kurbel.solver.figures import Results, answered
+from kurbel.solver.figures import Results, answered, crank_angles
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -40,8 +40,14 @@ class CylinderForces(Searched, Results):
 
     @property
     def lists(self) -> Lists:
-        """The quantities that a machine with this mechanism may have."""
-        return quantities_of(self.drive.mechanism)
+        """The quantities that a machine with this mechanism may have, its pressures counted as in the machine file."""
+        known = quantities_of(self.drive.mechanism)
+        gas = self.drive.own_gas
+        return known.absolute if gas and gas.absolute else known
+
+    @property
+    def _of(self) -> str:
+        return self.drive.name
 
     @property
     def answering(self) -> tuple[Any, ...]:
@@ -60,15 +66,16 @@ class CylinderForces(Searched, Results):
 
         At a jump the value just after it is meant.
         """
-        return self.drive.at(np.asarray(degrees, dtype=float))
+        return self.drive.at(crank_angles(degrees))
 
     @cached_property
     def p_max(self) -> Extreme | None:
-        """Largest gauge pressure in Pa at either end of the cylinder's own piston."""
+        """Largest pressure in Pa at either end of the cylinder's own piston, counted as in the machine file."""
         if not self.drive.own_gas:
             return None
         gas = self.drive.own_gas
-        return largest(*(end.highest for end in (gas.head, gas.crank) if end))
+        highest = largest(*(end.highest for end in (gas.head, gas.crank) if end))
+        return Extreme(highest.value + gas.base, highest.degrees)
 
     def offered(self, id: str) -> Any:
         """Return a key value that the mechanism offers."""
@@ -108,6 +115,30 @@ class CylinderForces(Searched, Results):
             return None
         most = largest(*(Extreme(abs(one.value), one.degrees) for one in found))
         return Extreme(most.value / area, most.degrees)
+
+    @property
+    def p_guide_mean(self) -> Any:
+        """Mean pressure in Pa of the shoe on its guide over the way there and back; None without friction there."""
+        area, f = self.drive.guide_area, self.drive.crosshead_friction
+        return None if area is None or not self._rubs_off else self.crosshead_work / (f * area * self._way)
+
+    @property
+    def _rubs_off(self) -> bool:
+        """Whether any work is lost at the crosshead."""
+        return self.drive.rubs and self.crosshead_work is not None and some(self.crosshead_work != 0)
+
+    @property
+    def wear_max(self) -> Extreme | None:
+        """Largest value of the wear line f |N| |c| in W."""
+        found = self.extremes_over(("wear",))
+        return found["wear"].largest if found else None
+
+    @property
+    def wear_mean(self) -> Any:
+        """Mean of the wear line over time in W."""
+        speed = self.drive.machine.speed
+        lost = self.crosshead_work if self.drive.guide_area is not None else None
+        return None if lost is None or speed is None else lost * speed / self.drive.revolutions
 
     @property
     def A_head(self) -> Any:

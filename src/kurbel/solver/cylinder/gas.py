@@ -23,7 +23,8 @@ class PistonGas:
     """The pressures on both sides of one piston that has an indicator.
 
     head, crank: the pressures of the two ends, None for an end that is open to the ambient. cycle: degrees of its own
-    cycle, which is run through `repeats` times in that of the cylinder.
+    cycle, which is run through `repeats` times in that of the cylinder. absolute: whether the figures of the
+    file are; base: what they less this are gauge pressures, in Pa.
     """
 
     def __init__(self, piston: Piston, mechanism: Mechanism, cycle: float, ambient: float, repeats: int = 1) -> None:
@@ -33,6 +34,7 @@ class PistonGas:
         at_head = Setting(mechanism, cycle, True, ambient, indicator.absolute)
         at_crank = at_head._replace(head_end=False, mirrored=crank is head)
         self.piston = piston
+        self.absolute, self.base = indicator.absolute, at_head.base
         self.repeats = repeats
         self._cycle = cycle
         self.head = None if head is None else pressure_in(head, at_head)
@@ -43,6 +45,7 @@ class PistonGas:
         """Return the gas of these variants, at angles of the shape of the index."""
         other = copy(self)
         other.piston, other._stroke = taken(self.piston, index), taken(self._stroke, index)
+        other.base = taken(self.base, index)
         other.head, other.crank = (end and end.taken(index) for end in (self.head, self.crank))
         return other
 

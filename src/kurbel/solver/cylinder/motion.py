@@ -35,7 +35,7 @@ class Motion:
         self.speed = speed
 
     @cached_property
-    def omega(self) -> Any:
+    def omega(self) -> float | None:
         """Angular velocity in rad/s."""
         return None if self.speed is None else 2 * math.pi * self.speed
 

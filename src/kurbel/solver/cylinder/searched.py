@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,9 +21,7 @@ from kurbel.numerics.search import (
     Sampled,
     curves,
     extremes,
-    extremes_of,
     lasting,
-    sign_changes,
     zeros,
 )
 from kurbel.solver.cylinder.assembled import Assembled
@@ -31,17 +30,11 @@ from kurbel.solver.cylinder.motion import Motion
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
+    from kurbel.numerics.where import Where
 
 
 _SURE = 4.0
 """Standard deviations that the noise of thousands of samples does not reach."""
-
-
-class Where(NamedTuple):
-    """The crank angles in degrees at which a column has a value, ascending, and between which values in SI it moves."""
-
-    angles: tuple[float, ...]
-    span: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -104,8 +97,11 @@ class Searched:
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
         """Those of every column that is declared to have extremes, as far as there is one."""
-        named = (name for name in self._together if name != "crosshead_power")
-        asked = self.quantities(*(name for name in named if getattr(self.samples, name) is not None))
+        return self.extremes_over(name for name in self._together if name != "crosshead_power")
+
+    def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
+        """Return the extremes in SI of these columns, as far as there are any."""
+        asked = self.quantities(*(name for name in columns if getattr(self.samples, name) is not None))
         return extremes(self.grid, asked.of_state(self.samples), asked) if asked.names else {}
 
     def _whole(self, column: str) -> Curve:
@@ -140,24 +136,14 @@ class Searched:
         return Extremes(largest(*high), smallest(*low))
 
     def angles_where(self, column: str, value: float) -> Where | None:
-        """Return the crank angles of the cycle at which a column passes a value in SI, or reaches it as its extreme.
-
-        None for a column that is left out. At a jump over the value it is the angle of the jump.
-        """
+        """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         if getattr(self.samples, column) is None:
             return None
-        whole, asked = self._whole(column), self.quantities(column)
+        from kurbel.numerics.where import where
 
-        def less(degrees: Array, within: Array) -> dict[str, Sampled]:
-            found = asked(degrees, within)[column]
-            return {column: Sampled(found.value - value, found.slope)}
-
-        passed = sign_changes(
-            self.grid, {column: whole._replace(value=whole.value - value)}, less, float(np.abs(whole.value).max())
-        )[column]
-        ends = extremes_of(whole)
-        reached = [one.degrees for one in ends if math.isclose(one.value, value, rel_tol=1e-14)]
-        return Where(tuple(sorted({*passed.tolist(), *reached})), (ends.smallest.value, ends.largest.value))
+        asked = self.quantities(column)
+        samples = asked.of_state(self.samples)[column]
+        return where(self.grid, samples, lambda *place: asked(*place)[column], value)
 
     @cached_property
     def phi_reversal(self) -> tuple[Any, ...] | None:

@@ -120,15 +120,15 @@ class State(OfPoint):
 
     @cached_property
     def p_head(self) -> Any:
-        """Gauge pressure at the head end of the cylinder's own piston in Pa."""
+        """Pressure at the head end of the cylinder's own piston in Pa, counted as in the machine file."""
         gas = self.drive.own_gas
-        return gas.head(self.way, self.angle, self.within) if gas and gas.head else None
+        return gas.head(self.way, self.angle, self.within) + gas.base if gas and gas.head else None
 
     @cached_property
     def p_crank(self) -> Any:
-        """Gauge pressure at the crank end of the cylinder's own piston in Pa."""
+        """Pressure at the crank end of the cylinder's own piston in Pa, counted as in the machine file."""
         gas = self.drive.own_gas
-        return gas.crank(self.way, self.angle, self.within) if gas and gas.crank else None
+        return gas.crank(self.way, self.angle, self.within) + gas.base if gas and gas.crank else None
 
     @cached_property
     def P_gas(self) -> Any:

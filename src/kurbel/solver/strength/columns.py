@@ -44,9 +44,9 @@ def strength_columns(state: State, body: FreeBody, looked_at: tuple[Place, ...])
     """Return the columns under the forces on the free body at the crank angles (n,) of the state."""
     stresses: dict[str, Any] = {}
     for part in PARTS:
-        own = [place for place in looked_at if place.part == part]
-        stresses[f"sigma_{part}"] = _largest([place.combined(body) for place in own])
-        stresses[f"mises_{part}"] = _largest([place.von_mises(body) for place in own])
+        own = [(place.stresses(body), place.alpha) for place in looked_at if place.part == part]
+        stresses[f"sigma_{part}"] = _largest([one.combined(alpha) for one, alpha in own])
+        stresses[f"mises_{part}"] = _largest([one.von_mises() for one, _ in own])
     return StrengthColumns(state.phi, state.D, state.T, *body.A, *body.B, **stresses)
 
 

@@ -127,8 +127,9 @@ class CrankshaftStrength(Results):
 
     def _quantities(self, state: State) -> dict[str, Sampled]:
         body = self._running(state)
-        found = {f"combined {i}": place.combined(body) for i, place in enumerate(self.places)}
-        found |= {f"von Mises {i}": place.von_mises(body) for i, place in enumerate(self.places)}
+        stresses = [place.stresses(body) for place in self.places]
+        found = {f"combined {i}": one.combined(self.places[i].alpha) for i, one in enumerate(stresses)}
+        found |= {f"von Mises {i}": one.von_mises() for i, one in enumerate(stresses)}
         found |= {"pin": norm(*body.pin), "A": norm(*body.A), "B": norm(*body.B)}
         return _sampled(found, state)
 
@@ -298,8 +299,9 @@ def _sampled(found: dict[str, Any], state: State) -> dict[str, Sampled]:
 
 
 def _strained(place: Place, degrees: float, body: FreeBody) -> Strained:
-    stresses = Stresses(*(None if value is None else _number(value) for value in place.stresses(body)))
-    return Strained(place, degrees, stresses, _number(place.combined(body)), _number(place.von_mises(body)))
+    found = place.stresses(body)
+    stresses = Stresses(*(None if value is None else _number(value) for value in found))
+    return Strained(place, degrees, stresses, _number(found.combined(place.alpha)), _number(found.von_mises()))
 
 
 def _number(value: Any) -> float:

@@ -23,10 +23,10 @@ A web is bent out of the plane of the throw most at one end of its arm, at the a
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 from kurbel.machine.crankshaft import Crankshaft
-from kurbel.numerics.arithmetic import where
 from kurbel.solver.strength.sections import (
     bach,
     bach_factor,
@@ -39,7 +39,7 @@ from kurbel.solver.strength.sections import (
     von_mises,
     wide_face_torsion,
 )
-from kurbel.solver.strength.statics import FreeBody, Vector
+from kurbel.solver.strength.statics import FreeBody, Vector, WebLoads
 
 PARTS = ("pin", "web_A", "web_B", "journal_A", "journal_B")
 
@@ -57,6 +57,14 @@ class Stresses(NamedTuple):
     torsion: Any
     normal: Any
 
+    def combined(self, alpha: float) -> Any:
+        """Return the stress in Pa combined after Bach."""
+        return bach(self.normal, _or_zero(self.torsion), alpha)
+
+    def von_mises(self) -> Any:
+        """Return the equivalent stress in Pa after von Mises."""
+        return von_mises(self.normal, _or_zero(self.torsion))
+
 
 class Place(NamedTuple):
     """One place of a part: its stresses under the forces on the free body, and α₀ of Bach's combination."""
@@ -68,13 +76,7 @@ class Place(NamedTuple):
 
     def combined(self, body: FreeBody) -> Any:
         """Return the stress in Pa combined after Bach."""
-        stresses = self.stresses(body)
-        return bach(stresses.normal, _or_zero(stresses.torsion), self.alpha)
-
-    def von_mises(self, body: FreeBody) -> Any:
-        """Return the equivalent stress in Pa after von Mises."""
-        stresses = self.stresses(body)
-        return von_mises(stresses.normal, _or_zero(stresses.torsion))
+        return self.stresses(body).combined(self.alpha)
 
 
 def places(shaft: Crankshaft) -> tuple[Place, ...]:
@@ -111,34 +113,13 @@ def _round(moments: Vector, torque: Any, diameter: float) -> Stresses:
     return Stresses(None, abs(in_plane), abs(out_of_plane), torsion, norm(in_plane, out_of_plane))
 
 
-class _WebLoads(NamedTuple):
-    """What a web carries: force along it in N; in-plane bending, out-of-plane bending and twist in N m."""
-
-    force: Any
-    in_plane: Any
-    out_of_plane: Any
-    twist: Any
-
-
-def _webs(shaft: Crankshaft) -> dict[str, Callable[[FreeBody], _WebLoads]]:
+def _webs(shaft: Crankshaft) -> dict[str, Callable[[FreeBody], WebLoads]]:
     """Return the webs with what loads them; that of an overhung crank lies beyond the pin, toward both bearings."""
-    if shaft.overhung:
-        return {"web_A": _loads_beyond_pin}
-    return {"web_A": _loads_before_pin, "web_B": _loads_beyond_pin}
+    before, beyond = attrgetter("web_before_pin"), attrgetter("web_beyond_pin")
+    return {"web_A": beyond} if shaft.overhung else {"web_A": before, "web_B": beyond}
 
 
-def _loads_before_pin(body: FreeBody) -> _WebLoads:
-    moments, carried = body.moments_at(-body.shaft.web_distance), body.before_pin
-    return _WebLoads(carried.D, moments.D, abs(carried.T) * body.crank, moments.T)
-
-
-def _loads_beyond_pin(body: FreeBody) -> _WebLoads:
-    moments = body.moments_at(body.shaft.web_distance)
-    at_pin, at_shaft = abs(body.before_pin.T) * body.crank, abs(body.torque)
-    return _WebLoads(body.force_beyond_pin, moments.D, _larger(at_pin, at_shaft), moments.T)
-
-
-def _web_places(part: str, alpha: float, loads_of: Callable[[FreeBody], _WebLoads]) -> tuple[Place, ...]:
+def _web_places(part: str, alpha: float, loads_of: Callable[[FreeBody], WebLoads]) -> tuple[Place, ...]:
     def wide(body: FreeBody) -> Stresses:
         t, w, loads = body.shaft.web_thickness, body.shaft.web_width, loads_of(body)
         direct = direct_stress(loads.force, t, w)
@@ -181,10 +162,6 @@ def _journal_places(shaft: Crankshaft) -> tuple[Place, ...]:
     else:
         journals = {"journal_A": {"at web": before}, "journal_B": {"at web": beyond(face)} | outer}
     return tuple(Place(part, name, 1.0, found) for part, own in journals.items() for name, found in own.items())
-
-
-def _larger(first: Any, second: Any) -> Any:
-    return where(first - second >= 0, first, second)
 
 
 def _or_zero(value: Any) -> Any:

@@ -23,6 +23,7 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.crankshaft import Crankshaft
+from kurbel.numerics.arithmetic import where
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -33,6 +34,15 @@ class Vector(NamedTuple):
 
     D: Any
     T: Any
+
+
+class WebLoads(NamedTuple):
+    """What a web carries: force along it in N; in-plane bending, out-of-plane bending and twist in N m."""
+
+    force: Any
+    in_plane: Any
+    out_of_plane: Any
+    twist: Any
 
 
 def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Vector:
@@ -100,6 +110,20 @@ class FreeBody:
         """
         arms = max(u - self.shaft.place_A, 0.0), max(u, 0.0)
         return Vector(*(A * arms[0] - F * arms[1] for A, F in zip(self.A, self.pin)))
+
+    @cached_property
+    def web_before_pin(self) -> WebLoads:
+        """What web A carries, where the pin has one before it."""
+        moments, carried = self.moments_at(-self.shaft.web_distance), self.before_pin
+        return WebLoads(carried.D, moments.D, abs(carried.T) * self.crank, moments.T)
+
+    @cached_property
+    def web_beyond_pin(self) -> WebLoads:
+        """What the web between pin and shaft carries, bent out of plane as it is at the worse of its ends."""
+        moments = self.moments_at(self.shaft.web_distance)
+        at_pin, at_shaft = abs(self.before_pin.T) * self.crank, abs(self.torque)
+        bent = where(at_pin - at_shaft >= 0, at_pin, at_shaft)
+        return WebLoads(self.force_beyond_pin, moments.D, bent, moments.T)
 
     @property
     def overhung_moments(self) -> Vector:

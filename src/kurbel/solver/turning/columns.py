@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.numerics.search import Sampled
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed import SpeedLine
 from kurbel.solver.turning.torques import Sum
@@ -14,6 +15,10 @@ from kurbel.solver.turning.torques import Sum
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.turning.coupling import ElasticCoupling
+
+
+OF_SPEED = ("omega", "alpha", "M_coupling")
+"""Columns that hang on the speed line."""
 
 
 class TurningColumns:
@@ -27,6 +32,19 @@ class TurningColumns:
     ) -> None:
         self._turned, self._crank, self._speed = turned, crank, speed
         self.phi = phi
+
+    def curve(self, column: str, within: Array) -> Sampled | None:
+        """Return a column with its slope by φ, on the sides of jumps that hold `within`; None for one left out."""
+        if column in OF_SPEED:
+            return None if self._speed is None else self._speed.curves(self.phi, within).get(column)
+        if column == "E":
+            return Sampled(self.E, self._turned.excess.torque.torque(self.phi, within).slope)
+        masses, efficiency = self._turned.masses, self._turned.efficiency
+        torque = Sum(*((efficiency, mass) for mass in masses)) if column == "T_inertia" else self._turned.effort
+        if not torque.parts or (column != "M" and self._crank is None):
+            return None
+        found = torque.torque(self.phi, within) * (1.0 if column == "M" else 1 / (self._crank or 1.0))
+        return Sampled(found.value, found.slope)
 
     @cached_property
     def M(self) -> Array:

@@ -188,11 +188,24 @@ class ElasticCoupling:
         angles = np.mod(degrees, self.cycle)
         return self._alpha(angles, angles)["alpha"].value
 
+    def curves(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        """Return torque in N m, speed in rad/s and acceleration in rad/s² with their slopes by φ, by their columns."""
+        torque, omega = self._sampled(degrees, within).values()
+        return {
+            "M_coupling": torque._replace(value=self.mean + torque.value),
+            "omega": omega._replace(value=self.shaft.omega + omega.value),
+            **self._alpha(degrees, within),
+        }
+
+    @cached_property
+    def grid(self) -> Grid:
+        """The cycle in the elements of the solution."""
+        return Grid(np.append(self.elements.low, self.cycle))
+
     @cached_property
     def alpha_extremes(self) -> Extremes:
         """Largest and smallest angular acceleration of the crank shaft in rad/s²."""
-        grid = Grid(np.append(self.elements.low, self.cycle))
-        return extremes(grid, self._alpha(grid.degrees, grid.within), self._alpha)["alpha"]
+        return extremes(self.grid, self._alpha(self.grid.degrees, self.grid.within), self._alpha)["alpha"]
 
     def torque(self, degrees: Array) -> Array:
         """Return the torque in the coupling in N m at crank angles (n,) in degrees."""
@@ -206,8 +219,7 @@ class ElasticCoupling:
 
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
-        grid = Grid(np.append(self.elements.low, self.cycle))
-        return extremes(grid, self._sampled(grid.degrees, grid.within), self._sampled)
+        return extremes(self.grid, self._sampled(self.grid.degrees, self.grid.within), self._sampled)
 
     def _shifted(self, name: str, largest: bool, base: float) -> Extreme:
         found = self._extremes[name].largest if largest else self._extremes[name].smallest

@@ -14,8 +14,8 @@ from kurbel.numerics.collocation import Standstill, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import rising_root
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Results
-from kurbel.solver.turning.columns import TurningColumns
+from kurbel.solver.figures import Results, crank_angles
+from kurbel.solver.turning.columns import OF_SPEED, TurningColumns
 from kurbel.solver.turning.machine_effort import MachineEffort, dead_centre_force
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedLine, floquet
 from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law, turning
@@ -23,6 +23,7 @@ from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.machine.turning import Rim
+    from kurbel.numerics.where import Where
     from kurbel.solver.turning.coupling import ElasticCoupling
 
 _MISSED = 1e-3
@@ -53,7 +54,19 @@ class MachineTurning(Results):
 
     def at(self, degrees: Array) -> TurningColumns:
         """Return every column at crank angles (n,) of crank 1 in degrees, just after a jump where there is one."""
-        return TurningColumns(self.turned, self.crank, self.speed, degrees)
+        return TurningColumns(self.turned, self.crank, self.speed, crank_angles(degrees))
+
+    def angles_where(self, column: str, value: float) -> Where | None:
+        """Return where in the cycle a column has a value in SI; None for a column that is left out."""
+        from kurbel.numerics.where import where
+
+        grid = self.speed.grid if column in OF_SPEED and self.speed else self.excess.grid
+
+        def sampled(degrees: Array, within: Array) -> Any:
+            return self.at(degrees).curve(column, within)
+
+        samples = sampled(grid.degrees, grid.within)
+        return None if samples is None else where(grid, samples, sampled, value)
 
     # turning effort
 

@@ -138,6 +138,12 @@ class SpeedLine(ABC):
         ratio = self.z(angles, angles) / self.inertia.energy(angles, angles).value
         return np.asarray(self.inertia.omega * np.sqrt(1 + ratio))
 
+    def curves(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        """Return ω in rad/s and its derivative by time in rad/s², each with its slope by φ."""
+        ratio, nominal = self._ratio(degrees, within), self.inertia.omega
+        omega = nominal * np.sqrt(1 + ratio.value)
+        return {"omega": Sampled(omega, nominal**2 * ratio.slope / (2 * omega)), **self._alpha(degrees, within)}
+
     @cached_property
     def omega_max(self) -> Extreme:
         """Largest angular velocity in rad/s."""

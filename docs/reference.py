@@ -1,0 +1,170 @@
+"""The pages of docs/reference: every key, unit, column, key value, command and option, from their declarations.
+
+`pytest --rewrite tests/test_documents.py` writes them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from importlib import import_module
+
+import click
+
+from kurbel.cli import COMMANDS
+from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
+from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
+from kurbel.declared.forms import Record
+from kurbel.declared.keys import Key, Keys, required
+from kurbel.declared.quantities import FACTORS
+from kurbel.declared.quantity import Quantity
+from kurbel.declared.shaft import STRESSES
+from kurbel.declared.unit_systems import SYSTEMS
+from kurbel.declared.units import kinds, unit_names
+from kurbel.mechanisms import every_quantity
+
+_WRITTEN = "Written from the declarations by `pytest --rewrite tests/test_documents.py`; do not edit by hand."
+
+
+def keys() -> str:
+    """Return every key of the machine file."""
+    return _page("Every key of the machine file", _KEYS, *_records())
+
+
+def units() -> str:
+    """Return the units of every kind, and what a machine file may hold."""
+    return _page("Units and sizes", *_units(), *_sizes())
+
+
+def columns() -> str:
+    """Return the quantities over the crank angle, of every command."""
+    printed = [one for one in every_quantity().all_columns if one.commands]
+    return _page("Columns", _COLUMNS, *_by_command(printed), *_others())
+
+
+def key_values() -> str:
+    """Return the single figures of every command."""
+    return _page("Key values", _KEY_VALUES, *_by_command(every_quantity().all_key_values))
+
+
+def commands() -> str:
+    """Return the help of every command."""
+    return _page("Every command and option", *map(_command, COMMANDS))
+
+
+_KEYS = """A key that is a mapping has a table of its own. Keys of `cylinder`, its mechanism and its piston stand at
+the top of a machine with one cylinder. `kurbel keys KEY` tells one of them in the terminal, with its dotted path."""
+_COLUMNS = """Quantities over the crank angle, by the command that prints them first. The id stands in CSV, JSON,
+`--columns` and `--where`, which take the symbol too. Forces toward the shaft count positive, the velocity c likewise; φ
+runs from the inner dead centre in the sense of rotation. What a machine has not is left out."""
+_KEY_VALUES = """Single figures, by the command that prints them first; `limits` and `expect` in the machine file make
+rules of them. They are exact: none of them hangs on `--step`. `_max` is the largest signed value, `_min` the smallest,
+`_peak` the largest magnitude."""
+
+
+def _page(title: str, *parts: str) -> str:
+    return "\n\n".join([f"# {title}", _WRITTEN, *(part.strip("\n") for part in parts)]) + "\n"
+
+
+def _table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    heads = list(heads)
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join("| " + " | ".join(_cell(cell) for cell in line) + " |" for line in lines)
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def _by_command(declared: Iterable[Quantity]) -> Iterator[str]:
+    """Yield a table for each command, of the quantities of which it is the first in the order of the commands."""
+    left = {one.id: one for one in declared}
+    for command in COMMANDS:
+        own = [one for one in left.values() if command in one.commands]
+        if own:
+            yield f"## kurbel {command}\n\n{_quantities(own)}"
+        for one in own:
+            del left[one.id]
+    if left:
+        yield f"## Asked for by name\n\n{_quantities(left.values())}"
+
+
+def _others() -> Iterator[str]:
+    yield f"## Stresses at one place of a crankshaft\n\n{_quantities(STRESSES.values())}"
+    tables = (ORDERS | ELLIPSES | WEIGHTS).values()
+    yield f"## Orders of free forces and moments, and weights\n\n{_quantities(tables)}"
+    yield f"## Rows of Zusammenstellung 112 (kurbel table)\n\n{_quantities(FACTORS.values())}"
+
+
+def _quantities(declared: Iterable[Quantity]) -> str:
+    heads = ("id", "symbol", *SYSTEMS, "meaning, formula, source")
+    units = SYSTEMS.values()
+    return _table(heads, ((f"`{q.id}`", q.symbol, *(_unit(one[q.kind]) for one in units), q.text) for q in declared))
+
+
+def _unit(given: str | tuple[str, ...]) -> str:
+    return given if isinstance(given, str) else ", ".join(given)
+
+
+def _units() -> Iterator[str]:
+    yield (
+        "A unit belongs to a kind, and a key asks for one kind. Products and powers are written as people write them: "
+        "`N m` or `N*m`, `kg m2`, `kg m^2` or `kg m²`. `kg` is a mass; a force is `kgf` or `kp`."
+    )
+    rows = ((kind.replace("_", " "), ", ".join(f"`{name}`" for name in unit_names(kind))) for kind in kinds())
+    yield _table(("kind", "units"), rows)
+
+
+def _sizes() -> Iterator[str]:
+    yield "## What a machine file may hold\n\nWhatever is smaller or larger is refused; the sign is free."
+    rows = [(kind.replace("_", " "), range_of(kind)) for kind in SIZES]
+    rows += [("points of one diagram or trace", f"up to {MOST_POINTS}"), ("items of one list", f"up to {MOST_ITEMS}")]
+    yield _table(("kind", "size"), rows)
+
+
+def _records() -> Iterator[str]:
+    """Yield a table of keys for the machine and for every record that its keys lead to, each record once."""
+    seen: set[str] = set()
+    waiting = [("machine", Record("kurbel.machine:Machine"))]
+    while waiting:
+        name, record = waiting.pop(0)
+        if record.target not in seen:
+            seen.add(record.target)
+            yield f"## {name}\n\n{_keys(record.keys)}"
+            waiting += [one for word, key in record.keys.items() for one in key.form.records(word)]
+
+
+def _keys(keys: Keys) -> str:
+    needed = required(keys)
+    rows = (
+        (f"`{word}`", key.symbol, key.form.written(), _absent(key, word in needed), _example(word, key), key.text)
+        for word, key in keys.items()
+        if not key.form.shared
+    )
+    return _table(("key", "symbol", "form", "absent", "example", "meaning"), rows)
+
+
+def _absent(key: Key, needed: bool) -> str:
+    return "must be given" if needed else key.absent
+
+
+def _example(word: str, key: Key) -> str:
+    example = key.example or key.form.example()
+    return "" if example == "…" else f"`{word}: {example}`"
+
+
+def _command(name: str) -> str:
+    command: click.Command = getattr(import_module(f"kurbel.cli.{name}"), name)
+    context = click.Context(command, info_name=f"kurbel {name}", parent=None)
+    usage = command.get_usage(context).removeprefix("Usage: ")
+    text = _prose(command.help or "")
+    rows = [row for one in command.get_params(context) if (row := one.get_help_record(context))]
+    options = _table(("option", "meaning"), ((f"`{option}`", meaning) for option, meaning in rows))
+    status = f"{command.epilog}" if command.epilog else ""
+    return f"## kurbel {name}\n\n```text\n{usage}\n```\n\n{text}\n\n{options}\n\n{status}"
+
+
+def _prose(text: str) -> str:
+    """Return the help of a command as Markdown: what click keeps as it is becomes a block of text."""
+    parts = re.split(r"\n\n", re.sub(r"^ {4}", "", text, flags=re.M))
+    return "\n\n".join(f"```text\n{p[2:].strip(chr(10))}\n```" if p.startswith("\b\n") else p for p in parts)

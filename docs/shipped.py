@@ -1,0 +1,80 @@
+"""The page of the machines that come with kurbel: what each is and teaches, its answers, its file.
+
+`pytest --rewrite tests/test_documents.py` writes it.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from click.testing import CliRunner
+
+from kurbel.cli import kurbel
+
+_CONFIGS = Path(__file__).parent.parent / "configs"
+_SHOWN = {
+    "motion": ("stroke", "swing", "time_ratio", "c_m", "c_max", "b_max"),
+    "forces": ("P_peak", "N_peak", "T_max", "work", "power", "mean_pressure", "loss_crosshead"),
+    "flywheel": ("M_mean", "dE", "J", "delta"),
+    "stress": ("safety_pin_min", "safety_web_A_min"),
+}
+"""Command -> ids of its key values that the page shows, as far as a machine has them."""
+
+_HEAD = """# Machines that come with kurbel
+
+`kurbel example` lists them, `kurbel example NAME > engine.yaml` takes one as a pattern. Each begins with a comment that
+says where its figures come from and what it is good for. Written by `pytest --rewrite tests/test_documents.py`; do not
+edit by hand.
+"""
+
+
+def page() -> str:
+    """Return the page: for each shipped machine its comment, answers, and file."""
+    return "\n".join([_HEAD, *(_machine(file) for file in sorted(_CONFIGS.glob("*.yaml")))])
+
+
+def _machine(file: Path) -> str:
+    text = file.read_text(encoding="utf-8")
+    answers = "".join(_answers(command, ids, file) for command, ids in _SHOWN.items())
+    table = f"| | | at |\n| --- | --: | --: |\n{answers}".rstrip()
+    source = f"<details markdown>\n<summary>The file</summary>\n\n```yaml\n{text.rstrip()}\n```\n\n</details>"
+    return f"## {file.stem}\n\n{_comment(text)}\n\n{table}\n\n{source}\n"
+
+
+def _comment(text: str) -> str:
+    """Return the comment at the head of a file as prose."""
+    lines = []
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.removeprefix("#").strip())
+    return "\n".join(line for line in lines if "$schema" not in line).strip()
+
+
+def _answers(command: str, ids: tuple[str, ...], file: Path) -> str:
+    """Return a row for each of these key values that the command prints for the machine; '' where it has none."""
+    asked = [command, str(file), "-f", "json", "--units", "metric", "--digits", "4", "--angles", "0"]
+    ran = CliRunner().invoke(kurbel, asked)
+    if ran.exit_code:
+        return ""
+    answer = json.loads(ran.stdout)
+    parts = [(part["name"], part["key_values"]) for part in answer.get("cylinders", [])]
+    parts.append(("", answer.get("machine_key_values", [])))
+    several = len(parts) > 2
+    rows = [
+        f"| {_named(one, name if several else '')} | {one['value']:g} {one['unit']} | {_angle(one)} |"
+        for name, values in parts
+        for one in values
+        if one["id"] in ids
+    ]
+    return "".join(f"{row}\n" for row in dict.fromkeys(rows))
+
+
+def _named(one: dict[str, Any], cylinder: str) -> str:
+    return f"`{one['id']}`, {one['symbol']}" + (f", {cylinder}" if cylinder else "")
+
+
+def _angle(one: dict[str, Any]) -> str:
+    return f"{one['at_deg']:.1f}°" if "at_deg" in one else ""

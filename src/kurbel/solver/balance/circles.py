@@ -1,0 +1,104 @@
+"""A vector in the plane that returns after a turn, as a sum of circles that it runs through in either sense."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.roots import bracketed_roots
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, ComplexArray
+
+_ALIKE = 64 * np.finfo(float).eps
+"""By which summits of one height differ by rounding, relatively."""
+
+
+def unit_vectors(degrees: float | Array) -> ComplexArray:
+    """Return e^{iφ} (…,) of angles in degrees, reduced exactly."""
+    angle = CrankAngle.of(degrees)
+    return np.asarray(angle.cos + 1j * np.asarray(angle.sin))
+
+
+class Circles:
+    """F(φ) = Σ f_n e^{inφ} + g_n e^{−inφ}, n = 1, 2, …; forward, backward: f and g, complex (K,)."""
+
+    def __init__(self, forward: ComplexArray, backward: ComplexArray) -> None:
+        self.forward, self.backward = forward, backward
+        self._orders = np.flatnonzero((forward != 0) | (backward != 0)) + 1
+
+    def turned_by(self, weight: complex) -> Circles:
+        """Return the sum of this and a vector that turns once with φ."""
+        forward = self.forward.copy()
+        forward[0] += weight
+        return Circles(forward, self.backward)
+
+    @property
+    def along(self) -> Circles:
+        """The component along the real axis alone."""
+        half = (self.forward + self.backward.conj()) / 2
+        return Circles(half, half.conj())
+
+    def at(self, degrees: Array) -> ComplexArray:
+        """Return the vectors (m,) at angles (m,) in degrees."""
+        return self._summed(self._turned(degrees), 0)
+
+    def _turned(self, degrees: Array) -> ComplexArray:
+        return unit_vectors(np.multiply.outer(np.asarray(degrees, float), self._orders))
+
+    def _summed(self, turned: ComplexArray, derivative: int) -> ComplexArray:
+        """Return the vectors, or the first derivative by φ, per radian, from e^{inφ} (m, K)."""
+        rates = (1j * self._orders) ** derivative
+        forward, backward = self.forward[self._orders - 1] * rates, self.backward[self._orders - 1] * rates.conj()
+        return np.asarray(turned @ forward + turned.conj() @ backward)
+
+    @cached_property
+    def summits(self) -> tuple[Extreme, ...]:
+        """Every angle in degrees at which the length of the vector turns from rising to falling, highest first.
+
+        A length that never changes, or but for rounding, has one at 0°.
+        """
+        angles = np.concatenate(([0.0], self._turning_points))
+        lengths = np.abs(self.at(angles))
+        order = np.argsort(-lengths, kind="stable")
+        return tuple(Extreme(float(lengths[k]), float(angles[k])) for k in order)
+
+    @property
+    def largest(self) -> Extreme:
+        """The largest length, and the first angle in degrees at which it is reached but for rounding."""
+        highest = self.summits[0].value
+        return min((one for one in self.summits if one.value >= highest * (1 - _ALIKE)), key=lambda one: one.degrees)
+
+    @property
+    def _turning_points(self) -> Array:
+        """The angles (k,) in degrees at which the length turns from rising to falling."""
+        if not len(self._orders):
+            return np.array([])
+        # eight samples for each angle that |F|², of twice the order, may turn at
+        count = 32 * 2 ** int(self._orders[-1]).bit_length()
+        angles: Array = np.linspace(0.0, 360.0, count + 1)
+        slopes = self._sampled_slopes(count)
+        falling = np.flatnonzero((slopes[:-1] > 0) & (slopes[1:] <= 0))
+        low, high = angles[falling], angles[falling + 1]
+        if not len(falling):
+            return low
+        return bracketed_roots(self._slopes_of_square, low, high, slopes[falling], slopes[falling + 1])
+
+    def _slopes_of_square(self, degrees: Array) -> Array:
+        """Return half the derivative by φ of |F|²."""
+        turned = self._turned(degrees)
+        return np.asarray((self._summed(turned, 0).conj() * self._summed(turned, 1)).real)
+
+    def _sampled_slopes(self, count: int) -> Array:
+        """Return the same at equal angles, both ends of the turn included."""
+        spectrum = np.zeros(count, complex)
+        orders = self._orders
+        spectrum[orders], spectrum[-orders] = self.forward[orders - 1], self.backward[orders - 1]
+        turns = 1j * np.fft.fftfreq(count, 1 / count)
+        vectors, slopes = np.fft.ifft(spectrum), np.fft.ifft(turns * spectrum)
+        found = np.asarray((vectors.conj() * slopes).real)
+        return np.append(found, found[:1])

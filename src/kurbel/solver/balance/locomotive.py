@@ -1,0 +1,92 @@
+"""What the balance of a locomotive does to its wheels, its drawbar and its course."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kurbel.machine.balance import Locomotive
+from kurbel.numerics.extreme import Extreme
+from kurbel.solver.balance.weights import Weight, levered
+
+if TYPE_CHECKING:
+    from kurbel.solver.balance.circles import Circles
+    from kurbel.solver.balance.machine_balance import MachineBalance
+
+
+class LocomotiveBalance:
+    """The key values of a locomotive, in SI, at the angular velocity of its machine.
+
+    The counterweights balance all that turns; what they have more than that, so as to balance a share of what goes to
+    and fro, loads and lifts the wheel in which it stands: its hammer blow.
+    """
+
+    def __init__(self, balance: MachineBalance, given: Locomotive) -> None:
+        assert balance.omega
+        self._balance, self._given, self._omega = balance, given, balance.omega
+
+    @property
+    def train_speed(self) -> float | None:
+        """Speed of the train in m/s; None without the diameter of the wheels."""
+        return self._rolling(self._omega)
+
+    def _rolling(self, omega: float) -> float | None:
+        return self._given.wheel_diameter and self._given.wheel_diameter / 2 * omega
+
+    @property
+    def traction_variation(self) -> Extreme:
+        """Largest free force in N along the stroke lines, by which the pull at the drawbar varies."""
+        return self._largest(self._balance.free.force.along)
+
+    @property
+    def swaying_couple(self) -> Extreme | None:
+        """Largest moment in N m of the free forces along the stroke lines about the upright axis."""
+        moment = self._balance.free.moment
+        return None if moment is None else self._largest(moment.along)
+
+    def _largest(self, vector: Circles) -> Extreme:
+        found = vector.largest
+        return Extreme(found.value * self._omega * self._omega, found.degrees)
+
+    def _in_wheels(self, weights: Iterable[Weight], owner: str) -> tuple[complex, complex]:
+        """Return the sums of weights in the two wheels, as by a lever, in kg m."""
+        parts = [levered(one, self._balance.wheels, owner) for one in weights]
+        return sum(part[0].product for part in parts), sum(part[1].product for part in parts)
+
+    @cached_property
+    def unbalanced(self) -> tuple[complex, complex]:
+        """What turns in each wheel in kg m, counterweights and rotating masses together."""
+        rotating = [one.weight(one.rotating) for one in self._balance.throws]
+        return self._in_wheels((*rotating, *self._balance.counterweights), self._balance.machine.name)
+
+    @property
+    def hammer_blow(self) -> float:
+        """Largest force in N by which a wheel is loaded and lifted."""
+        return self._most * self._omega * self._omega
+
+    @property
+    def _most(self) -> float:
+        return max(map(abs, self.unbalanced))
+
+    @property
+    def hammer_speed(self) -> float | None:
+        """Revolutions per second at which the hammer blow is the load of a wheel; None without that, or a blow."""
+        if self._given.wheel_load is None or not self._most:
+            return None
+        return math.sqrt(self._given.wheel_load / self._most) / (2 * math.pi)
+
+    @property
+    def hammer_train_speed(self) -> float | None:
+        """Speed of the train in m/s at which it is."""
+        return None if self.hammer_speed is None else self._rolling(2 * math.pi * self.hammer_speed)
+
+    @property
+    def share_allowed(self) -> float | None:
+        """Largest share of the reciprocating masses of which the counterweights keep the limit of the hammer blow."""
+        if self._given.hammer_limit is None:
+            return None
+        whole = self._in_wheels((one.weight(one.drive.mass) for one in self._balance.throws), "locomotive")
+        blow = max(map(abs, whole)) * self._omega * self._omega
+        return min(1.0, self._given.hammer_limit / blow) if blow else 1.0

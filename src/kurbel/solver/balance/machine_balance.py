@@ -1,0 +1,265 @@
+"""What `kurbel balance` answers for the whole machine: free forces and moments, their orders, and the best weights."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kurbel.errors import UsageError
+from kurbel.machine import Machine
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.search import Extremes
+from kurbel.solver.balance.best import Least, in_planes, least, shafts
+from kurbel.solver.balance.circles import Circles
+from kurbel.solver.balance.columns import BalanceColumns
+from kurbel.solver.balance.free import Free
+from kurbel.solver.balance.locomotive import LocomotiveBalance
+from kurbel.solver.balance.products import Products, of_throws
+from kurbel.solver.balance.rolling import rolling_moment, swirls
+from kurbel.solver.balance.weights import Throw, Weight, counterweights_of, shafts_of
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.figures import Results
+from kurbel.solver.turning.excess import Excess
+from kurbel.solver.turning.torques import Sum
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
+_REAL = 1e-12
+"""Beside its size, what a counterweight opposite the throw may point aside by rounding."""
+
+
+class MachineBalance(Results):
+    """The key values of the whole machine over a turn; `at(degrees)` gives the columns.
+
+    Attributes are named by the ids of the key values, in SI; one that the machine does not have is None. Raises
+    UsageError where nothing moves that a free force could come from.
+    """
+
+    command = "balance"
+
+    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
+        self.machine = machine
+        self._cylinders = cylinders
+        first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
+        self.throws = tuple(Throw(one.drive, first) for one in cylinders if one.drive.cylinder.masses)
+        if not self.throws:
+            raise UsageError(f"{machine.name}: nothing moves that could be balanced; give 'masses' to its cylinders")
+        for throw in self.throws:
+            if throw.drive.mechanism.quick_return:
+                raise UsageError(f"{throw.drive.name}: the masses of what drives a ram back quickly are not known")
+        self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
+
+    @property
+    def answering(self) -> tuple[Any, ...]:
+        """What answers key values, the first that knows one."""
+        return (self, *((self.locomotive,) if self.locomotive else ()))
+
+    def at(self, degrees: Array) -> BalanceColumns:
+        """Return every column at crank angles (n,) of crank 1 in degrees."""
+        return BalanceColumns(self, np.asarray(degrees, dtype=float))
+
+    # what moves, all of it over ω²
+
+    @cached_property
+    def z_0(self) -> float | None:
+        """Place in m from where moments are taken: the one given, or the middle of the outer cylinders."""
+        places = [one.axial_position for one in self.machine.cylinders if one.axial_position is not None]
+        given = self.machine.moment_reference
+        return given if given is not None or not places else (min(places) + max(places)) / 2
+
+    @cached_property
+    def wheels(self) -> tuple[float, ...]:
+        """Places in m of the counterweights in the wheels of a locomotive; of another machine none."""
+        locomotive = self.machine.locomotive
+        if locomotive is None:
+            return ()
+        middle, half = self.z_0 or 0.0, locomotive.wheel_distance / 2
+        return middle - half, middle + half
+
+    @property
+    def loose_counterweights(self) -> tuple[Weight, ...]:
+        """The counterweights of which nobody told where they stand, beside throws of which it is known."""
+        return tuple(one for one in self.counterweights if one.place is None)
+
+    @cached_property
+    def counterweights(self) -> tuple[Weight, ...]:
+        """The counterweights of the machine file."""
+        return tuple(counterweights_of(self.machine, self.throws, self.wheels))
+
+    @cached_property
+    def _throws_alone(self) -> Products:
+        found = of_throws(self.throws)
+        assert found
+        return found
+
+    @cached_property
+    def bare(self) -> Free:
+        """What the throws give, without counterweights and balance shafts."""
+        return Free.of(self._throws_alone, self.z_0)
+
+    @cached_property
+    def free(self) -> Free:
+        """What is free, with the counterweights and balance shafts of the machine file."""
+        return Free.of(self._throws_alone.with_weights((*self.counterweights, *shafts_of(self.machine))), self.z_0)
+
+    @cached_property
+    def book(self) -> Free | None:
+        """The same by the acceleration of first order, R 291; None where the book has none for a mechanism."""
+        found = of_throws(self.throws, book=True)
+        return found and Free.of(found.with_weights((*self.counterweights, *shafts_of(self.machine))), self.z_0)
+
+    @property
+    def cycle(self) -> float:
+        """Degrees after which everything repeats: a turn, or with gas in the rolling moment that of the machine."""
+        return 360.0 * (self.machine.revolutions if any(one.drive.gas for one in self._cylinders) else 1)
+
+    @cached_property
+    def roll(self) -> Sum | None:
+        """The rolling moment on the frame in N m over the cycle of the machine; None without a speed."""
+        return rolling_moment(self.machine, self._cylinders) if self.omega else None
+
+    # free forces and moments
+
+    def largest(self, vector: Circles | None) -> Extreme | None:
+        """Return the largest length of a vector over ω², times ω², with its angle; None without a speed."""
+        if vector is None or self.omega is None:
+            return None
+        found = vector.largest
+        return Extreme(found.value * self.omega * self.omega, found.degrees)
+
+    @cached_property
+    def F_free_max(self) -> Extreme | None:
+        """Largest free force in N."""
+        return self.largest(self.free.force)
+
+    @cached_property
+    def M_free_max(self) -> Extreme | None:
+        """Largest free moment in N m."""
+        return self.largest(self.free.moment)
+
+    @property
+    def rolls_as_it_turns(self) -> bool:
+        """Whether the rolling moment is the turning effort of `kurbel flywheel` with the other sign."""
+        return not any(map(swirls, self._cylinders))
+
+    @cached_property
+    def _roll_extremes(self) -> Extremes | None:
+        return Excess(self.roll).effort_extremes if self.roll else None
+
+    @property
+    def M_roll_max(self) -> Extreme | None:
+        """Largest rolling moment on the frame in N m."""
+        return self._roll_extremes.largest if self._roll_extremes else None
+
+    @property
+    def M_roll_min(self) -> Extreme | None:
+        """Smallest rolling moment on the frame in N m."""
+        return self._roll_extremes.smallest if self._roll_extremes else None
+
+    # counterweights
+
+    def angle_of(self, product: complex) -> float:
+        """Return the direction of a weight from throw 1 in degrees, above −180 and up to 180."""
+        throw = self.throws[0].weight(1.0).product
+        degrees = math.degrees(cmath.phase(product / throw))
+        return degrees if degrees > _REAL - 180 else 180.0
+
+    @property
+    def counterweight_given(self) -> float | None:
+        """Size of the sum of the given counterweights in kg m."""
+        return abs(sum(one.product for one in self.counterweights)) if self.counterweights else None
+
+    @property
+    def _forward(self) -> complex:
+        return complex(self.bare.force.forward[0])
+
+    @property
+    def counterweight_best(self) -> float:
+        """Product in kg m of the counterweight that takes away the forward circle of order 1."""
+        return abs(self._forward)
+
+    @property
+    def counterweight_best_angle(self) -> float | None:
+        """Its direction from throw 1 in degrees; None for a weight of nothing."""
+        return self.angle_of(-self._forward) if self._forward else None
+
+    @cached_property
+    def least(self) -> Least:
+        """The counterweight that leaves the least largest force."""
+        return least(self.bare.force)
+
+    @property
+    def counterweight_least(self) -> float:
+        """Product in kg m of the counterweight that leaves the least largest force."""
+        return abs(self.least.weight)
+
+    @property
+    def counterweight_least_angle(self) -> float | None:
+        """Its direction from throw 1 in degrees; None for a weight of nothing."""
+        return self.angle_of(self.least.weight) if self.least.weight else None
+
+    @property
+    def F_free_best(self) -> Extreme | None:
+        """The least largest free force in N."""
+        return self.largest(self.least.left)
+
+    @property
+    def share_best(self) -> float | None:
+        """Share of the reciprocating mass with which a counterweight opposite the only throw is the least one's."""
+        (throw, *others) = self.throws
+        opposite = -self.least.weight / throw.weight(1.0).product
+        if others or not throw.drive.mass or abs(opposite.imag) > _REAL * abs(opposite):
+            return None
+        return (opposite.real - throw.rotating) / throw.drive.mass
+
+    @cached_property
+    def planes(self) -> tuple[float, ...]:
+        """Places in m of two planes for counterweights: those given, or of the outer cylinders; () if they are one."""
+        given = self.machine.counterweights
+        named = () if isinstance(given, tuple) else given.planes
+        places = [one.place for one in self.throws if one.place is not None]
+        outer = (min(places), max(places)) if places and min(places) < max(places) else ()
+        return named or self.wheels or outer
+
+    @cached_property
+    def best_in_planes(self) -> tuple[Weight, ...]:
+        """The counterweights in two planes that take away all that turns with the crank, force and moment."""
+        if not self.planes or self.bare.moment is None or self.z_0 is None:
+            return ()
+        levers = [plane - self.z_0 for plane in self.planes]
+        found = in_planes(self._forward, complex(self.bare.moment.forward[0]), levers)
+        return tuple(one._replace(place=plane) for one, plane in zip(found, self.planes))
+
+    @cached_property
+    def best_shafts(self) -> tuple[Weight, ...]:
+        """The weights on balance shafts that take away what no counterweight can."""
+        return shafts(self.bare.force, self.bare.moment, self.z_0)
+
+    @cached_property
+    def locomotive(self) -> LocomotiveBalance | None:
+        """What of it concerns the wheels of a locomotive; None of another machine, or at rest."""
+        given = self.machine.locomotive
+        return LocomotiveBalance(self, given) if given and self.omega else None
+
+
+class BookBalance:
+    """The key values by the book's acceleration of first order, which are told only where they are asked for."""
+
+    def __init__(self, balance: MachineBalance) -> None:
+        self._balance = balance
+
+    @property
+    def F_free_max_book(self) -> Extreme | None:
+        """Largest free force in N."""
+        return self._balance.largest(self._balance.book.force if self._balance.book else None)
+
+    @property
+    def M_free_max_book(self) -> Extreme | None:
+        """Largest free moment in N m."""
+        return self._balance.largest(self._balance.book.moment if self._balance.book else None)

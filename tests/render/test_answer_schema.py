@@ -1,0 +1,49 @@
+"""What `-f json` prints keeps the schema that `kurbel schema --answers` hands out."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from jsonschema import Draft7Validator
+
+from kurbel.cli import kurbel
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+MACHINES = [
+    *(("motion", name) for name in ("shaper", "offset-engine")),
+    *(("forces", name) for name in ("waterworks", "diesel-trace", "coupled-axle", "four-cylinder-generator")),
+    *(("flywheel", name) for name in ("punch", "coupled-blower")),
+    *(("check", name) for name in ("gas-engine", "compressor")),
+    ("stress", "gas-engine"),
+]
+ANSWERS = [
+    ["table", "--compare"],
+    ["friction", "--incline", "30", "--coefficient", "0.1"],
+    *([command, str(CONFIGS / f"{name}.yaml")] for command, name in MACHINES),
+]
+
+
+@pytest.fixture(scope="module")
+def validator() -> Draft7Validator:
+    schema = json.loads(CliRunner().invoke(kurbel, ["schema", "--answers"]).stdout)
+    Draft7Validator.check_schema(schema)
+    return Draft7Validator(schema)
+
+
+@pytest.mark.parametrize("asked", ANSWERS, ids=lambda asked: f"{asked[0]} {Path(asked[1]).stem}")
+def test_an_answer_keeps_the_schema(asked: list[str], validator: Draft7Validator) -> None:
+    ran = CliRunner().invoke(kurbel, [*asked, "-f", "json"])
+    assert ran.exit_code in (0, 1)
+    validator.validate(json.loads(ran.stdout))
+
+
+def test_a_wrong_answer_does_not(validator: Draft7Validator) -> None:
+    part = {"name": "one", "columns": [], "key_values": [], "left_out": [], "warnings": []}
+    answer = {"kurbel": "0.1.0", "format": 1, "command": "forces", "cylinders": [part]}
+    assert validator.is_valid(answer)
+    assert not validator.is_valid(answer | {"format": 2})
+    assert not validator.is_valid(answer | {"cylinders": [part | {"values": []}]})
+    assert not validator.is_valid(answer | {"cylinders": [{"name": "one"}]})

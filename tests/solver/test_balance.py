@@ -1,0 +1,416 @@
+"""Free forces and moments: against 40-digit sums, against the forces inside the machine, by symmetry and by law."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from kurbel import loads
+from kurbel.errors import UsageError
+from kurbel.numerics.enclosing import smallest_circle
+from kurbel.numerics.fourier import coefficients
+from kurbel.solver.balance.machine_balance import MachineBalance
+from kurbel.solver.case import Case
+
+ANGLES = np.array([0.0, 7.3, 45.0, 90.0, 133.7, 180.0, 211.0, 299.9])
+OMEGA = 20 * math.pi  # 600 rpm
+
+
+def balance_of(text: str, *overrides: str) -> MachineBalance:
+    return Case(loads(text, overrides=overrides)).balance
+
+
+def single(ratio: float = 4, more: str = "") -> str:
+    return f"{{speed: 600 rpm, crank: 50 mm, rod_ratio: {ratio}, masses: {{reciprocating: 2 kg}}{more}}}"
+
+
+def in_line(count: int, order: str, more: str = "") -> str:
+    each = "{crank: 50 mm, rod_ratio: 4, masses: {reciprocating: 2 kg}}"
+    several = f"{{count: {count}, firing_order: {order}, spacing: 100 mm, each: {each}}}"
+    return f"{{speed: 600 rpm, cycle: four-stroke, cylinders: {several}{more}}}"
+
+
+FOUR = in_line(4, "1-3-4-2")
+SIX = in_line(6, "1-5-3-6-2-4")
+V90 = """
+speed: 600 rpm
+cylinders:
+  - {name: A, crank: 50 mm, rod_ratio: 4, masses: {reciprocating: 2 kg}, axial_position: 0 mm}
+  - {like: A, name: B, bank_angle: 90 deg, crank_position: 90 deg, axial_position: 0 mm}
+"""
+TWO_CRANKS = """
+speed: 600 rpm
+cylinders:
+  - {name: left, axial_position: -0.35 m, crank: 0.3 m, rod_ratio: 6, masses: {reciprocating: 300 kg, rotating: 120 kg}}
+  - {like: left, name: right, crank_position: 90 deg, axial_position: 0.35 m}
+"""
+
+
+# against forty digits
+
+
+def exact_force(lam: Any, e: Any, bank: float, late: float, masses: tuple[float, float], degrees: float) -> Any:
+    """Return F/(R ω²) in kg: minus the second derivatives of where the masses stand, by forty digits."""
+
+    def place(phi: Any) -> Any:
+        own = phi - mp.radians(mp.mpf(late))
+        along = mp.cos(own) + mp.sqrt(1 / lam**2 - (mp.sin(own) - e) ** 2)
+        whole = masses[0] * (along + 1j * e) + masses[1] * mp.expj(own)
+        return whole * mp.expj(mp.radians(mp.mpf(bank)))
+
+    return -mp.diff(place, mp.radians(mp.mpf(degrees)), 2)
+
+
+@pytest.mark.parametrize(("ratio", "offset"), [(20.0, 0.0), (4.0, 0.0), (3.0, 0.2), (1 / 0.95, 0.0), (1.25, 0.1)])
+def test_forces_and_moments_against_forty_digits(ratio: float, offset: float) -> None:
+    lines = ((0.0, 0.0, -0.1), (60.0, 17.0, 0.05), (-113.0, 240.0, 0.3))
+    cylinders = [
+        f"{{crank: 1 m, rod_ratio: {ratio!r}, offset: {offset} m, masses: {{other: 2 kg, rotating: 0.7 kg}}, "
+        f"bank_angle: {bank} deg, crank_position: {late} deg, axial_position: {z} m}}"
+        for bank, late, z in lines
+    ]
+    found = balance_of(f"{{speed: 600 rpm, cylinders: [{', '.join(cylinders)}]}}")
+    columns = found.at(ANGLES)
+    with mp.workdps(40):
+        lam = 1 / mp.mpf(ratio)
+        each = [
+            [exact_force(lam, mp.mpf(offset), bank, late, (2.0, mp.mpf(0.7)), one) for bank, late, _ in lines]
+            for one in ANGLES
+        ]
+        force = np.array([complex(sum(row)) for row in each])
+        moment = np.array([complex(sum((z - 0.1) * one for (_, _, z), one in zip(lines, row))) for row in each])
+    unit = 2.0 * OMEGA**2
+    assert np.abs((columns.F_x + 1j * columns.F_y) / unit - force / 2).max() < 1e-13
+    assert np.abs((columns.M_x + 1j * columns.M_y) / unit - moment / 2).max() < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("ratio", "series"),
+    [
+        (4, {2: 0.254025042307, 4: -0.004098111172, 6: 7.437903e-5, 8: -1.33329150483e-6}),
+        (3, {2: 0.343108577285, 4: -0.010099079152, 6: 3.344321533e-4}),
+    ],
+)
+def test_orders_of_one_cylinder(ratio: float, series: dict[int, float]) -> None:
+    """b/(R ω²) = cos φ + A₂ cos 2φ + …: forward and backward circle are half of each."""
+    force = balance_of(single(ratio)).free.force
+    assert abs(force.forward[0] / 0.1 - 0.5) < 1e-16
+    for order, figure in series.items():
+        assert force.forward[order - 1] == force.backward[order - 1].conjugate()
+        assert force.forward[order - 1].real / 0.05 == pytest.approx(figure, rel=1e-7 if order == 6 else 1e-11)
+    assert not force.forward[2::2].any()
+
+
+# against the forces inside
+
+INSIDE = """
+speed: 600 rpm
+cylinders:
+  - crank: 50 mm
+    rod: 170 mm
+    offset: 12 mm
+    bore: 80 mm
+    indicator: {head_end: {constant: {expansion: 8 bar, compression: 1 bar}}}
+    masses: {piston: 2 kg, rotating: 0.9 kg, connecting_rod: ROD}
+"""
+
+
+@pytest.mark.parametrize("rod", ["{mass: 1.5 kg, center_of_gravity: 60 mm, inertia: 0.008 kg m2}", "{mass: 1.5 kg}"])
+def test_bearing_guide_and_gas_make_up_the_free_force_and_the_rolling_moment(rod: str) -> None:
+    case = Case(loads(INSIDE.replace("ROD", rod)))
+    (forces,), found = case.cylinders, case.balance.at(ANGLES)
+    inside = forces.at(ANGLES)
+    throw = np.exp(1j * np.radians(ANGLES))
+    drive = forces.drive
+    rotating = 0.9 if drive.rod else 0.9 + 0.75  # D of an exact rod has its pull already
+    bearing = (-inside.D + 1j * inside.T) * throw + rotating * 0.05 * OMEGA**2 * throw
+    force = bearing - 1j * inside.N + inside.P_gas
+    assert_allclose(found.F_x + 1j * found.F_y, force, rtol=0, atol=1e-13 * np.abs(inside.P_gas).max())
+    # N presses on the guide where the crosshead is, the gas on the cover beside the axis of the shaft
+    far = 0.05 * np.cos(np.radians(ANGLES)) + np.sqrt(0.17**2 - (0.05 * np.sin(np.radians(ANGLES)) - 0.012) ** 2)
+    roll = -inside.N * far - 0.012 * inside.P_gas
+    assert_allclose(found.M_roll, roll, rtol=0, atol=1e-12 * np.abs(roll).max())
+    assert case.balance.M_roll_max is not None
+    assert case.balance.M_roll_max.value >= roll.max()
+
+
+def test_the_rolling_moment_is_the_turning_effort_with_the_other_sign() -> None:
+    case = Case(loads(FOUR))
+    assert_allclose(case.balance.at(ANGLES).M_roll, -case.flywheel.at(ANGLES).M, rtol=1e-13)
+    assert case.balance.rolls_as_it_turns
+
+
+def test_no_force_is_left_over_a_turn() -> None:
+    found = balance_of(V90).at(np.arange(0.0, 360.0, 0.5))
+    assert abs(np.mean(found.F_x)) < 1e-13 * np.abs(found.F_x).max()
+    assert abs(np.mean(found.F_y)) < 1e-13 * np.abs(found.F_y).max()
+
+
+def test_later_cranks_make_the_same_force_later() -> None:
+    early = balance_of(TWO_CRANKS).at(ANGLES)
+    late = balance_of(TWO_CRANKS, "cylinders.0.crank_position=33 deg", "cylinders.1.crank_position=123 deg")
+    assert_allclose(late.at(ANGLES + 33).M_y, early.M_y, atol=1e-12 * np.abs(early.M_y).max())
+    assert_allclose(late.at(ANGLES + 33).F_x, early.F_x, atol=1e-12 * np.abs(early.F_x).max())
+
+
+def test_bank_angles_count_from_the_line_of_cylinder_1() -> None:
+    turned = balance_of(V90, "cylinders.0.bank_angle=-45 deg", "cylinders.1.bank_angle=45 deg")
+    assert_allclose(turned.at(ANGLES).F_y, balance_of(V90).at(ANGLES).F_y, rtol=1e-13, atol=1e-9)
+
+
+# by symmetry
+
+
+def test_what_cancels_is_exactly_zero() -> None:
+    six = balance_of(SIX)
+    assert six.free.orders == (1, 2, 4, 6, 8, 10)
+    assert six.free.moment is not None
+    for circles, left in ((six.free.force, {6, 12, 18}), (six.free.moment, set())):
+        assert {n for n, f, g in zip(range(1, 40), circles.forward, circles.backward) if f or g} == left
+    assert abs(six.free.force.forward[5]) == pytest.approx(6 * 0.05 * 7.437903e-5, rel=1e-6)
+    assert (six.M_free_max.value, six.M_free_max.degrees) == (0.0, 0.0)
+    assert not six.at(ANGLES).M_x.any()
+
+
+@pytest.mark.parametrize(
+    ("banks", "late"),
+    [
+        ((0, 180), (0, 0)),  # boxer: pins at 180°
+        ((0, 120, 240), (0, 120, 240)),  # radial: order 1 forward is left, and order 2 backward
+        ((0, 72, 144, 216, 288), (0, 72, 144, 216, 288)),
+    ],
+)
+def test_forces_by_symmetry(banks: tuple[int, ...], late: tuple[int, ...]) -> None:
+    """A radial engine of k cylinders keeps k/2 m R ω² of order 1, turning with the crank, none against it."""
+    cylinder = (
+        "{name: %s, crank: 50 mm, rod_ratio: 4, masses: {other: 2 kg}, bank_angle: %s deg, crank_position: %s deg}"
+    )
+    several = ", ".join(cylinder % (k, bank, one) for k, (bank, one) in enumerate(zip(banks, late)))
+    force = balance_of(f"{{speed: 600 rpm, cylinders: [{several}]}}").free.force
+    if len(banks) == 2:
+        assert not force.forward.any()
+        assert not force.backward.any()
+    else:
+        assert abs(force.forward[0] / 0.1 - len(banks) / 2) < 1e-14
+        assert force.backward[0] == 0
+        assert (force.backward[1] == 0) == (len(banks) != 3)
+
+
+def test_ninety_degrees_with_a_counterweight_of_one_mass() -> None:
+    """First order 0; of second order √2 A₂ m R ω² is left across the middle of the V."""
+    found = balance_of(V90, "counterweights=[{product: 0.1 kg m}]")
+    force = found.free.force
+    assert (force.forward[0], force.backward[0]) == (0, 0)
+    assert abs(force.forward[1]) + abs(force.backward[1]) == pytest.approx(
+        math.sqrt(2) * 0.1 * 0.254025042307, rel=1e-11
+    )
+    assert found.F_free_max.value == pytest.approx(found.F_free_best.value, rel=1e-13)
+
+
+def test_equal_throws_of_unequal_masses() -> None:
+    """A middle throw of twice the mass, opposite the outer ones: neither force nor moment of first order."""
+    one = (
+        "{name: %s, crank: 50 mm, rod: infinite, masses: {other: %s kg}, crank_position: %s deg, axial_position: %s mm}"
+    )
+    several = ", ".join(one % row for row in ((1, 1.3, 0, 0), (2, 2.6, 180, 80), (3, 1.3, 0, 160)))
+    found = balance_of(f"{{speed: 600 rpm, cylinders: [{several}]}}")
+    assert (found.F_free_max.value, found.M_free_max.value) == (0.0, 0.0)
+    assert (found.counterweight_best, found.counterweight_best_angle) == (0.0, None)
+
+
+# counterweights
+
+
+def test_the_best_share_of_one_cylinder() -> None:
+    """λ = ¼: what the dead centre leaves, 1 + λ − c, is as large as the largest beside 100°, by thirty digits."""
+    found = balance_of(single())
+    unit = 0.1 * OMEGA**2
+
+    def beside(c: Any) -> Any:
+        def square(phi: Any) -> Any:
+            b = -mp.diff(lambda p: mp.cos(p) + mp.sqrt(16 - mp.sin(p) ** 2), phi, 2)
+            return (b - c * mp.cos(phi)) ** 2 + (c * mp.sin(phi)) ** 2
+
+        return mp.sqrt(square(mp.findroot(lambda phi: mp.diff(square, phi), mp.mpf("1.76"))))
+
+    with mp.workdps(30):
+        share = mp.findroot(lambda c: beside(c) - (mp.mpf("1.25") - c), (0.589, 0.591), solver="secant")
+    assert found.share_best == pytest.approx(float(share), abs=1e-12)
+    assert found.F_free_best.value / unit == pytest.approx(1.25 - float(share), abs=1e-12)
+    assert (found.counterweight_least, found.counterweight_least_angle) == pytest.approx((0.1 * float(share), 180.0))
+
+
+@pytest.mark.parametrize(("share", "left"), [("0", 1.25), ("0.5", 0.75), ("2/3", 0.722784)])
+def test_what_a_share_leaves(share: str, left: float) -> None:
+    found = balance_of(single(4, f", counterweights: {{share: {share}}}"))
+    assert found.F_free_max.value / (0.1 * OMEGA**2) == pytest.approx(left, abs=5e-6)
+    assert found.counterweight_given == pytest.approx(0.1 * eval(share))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        V90.replace("90 deg", "60 deg"),
+        TWO_CRANKS,
+        single(1.5, ", offset: 10 mm"),
+        V90.replace("like: A,", "like: A, offset: 9 mm,"),
+    ],
+)
+def test_no_counterweight_leaves_less(text: str) -> None:
+    """The largest force grows whichever way the weight is changed: it is convex in the weight."""
+    found = balance_of(text)
+    angles = np.linspace(0, 360, 20001)
+    best = found.F_free_best.value / found.omega**2
+    assert np.abs(found.least.left.at(angles)).max() <= best * (1 + 1e-12)
+    for turn in np.exp(1j * np.linspace(0, 2 * math.pi, 13)):
+        worse = found.bare.force.turned_by(found.least.weight + turn * 1e-4 * best)
+        assert worse.largest.value > best
+
+
+def test_weights_in_two_planes_take_away_all_that_turns_with_the_crank() -> None:
+    found = balance_of(TWO_CRANKS)
+    weights = ", ".join(
+        f"{{product: {abs(one.product)!r} kg m, angle: {math.degrees(np.angle(one.product))!r} deg, "
+        f"axial_position: {one.place} m}}"
+        for one in found.best_in_planes
+    )
+    free = balance_of(TWO_CRANKS, f"counterweights=[{weights}]").free
+    assert free.moment is not None
+    assert abs(free.force.forward[0]) < 1e-12 * abs(found.bare.force.forward[0])
+    assert abs(free.moment.forward[0]) < 1e-12 * abs(found.bare.moment.forward[0])
+
+
+def test_lanchester_shafts() -> None:
+    """Four in line: two shafts at twice the speed in the middle, one each way, leave order 4."""
+    found = balance_of(FOUR)
+    assert [(one.order, one.place) for one in found.best_shafts] == [
+        (2, pytest.approx(0.15)),
+        (-2, pytest.approx(0.15)),
+    ]
+    product = abs(found.best_shafts[0].product)
+    assert product == pytest.approx(4 * 0.1 * 0.254025042307 / 2 / 4, rel=1e-11)
+    shafts = ", ".join(
+        f"{{order: 2, sense: {sense}, product: {product!r} kg m, axial_position: 150 mm}}"
+        for sense in ("with", "against")
+    )
+    free = balance_of(FOUR, f"balance_shafts=[{shafts}]").free
+    assert free.force.forward[1] == free.force.backward[1] == 0
+    assert free.force.forward[3].real == pytest.approx(-4 * 0.05 * 0.004098111172, rel=1e-9)
+    assert free.moment is not None
+    assert not free.moment.forward.any()
+
+
+def test_counterweights_of_a_cylinder_count_from_its_own_throw() -> None:
+    """By mass and radius, opposite the throw where no angle says otherwise, at its place: as its share 1/2 does."""
+    weight = "[{mass: 27 kg, radius: 1 m}]"  # (120 + 300/2) kg at 300 mm is 81 kg m
+    own = [f"cylinders.{k}.counterweights={weight.replace('27', '81')}" for k in (0, 1)]
+    listed, shared = balance_of(TWO_CRANKS, *own), balance_of(TWO_CRANKS, "counterweights={share: 1/2}")
+    for one in ("force", "moment"):
+        assert_allclose(getattr(listed.free, one).forward, getattr(shared.free, one).forward, atol=1e-13)
+
+
+def test_weights_in_planes_have_the_force_and_the_moment_of_those_at_the_throws() -> None:
+    own = balance_of(TWO_CRANKS, "counterweights={share: 1/2}").free
+    wheels = balance_of(TWO_CRANKS, "counterweights={share: 1/2, planes: [-0.8 m, 0.8 m]}").free
+    for one in ("force", "moment"):
+        assert_allclose(getattr(wheels, one).forward, getattr(own, one).forward, atol=1e-12)
+
+
+def test_a_locomotive() -> None:
+    """Infinite rod: √2 (1 − c) m R ω² and (1 − c) m R ω² a/√2 of the books, and the blow as by a lever."""
+    found = balance_of(
+        TWO_CRANKS.replace("rod_ratio: 6", "rod: infinite"),
+        "counterweights={share: 0.6}",
+        "locomotive={wheel_distance: 1.6 m, wheel_diameter: 1.7 m, wheel_load: 80 kN, hammer_limit: 40 kN}",
+    )
+    loco = found.locomotive
+    assert loco is not None
+    unit = 300 * 0.3 * OMEGA**2
+    assert loco.traction_variation.value == pytest.approx(math.sqrt(2) * 0.4 * unit)
+    assert loco.swaying_couple.value == pytest.approx(0.4 * unit * 0.7 / math.sqrt(2))
+    blow = math.hypot(1.6 + 0.7, 1.6 - 0.7) / (2 * 1.6) * unit
+    assert loco.hammer_blow == pytest.approx(0.6 * blow)
+    assert loco.share_allowed == pytest.approx(40e3 / blow)
+    assert loco.hammer_speed == pytest.approx(10 * math.sqrt(80e3 / (0.6 * blow)))
+    assert loco.hammer_train_speed == pytest.approx(loco.hammer_speed * math.pi * 1.7)
+    assert loco.train_speed == pytest.approx(10 * math.pi * 1.7)
+
+
+def test_the_book_beside_the_exact() -> None:
+    found = balance_of(FOUR)
+    assert found.book is not None
+    assert found.book.force.largest.value == pytest.approx(4 * 0.1 * 0.25, rel=1e-14)
+    assert_allclose(found.at(ANGLES).F_x_book, 0.1 * OMEGA**2 * np.cos(np.radians(2 * ANGLES)), atol=1e-10)
+    assert balance_of(single(4, ", offset: 10 mm")).book is None
+    yoke = balance_of("{speed: 600 rpm, mechanism: scotch-yoke, crank: 50 mm, masses: {reciprocating: 2 kg}}")
+    assert yoke.book is not None
+    assert_allclose(yoke.book.force.forward[:1], yoke.free.force.forward[:1])
+
+
+def test_without_a_speed_the_weights_are_told() -> None:
+    found = balance_of(single().replace("speed: 600 rpm, ", ""))
+    assert (found.F_free_max, found.F_free_best, found.roll) == (None, None, None)
+    assert found.counterweight_best == pytest.approx(0.05, rel=1e-15)
+
+
+def test_without_a_place_there_is_no_moment() -> None:
+    assert balance_of(FOUR.replace("spacing: 100 mm, ", "")).M_free_max is None
+    assert balance_of(FOUR, "counterweights=[{product: 1 kg m}]").M_free_max is None
+    assert balance_of(FOUR, "counterweights=[{product: 1 kg m, axial_position: 0 mm}]").M_free_max.value > 0
+
+
+def test_moments_about_another_place() -> None:
+    """M changes by the free force times the way."""
+    near, far = balance_of(FOUR).at(ANGLES), balance_of(FOUR, "moment_reference=0 mm").at(ANGLES)
+    assert_allclose(far.M_x - near.M_x, 0.15 * near.F_x, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{speed: 600 rpm, crank: 50 mm, rod_ratio: 4}", "nothing moves that could be balanced"),
+        (single(1.00000000001), "so short a connecting rod do not settle"),
+        ("{crank: 1 m, frame: 2 m, lever: 4 m, mechanism: slotted-lever, masses: {other: 1 kg}}", "are not known"),
+        (
+            FOUR.replace("spacing: 100 mm, ", "").replace(
+                "cycle", "counterweights: {share: 1, planes: [0 m, 1 m]}, cycle"
+            ),
+            "cylinder 1: weights in two planes need",
+        ),
+    ],
+)
+def test_what_cannot_be_balanced_is_refused(text: str, message: str) -> None:
+    with pytest.raises(UsageError, match=message):
+        _ = balance_of(text).free
+
+
+def test_rotating_masses_turn_with_the_flywheel() -> None:
+    """0.7 kg at 50 mm add m R² to the mean inertia of the moving masses, and nothing to the torque."""
+    plain, heavy = (Case(loads(single(4, more))) for more in ("", ", flywheel: {inertia: 1 kg m2}"))
+    loaded = Case(loads(single().replace("2 kg", "2 kg, rotating: 0.7 kg")))
+    assert loaded.cylinders[0].drive.pin_inertia == pytest.approx(0.7 * 0.05**2)
+    assert plain.cylinders[0].drive.pin_inertia == 0
+    assert_allclose(loaded.cylinders[0].at(ANGLES).T, heavy.cylinders[0].at(ANGLES).T, rtol=1e-15)
+
+
+# numerics
+
+
+def test_coefficients_of_a_sum_of_waves() -> None:
+    found = coefficients(lambda d: 2 + np.cos(np.radians(3 * d)) + 0.25 * np.sin(np.radians(5 * d)))
+    assert_allclose(found, [0, 0, 0.5, 0, -0.125j], atol=1e-16)
+    assert len(coefficients(lambda d: 0 * d)) == 0
+    assert coefficients(lambda d: np.sign(np.sin(np.radians(d)))) is None
+
+
+def test_the_smallest_circle() -> None:
+    corners = [complex(math.cos(a), math.sin(a)) for a in (0.3, 2.0, 4.4)]
+    circle = smallest_circle([*corners, 0.1 + 0.2j, -0.3j])
+    assert abs(circle.centre) < 1e-14
+    assert circle.radius == pytest.approx(1)
+    assert smallest_circle([1j, 1j])[:2] == (1j, 0.0)

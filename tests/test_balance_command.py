@@ -1,0 +1,134 @@
+"""`kurbel balance` as it is called: its columns, tables, switches, and what it says where it cannot answer."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+
+CONFIGS = Path(__file__).parent.parent / "configs"
+V90 = """
+speed: 600 rpm
+cylinders:
+  - {name: A, crank: 50 mm, rod_ratio: 4, masses: {reciprocating: 2 kg}}
+  - {like: A, name: B, bank_angle: 90 deg, crank_position: 90 deg}
+"""
+
+
+def run(text: str, *more: str) -> Result:
+    return CliRunner().invoke(kurbel, ["balance", "-", *more], input=text)
+
+
+def parsed(name: str, *more: str) -> dict[str, Any]:
+    result = CliRunner().invoke(kurbel, ["balance", str(CONFIGS / f"{name}.yaml"), "-f", "json", *more])
+    assert (result.exit_code, result.stderr) == (0, "")
+    found: dict[str, Any] = json.loads(result.stdout)
+    return found
+
+
+def ids(entries: list[dict[str, Any]]) -> list[str]:
+    return [one["id"] for one in entries]
+
+
+def test_columns_and_tables_have_the_names_that_are_relied_on() -> None:
+    found = parsed("four-in-line")
+    assert ids(found["machine_columns"]) == ["phi", "F_x", "F_y", "M_x", "M_y", "M_roll"]
+    orders = next(one for one in found["machine_place_tables"] if one["id"] == "orders")
+    assert ids(orders["columns"])[:3] == ["order", "F_forward", "F_backward"]
+    assert {"M_forward", "M_backward"} < set(ids(orders["columns"]))
+    assert orders["columns"][0]["values"][:3] == [1, 2, 4]
+    assert orders["columns"][1]["values"][0] == 0
+    named = {"F_free_max", "M_free_max", "counterweight_best", "F_free_best"}
+    assert named < set(ids(found["machine_key_values"]))
+    assert next(one["values"][-1] for one in found["machine_columns"] if one["id"] == "phi") == 360
+
+
+def test_what_cancels_prints_as_0() -> None:
+    text = CliRunner().invoke(kurbel, ["balance", str(CONFIGS / "boxer.yaml")]).stdout
+    assert "  F_max      0    N     at 0°" in text
+    rows = [line.split() for line in text.splitlines() if line.startswith("F_x")]
+    assert {value for row in rows for value in row[2:]} == {"0"}
+
+
+def test_the_book_stands_beside_the_exact_only_where_it_is_asked_for() -> None:
+    plain, both = parsed("four-in-line"), parsed("four-in-line", "--compare")
+    assert "F_free_max_book" not in ids(plain["machine_key_values"])
+    values = {one["id"]: one["value"] for one in both["machine_key_values"]}
+    assert values["F_free_max_book"] < values["F_free_max"]
+    assert "F_x_book" in ids(both["machine_columns"])
+    orders = {one["id"]: one["values"] for one in both["machine_place_tables"][0]["columns"]}
+    assert orders["F_forward_book"][2] == 0 < orders["F_forward"][2]  # of order 4 the books know nothing
+
+
+def test_orders_as_csv() -> None:
+    result = run(V90, "--orders", "-f", "csv")
+    head, *rows = result.stdout.splitlines()
+    assert head.startswith("table,weight,order,F_forward_N,F_backward_N,F_share")
+    assert [row.split(",")[0] for row in rows].count("orders") == 6
+
+
+def test_a_column_by_name() -> None:
+    result = run(V90, "--columns", "F_free", "--angles", "0,90", "-f", "csv")
+    assert result.stdout.splitlines()[0] == "phi_deg,F_free_N"
+
+
+@pytest.mark.parametrize(
+    ("text", "left"),
+    [
+        (V90, "free moments no axial_position given of A, B"),
+        (V90.replace("{like: A,", "{crank: 50 mm, rod_ratio: 4,"), "inertia of B no masses given"),
+        (V90.replace("speed: 600 rpm", ""), "free forces and moments no speed given"),
+        (V90.replace("like: A,", "like: A, offset: 5 mm,"), "figures of first order the book has no such formula"),
+    ],
+)
+def test_what_is_left_out_is_said(text: str, left: str) -> None:
+    result = run(text, "--compare", "--width", "200")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert left in " ".join(result.stdout.split())
+
+
+def test_pins_that_are_not_shared_are_told() -> None:
+    apart = V90.replace("bank_angle: 90 deg, crank_position: 90", "bank_angle: 60 deg, crank_position: 90").replace(
+        "name: A,", "name: A, axial_position: 0 mm,"
+    )
+    for result in (run(apart, "--width", "300"), CliRunner().invoke(kurbel, ["check", "-"], input=apart)):
+        assert "A and B stand at one place along the shaft, but their throws 30 deg apart" in " ".join(
+            result.stdout.split()
+        )
+    shared = V90.replace("name: A,", "name: A, axial_position: 0 mm,")
+    assert "crank pin" not in run(shared).stdout
+
+
+def test_a_limit_and_an_expectation() -> None:
+    text = f"{V90}limits: {{F_free_max: 500 N}}\nexpect: {{counterweight_best: 0.1 kg m ± 0.01 %}}\n"
+    result = CliRunner().invoke(kurbel, ["check", "-"], input=text)
+    assert result.exit_code == 1
+    assert "BROKEN  (whole machine)" in result.stdout
+    assert "met  (whole machine)" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{speed: 1 rpm, crank: 50 mm, rod_ratio: 4}", "nothing moves that could be balanced; give 'masses'"),
+        ("effort: {unit: N m, points: [[0, 1], [360, 1]]}", "nothing moves that could be balanced"),
+    ],
+)
+def test_without_masses_there_is_nothing_to_balance(text: str, message: str) -> None:
+    result = run(text)
+    assert result.exit_code == 2
+    assert message in result.stderr
+
+
+def test_a_case_answers_by_name() -> None:
+    from kurbel import loads
+    from kurbel.solver.case import Case
+
+    case = Case(loads(V90))
+    assert case["counterweight_best"].value == pytest.approx(0.1)
+    assert case["F_max"].unit == "N"

@@ -1,0 +1,127 @@
+"""README and docs cannot go stale: every console block is run and compared, every generated page regenerated.
+
+A block of another language with a title is a file of that name for the commands of its page:
+```yaml title="engine.yaml"
+"""
+
+from __future__ import annotations
+
+import doctest
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+
+import pytest
+
+import reference  # docs/reference.py
+import shipped  # docs/shipped.py
+
+ROOT = Path(__file__).parent.parent
+README = ROOT / "README.md"
+PAGES = sorted((ROOT / "docs").rglob("*.md"))
+COMMAND = re.compile(r"```console\n(\$ [^\n]*)\n(.*?)```", re.DOTALL)
+FILE = re.compile(r'```\w+ title="([^"]+)"\n(.*?)```', re.DOTALL)
+
+NO_SHELL = os.name != "posix" or shutil.which("bash") is None
+
+
+def text_of(page: Path) -> str:
+    return page.read_text(encoding="utf-8")
+
+
+def marked(page: Path) -> list[pytest.MarkDecorator]:
+    """Return the marks of a page: README is checked always, the pages of docs with the slow tests."""
+    return [] if page == README else [pytest.mark.slow]
+
+
+def named(page: Path) -> str:
+    return page.relative_to(ROOT).as_posix()
+
+
+def commands() -> list[object]:
+    return [
+        pytest.param(page, *block, marks=marked(page), id=f"{named(page)}: {block[0][2:60]}")
+        for page in [README, *PAGES]
+        for block in COMMAND.findall(text_of(page))
+    ]
+
+
+@pytest.fixture(scope="module")
+def workshop(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]:
+    """Give a page its folder: the files that it shows, the machines of the repository, and `kurbel` on the path."""
+
+    @lru_cache
+    def folder_of(page: Path) -> Path:
+        folder = tmp_path_factory.mktemp("page")
+        for name, text in FILE.findall(text_of(page)):
+            (folder / name).write_text(text, encoding="utf-8")
+        shutil.copytree(ROOT / "configs", folder / "configs")
+        script = folder / "bin" / "kurbel"
+        script.parent.mkdir()
+        script.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m kurbel "$@"\n')
+        script.chmod(0o755)
+        return folder
+
+    return folder_of
+
+
+def output_of(command: str, folder: Path) -> str:
+    environment = {k: v for k, v in os.environ.items() if k not in ("FORCE_COLOR", "COLUMNS")}
+    environment |= {"PATH": f"{folder / 'bin'}{os.pathsep}{environment['PATH']}", "PYTHONIOENCODING": "utf-8"}
+    done = subprocess.run(
+        ["bash", "-c", command.removeprefix("$ ")],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        check=False,
+    )
+    return done.stdout.decode()
+
+
+@pytest.mark.skipif(NO_SHELL, reason="the pages speak to a shell")
+@pytest.mark.parametrize(("page", "command", "printed"), commands())
+def test_commands_of_a_page(
+    page: Path, command: str, printed: str, workshop: Callable[[Path], Path], kept: Callable[[Path, str], str]
+) -> None:
+    real = output_of(command, workshop(page))
+    text = text_of(page)
+    now = text.replace(f"{command}\n{printed}```", f"{command}\n{real}```")
+    if now != kept(page, now):
+        assert real == printed
+
+
+PYTHON = [page for page in [README, *PAGES] if ">>>" in text_of(page)]
+
+
+@pytest.mark.parametrize("page", [pytest.param(page, marks=marked(page), id=named(page)) for page in PYTHON])
+def test_python_of_a_page(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    found = doctest.testfile(str(page), module_relative=False, encoding="utf-8")
+    assert found.attempted
+    assert found.failed == 0
+
+
+def test_the_readme_has_commands() -> None:
+    assert len(COMMAND.findall(text_of(README))) >= 4
+
+
+GENERATED = {
+    "machines.md": shipped.page,
+    "reference/keys.md": reference.keys,
+    "reference/units.md": reference.units,
+    "reference/columns.md": reference.columns,
+    "reference/key-values.md": reference.key_values,
+    "reference/commands.md": reference.commands,
+}
+
+
+@pytest.mark.parametrize("name", GENERATED)
+def test_a_generated_page_is_current(name: str, kept: Callable[[Path, str], str]) -> None:
+    text = GENERATED[name]()
+    assert kept(ROOT / "docs" / name, text) == text

@@ -1,0 +1,107 @@
+"""Equal cylinders are told once to people and each to programs; where the cranks of a firing order stand."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from kurbel.cli import kurbel
+from kurbel.render.charset import width
+
+CONFIGS = Path(__file__).parent.parent / "configs"
+FOUR = str(CONFIGS / "four-cylinder-generator.yaml")
+V8 = """
+speed: 1500 rpm
+cycle: four-stroke
+cylinders:
+  count: 8
+  firing_order: 1-5-4-2-6-3-7-8
+  bank_angles: [0 deg, {bank} deg]
+  each: {{stroke: 90 mm, rod: 150 mm, masses: {{piston: 0.5 kg}}}}
+"""
+
+
+def run(*words: str, text: str = "") -> str:
+    result = CliRunner().invoke(kurbel, list(words), input=text)
+    assert (result.exit_code, result.stderr) == (0, "")
+    return result.stdout
+
+
+@pytest.mark.parametrize("form", [[], ["--key-values"], ["-f", "markdown"], ["--layout", "rows"]])
+def test_four_equal_cylinders_stand_once_on_a_page(form: list[str]) -> None:
+    page = run("forces", FOUR, *form).replace("\\", "")
+    one = run("forces", FOUR, *form, "--cylinder", "cylinder 3").replace("\\", "")
+    assert page.replace("cylinders 1–4", "cylinder 3") == one
+    assert page.splitlines()[0].endswith("Kräfte im Kurbeltriebe: cylinders 1–4")
+
+
+def test_programs_get_each() -> None:
+    assert len(json.loads(run("forces", FOUR, "-f", "json"))["cylinders"]) == 4
+    assert {row.split(",")[0] for row in run("forces", FOUR, "-f", "csv").splitlines()[1:]} == {
+        f"cylinder {n}" for n in (1, 2, 3, 4)
+    }
+
+
+def test_check_tells_equal_ones_once() -> None:
+    page = run("check", FOUR)
+    assert page.count("left out   weight: no inclination given") == 1
+    assert "\ncylinders 1–4\n" in page
+
+
+def test_one_that_differs_stands_alone() -> None:
+    """The third has no bore: the others are told together, their limits too."""
+    each = "{crank: 50 mm, rod: 200 mm, masses: {piston: 1 kg}}"
+    text = f"speed: 600 rpm\ncylinders: [{each}, {each}, {each.replace('1 kg', '2 kg')}, {each}]\n"
+    text += "limits: {b_max: 1 km/s2}\n"
+    page = run("forces", "-", "--key-values", text=text)
+    heads = [line for line in page.splitlines() if line.startswith("Key values")]
+    assert heads == ["Key values: cylinders 1, 2, 4", "Key values: cylinder 3"]
+    (limit,) = (line for line in run("check", "-", text=text).splitlines() if "kept" in line)
+    assert limit.endswith("(cylinders 1–4)")
+
+
+def pins(bank: int) -> dict[str, int]:
+    page = run("check", "-", text=V8.format(bank=bank)).split("\nCranks\n")[1].split("\n\n")[0]
+    return {line[2:12]: int(line.rpartition(": crank pin ")[2].split()[0]) for line in page.splitlines()}
+
+
+def test_check_tells_where_a_firing_order_puts_the_pins() -> None:
+    """Firing intervals of 90°: cylinder 5 at 90°, 4 at 180°, ...; a pin stands γ − β behind that of cylinder 1."""
+    fires = {number: 90 * place for place, number in enumerate((1, 5, 4, 2, 6, 3, 7, 8))}
+    for bank in (90, -90):
+        expected = {f"cylinder {n}": (fires[n] - (0 if n % 2 else bank)) % 360 for n in range(1, 9)}
+        assert pins(bank) == expected
+    assert pins(90) != pins(-90)
+
+
+def test_check_tells_the_cranks_of_an_engine_in_line() -> None:
+    lines = run("check", FOUR).split("\nCranks\n")[1].split("\n\n")[0].splitlines()
+    assert lines == [f"  cylinder {n}  {at} deg after the first" for n, at in ((1, 0), (2, 540), (3, 180), (4, 360))]
+    assert "Cranks" not in run("check", str(CONFIGS / "waterworks.yaml"))
+
+
+def test_findings_name_their_cylinder() -> None:
+    found = json.loads(run("check", FOUR, "-f", "json"))["findings"]
+    said = [one["message"] for one in found if "left out: friction" in one["message"]]
+    assert said == [f"cylinder {n}: left out: friction: no friction given" for n in (1, 2, 3, 4)]
+    alone = json.loads(run("check", str(CONFIGS / "waterworks.yaml"), "-f", "json"))["findings"]
+    assert "left out: weight: no inclination given" in [one["message"] for one in alone]
+
+
+@pytest.mark.parametrize("columns", [40, 80])
+@pytest.mark.parametrize("name", ["compressor", "coupled-blower", "four-cylinder-generator", "waterworks-two-cranks"])
+@pytest.mark.parametrize("command", ["forces", "flywheel"])
+def test_no_key_value_runs_over_the_page(columns: int, name: str, command: str) -> None:
+    page = run(command, str(CONFIGS / f"{name}.yaml"), "--key-values", "--width", str(columns))
+    assert [line for line in page.splitlines() if width(line) > columns] == []
+
+
+@pytest.mark.parametrize("columns", [40, 80])
+def test_check_fills_a_width(columns: int) -> None:
+    page = run("check", "-", "--width", str(columns), text=V8.format(bank=90))
+    lines = page.splitlines()
+    assert columns - 16 <= max(map(width, lines)) <= columns
+    assert page.split() == run("check", "-", text=V8.format(bank=90)).split()

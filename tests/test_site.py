@@ -1,0 +1,107 @@
+"""The site as its readers have it: built strictly, complete, asking for nothing elsewhere, readable on a telephone."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import click
+import pytest
+
+from browser import CHROMIUM, dumped, served
+from kurbel.cli import COMMANDS, kurbel
+from kurbel.declared.units import kinds, unit_names
+from kurbel.mechanisms import every_quantity
+from kurbel.report.keys import every_place
+
+ROOT = Path(__file__).parent.parent
+WIDTHS = (360, 768, 1280)
+HARNESS = """<!doctype html><html><body><pre id="found">waiting</pre><script>
+const pages = PAGES, widths = WIDTHS, found = [];
+async function look(page, width) {
+  const frame = document.createElement("iframe");
+  frame.sandbox = "allow-same-origin";  // looked at as it is laid out, without its scripts
+  frame.style.width = width + "px"; frame.style.height = "800px"; frame.style.border = "0";
+  const loaded = new Promise(done => frame.onload = done);
+  frame.src = page; document.body.append(frame); await loaded;
+  const root = frame.contentDocument.documentElement;
+  if (root.scrollWidth > width) found.push([page, width, root.scrollWidth]);
+  frame.remove();
+}
+(async () => {
+  for (const page of pages) for (const width of widths) await look(page, width);
+  document.getElementById("found").textContent = JSON.stringify(found);
+})();
+</script></body></html>"""
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(find_spec("material") is None, reason="the site needs the extra 'docs'"),
+]
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build the site; --strict makes an error of every link and anchor that leads nowhere."""
+    folder = tmp_path_factory.mktemp("site")
+    built = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(folder)]
+    subprocess.run(built, cwd=ROOT, check=True)
+    return folder
+
+
+def words(site: Path, page: str) -> str:
+    return html.unescape(re.sub(r"<[^>]+>", " ", (site / page).read_text(encoding="utf-8")))
+
+
+def test_every_key_unit_column_key_value_and_option_is_on_the_site(site: Path) -> None:
+    quantities = every_quantity()
+    units = [unit for kind in kinds() for unit in unit_names(kind)]
+    options = [
+        option
+        for name in COMMANDS
+        for one in kurbel.get_command(click.Context(kurbel), name).params  # type: ignore[union-attr]
+        for option in one.opts
+        if isinstance(one, click.Option)
+    ]
+    there = {
+        "reference/keys.html": [path.rpartition(".")[2] for path in every_place()],
+        "reference/units.html": units,
+        "reference/columns.html": [one.id for one in quantities.all_columns if one.commands],
+        "reference/key-values.html": [one.id for one in quantities.all_key_values],
+        "reference/commands.html": [*COMMANDS, *options],
+    }
+    missing = {page: [name for name in names if name not in words(site, page)] for page, names in there.items()}
+    assert {page: names for page, names in missing.items() if names} == {}
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+def test_pages_fit_a_telephone(site: Path, tmp_path: Path) -> None:
+    pages = [path.relative_to(site).as_posix() for path in site.rglob("*.html") if path.name != "404.html"]
+    text = HARNESS.replace("PAGES", json.dumps(pages)).replace("WIDTHS", json.dumps(WIDTHS), 1)
+    (site / "harness.html").write_text(text, encoding="utf-8")
+    with served(site) as address:
+        dom, _ = dumped(f"{address}/harness.html", tmp_path)
+    found = re.search(r'<pre id="found">(.*?)</pre>', dom, re.DOTALL)
+    assert found
+    assert json.loads(html.unescape(found[1])) == []
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+@pytest.mark.parametrize("page", ["index.html", "theory.html", "reference/keys.html"])
+def test_a_page_says_nothing_and_asks_for_nothing_from_elsewhere(page: str, site: Path, tmp_path: Path) -> None:
+    with served(site) as address:
+        dom, console = dumped(f"{address}/{page}", tmp_path)
+    assert "</html>" in dom
+    assert console == []
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+def test_search_works_without_a_server(site: Path, tmp_path: Path) -> None:
+    dom, console = dumped(f"{(site / 'index.html').as_uri()}?q=Druckwechsel", tmp_path)
+    assert console == []
+    assert re.search(r'<a[^>]*class="md-search-result__link"', dom)
