@@ -140,7 +140,7 @@ def _written(tree: Any, key: str) -> str:
     except (KeyError, IndexError, TypeError):
         node = None
     if not isinstance(node, str):
-        raise UsageError(f"uncertainty of {shown(key)}: no value stands under this key in the file")
+        raise UsageError(f"{shown(key)}: no value stands under this key in the file")
     return node
 
 

@@ -52,7 +52,7 @@ def read_input(text: str) -> Input:
     >>> read_input("speed=40,50,60 rpm").texts
     ('40 rpm', '50 rpm', '60 rpm')
     >>> read_input("rod_ratio=3:4:0.25").texts
-    ('3', '3.25', '3.50', '3.75', '4.00')
+    ('3.00', '3.25', '3.50', '3.75', '4.00')
     """
     key, equals, values = plain(text).partition("=")
     key, values = key.strip(), values.strip()
