@@ -19,7 +19,7 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.piston import Piston
 from kurbel.machine.rectangle import Rectangle
 from kurbel.machine.resistance import RamForce
-from kurbel.machine.side_by_side import kind_of
+from kurbel.machine.side_by_side import Kinds
 from kurbel.mechanisms import quantities_of
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.yoke_frame import YokeFrame
@@ -95,7 +95,8 @@ def worst(seed: int, count: int) -> tuple[float, int, int]:
             failures += 1
         else:
             largest = max(largest, *(distance(a, b) for a, b in zip(values, single, strict=True)))
-    kinds = {kind_of(machine, machine.cylinders[0]) for machine in machines}
+    known = Kinds()
+    kinds = {known.of(machine, machine.cylinders[0]) for machine in machines}
     return largest, failures, len(kinds)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from kurbel.designs.columns import Answer, answered_alone
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
-from kurbel.machine.side_by_side import kind_of, side_by_side
+from kurbel.machine.side_by_side import Kinds, side_by_side
 from kurbel.numerics.cycles import Unlike
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.cylinder.forces import CylinderForces
@@ -61,9 +61,10 @@ class _Answers:
     def _alike(self) -> list[list[int]]:
         """Return the rows of machines of one kind; of others none."""
         kinds: dict[Any, list[int]] = {}
+        known = Kinds()
         for row, machine in enumerate(self._machines):
             own = {cylinder.name: cylinder for cylinder in machine.cylinders}
-            found = tuple(kind_of(machine, own[name]) if name in own else None for name in self._names)
+            found = tuple(known.of(machine, own[name]) if name in own else None for name in self._names)
             if None not in found:
                 kinds.setdefault(found, []).append(row)
         return list(kinds.values())

@@ -6,7 +6,7 @@ Each machine has kept its own rules at birth, so that these records, made withou
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
@@ -22,36 +22,52 @@ _MOST_LINES = 40
 """Points of a card with more of which a machine is answered alone: its pieces are many enough to fill an array."""
 
 
-def kind_of(machine: Machine, cylinder: Cylinder) -> Hashable | None:
-    """Return what machines that can stand side by side have in common; None where one must be answered alone."""
-    if cylinder.mechanism.name not in _SIDE_BY_SIDE:
-        return None
-    cycles = tuple(machine.cycle_of_piston(cylinder, number) for number in range(len(cylinder.pistons)))
-    kind = (_kind(machine.speed), _kind(machine.ambient), machine.rotation, machine.cycle_of(cylinder), cycles)
-    own = _kind(cylinder)
-    return None if own is _ALONE else (*kind, own)
-
-
 _ALONE = object()
 
 
-def _kind(value: Any) -> Any:
-    if isinstance(value, (float, int)) and not isinstance(value, bool):
-        return "0" if value == 0 else "inf" if math.isinf(value) else "number"
-    if isinstance(value, tuple):
-        return _together(map(_kind, value))
-    if isinstance(value, Indicator):
-        mirrored = value.crank_end is value.head_end
-        return _together((Indicator, _chamber(value.head_end), _chamber(value.crank_end), mirrored, value.absolute))
-    if is_dataclass(value):
-        given = vars(value)
-        return _together((type(value), *(_kind(one) for name, one in given.items() if name != "name")))
-    return value
+class Kinds:
+    """Tells what machines that can stand side by side have in common; what several of them share is looked at once."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[Any, Any]] = {}
+
+    def of(self, machine: Machine, cylinder: Cylinder) -> Hashable | None:
+        """Return the kind of one cylinder of a machine; None where it must be answered alone."""
+        if cylinder.mechanism.name not in _SIDE_BY_SIDE:
+            return None
+        cycles = tuple(machine.cycle_of_piston(cylinder, number) for number in range(len(cylinder.pistons)))
+        kind = (_number(machine.speed), _number(machine.ambient), machine.rotation, machine.cycle_of(cylinder), cycles)
+        own = self._kind(cylinder)
+        return None if own is _ALONE else (*kind, own)
+
+    def _kind(self, value: Any) -> Any:
+        if isinstance(value, (float, int)) and not isinstance(value, bool):
+            return _number(value)
+        if value is None or isinstance(value, (str, bool)):
+            return value
+        if id(value) not in self._known:  # beside it, so that no other takes its place in memory
+            self._known[id(value)] = value, self._looked_at(value)
+        return self._known[id(value)][1]
+
+    def _looked_at(self, value: Any) -> Any:
+        if isinstance(value, tuple):
+            return self._together(value)
+        if isinstance(value, Indicator):
+            mirrored = value.crank_end is value.head_end
+            ends = _chamber(value.head_end), _chamber(value.crank_end)
+            return _ALONE if _ALONE in ends else (Indicator, *ends, mirrored, value.absolute)
+        if is_dataclass(value):
+            own = self._together(one for name, one in vars(value).items() if name != "name")
+            return _ALONE if own is _ALONE else (type(value), own)
+        return value
+
+    def _together(self, values: Iterable[Any]) -> Any:
+        found = tuple(self._kind(one) for one in values)
+        return _ALONE if any(one is _ALONE for one in found) else found
 
 
-def _together(kinds: Any) -> Any:
-    found = tuple(kinds)
-    return _ALONE if any(one is _ALONE for one in found) else found
+def _number(value: Any) -> str | None:
+    return None if value is None else "0" if value == 0 else "inf" if math.isinf(value) else "number"
 
 
 def _chamber(chamber: Any) -> Any:
