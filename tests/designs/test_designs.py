@@ -119,7 +119,10 @@ KEYS = {
         "friction.crosshead": "0.2",
     },
     "diesel-trace.yaml": {"bore": "200 mm", "indicator.head_end.trace.angle_zero": "0.1 deg"},
-    "four-cylinder-generator.yaml": {"cylinders.each.bore": "250 mm", "cylinders.each.indicator.head_end.otto.peak": "20 at"},
+    "four-cylinder-generator.yaml": {
+        "cylinders.each.bore": "250 mm",
+        "cylinders.each.indicator.head_end.otto.peak": "20 at",
+    },
     "punch.yaml": {"flywheel.inertia": "900 kg m2"},
 }
 
