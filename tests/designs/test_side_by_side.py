@@ -160,12 +160,10 @@ def test_what_differs_may_be_anything() -> None:
     text = STEAM.replace("indicator:", "indicator:\n  pressures: absolute")
     changes = [
         [
-            f"rod_ratio={4 + 0.1 * k}",
-            f"ambient={1 + 0.01 * k} bar",
-            f"speed={40 + k} rpm",
+            *(f"rod_ratio={4 + 0.1 * k}", f"ambient={1 + 0.01 * k} bar", f"speed={40 + k} rpm"),
+            *(f"indicator.head_end.expansion.1.1={9.5 - 0.1 * k}", f"masses.piston={800 + k} kg"),
             f"friction.crosshead=0.{k + 1}",
         ]
-        + [f"indicator.head_end.expansion.1.1={9.5 - 0.1 * k}", f"masses.piston={800 + k} kg"]
         for k in range(5)
     ]
     machines = [loads(text, overrides=one) for one in changes]
