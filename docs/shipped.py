@@ -19,8 +19,12 @@ _SHOWN = {
     "forces": ("P_peak", "N_peak", "T_max", "work", "power", "mean_pressure", "loss_crosshead"),
     "flywheel": ("M_mean", "dE", "J", "delta"),
     "stress": ("safety_pin_min", "safety_web_A_min"),
+    "balance": ("F_free_max", "M_free_max", "counterweight_best", "share_best", "hammer_blow"),
 }
 """Command -> ids of its key values that the page shows, as far as a machine has them."""
+
+_ROUNDING = 1e-9
+"""A value below this is that of a sum that cancels, another on every processor."""
 
 _HEAD = """# Machines that come with kurbel
 
@@ -67,7 +71,7 @@ def _answers(command: str, ids: tuple[str, ...], file: Path) -> str:
         f"| {_named(one, name if several else '')} | {one['value']:g} {one['unit']} | {_angle(one)} |"
         for name, values in parts
         for one in values
-        if one["id"] in ids
+        if one["id"] in ids and abs(one["value"]) > _ROUNDING
     ]
     return "".join(f"{row}\n" for row in dict.fromkeys(rows))
 

@@ -86,3 +86,17 @@ def test_the_spring_of_an_indicator_as_a_quotient() -> None:
 def test_what_is_no_quotient_with_a_unit(length: str) -> None:
     result = run("check", "-", text=f"crank: 100 mm\nrod: {length}\n")
     assert (result.exit_code, ": rod: " in result.stderr) == (2, True), result.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("n: 100 rpm\ncrank: 1 m\nrod: 5 m\n", "n: unknown key; did you mean 'speed'?"),
+        ("R: 1 m\nL: 5 m\n", "R: unknown key; did you mean 'crank'?"),
+        ("crank: 1 m\nrod: 5 m\nflywheel: {J: 3 kg m2}\n", "flywheel.J: unknown key; did you mean 'inertia'?"),
+        ("crank: 1 m\nrod: 5 m\nflywheel: {rim: {material: x}}\n", "material: unknown key; did you mean 'density'?"),
+    ],
+)
+def test_a_symbol_of_the_books_or_another_word_names_its_key(text: str, says: str) -> None:
+    result = run("check", "-", text=text)
+    assert (result.exit_code, says in result.stderr) == (2, True), result.stderr

@@ -116,6 +116,7 @@ def test_a_limit_and_an_expectation() -> None:
     ("text", "message"),
     [
         ("{speed: 1 rpm, crank: 50 mm, rod_ratio: 4}", "nothing moves that could be balanced; give 'masses'"),
+        ("{crank: 50 mm, rod_ratio: 4, masses: {other: 0 kg}}", "nothing moves that could be balanced"),
         ("effort: {unit: N m, points: [[0, 1], [360, 1]]}", "nothing moves that could be balanced"),
     ],
 )

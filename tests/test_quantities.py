@@ -24,9 +24,14 @@ from kurbel.report.forces import forces_report
 from kurbel.solver.balance.columns import BalanceColumns
 from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
+from kurbel.solver.bearings.bearing import Bearing, BearingColumns
 from kurbel.solver.case import Case
+from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.indicated import Indicated
 from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.pin_works import PinWorks
+from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.columns import StrengthColumns
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
@@ -38,10 +43,11 @@ from toy_mechanism import HarmonicCam
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
     "motion": (Motion,),
-    "forces": (CylinderForces, Motion),
-    "flywheel": (MachineTurning, ElasticCoupling),
+    "forces": (CylinderForces, Motion, RodLoad, PinWorks, Indicated, Brake),
+    "flywheel": (MachineTurning, ElasticCoupling, Brake),
     "stress": (CrankshaftStrength,),
     "balance": (MachineBalance, LocomotiveBalance, BookBalance),
+    "bearings": (Bearing,),
 }
 
 
@@ -61,6 +67,7 @@ def test_every_key_value_has_a_definition(command: str) -> None:
         ("flywheel", TurningColumns),
         ("stress", StrengthColumns),
         ("balance", BalanceColumns),
+        ("bearings", BearingColumns),
     ],
 )
 def test_every_common_column_has_a_definition(command: str, results: type) -> None:

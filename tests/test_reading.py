@@ -24,6 +24,7 @@ READERS = {
     "indicator.csv",
 }
 READERS |= {"forces.md", "FILE.svg", "kurbel.schema.json"}
+READERS |= {"run8.csv", "motored.csv", "many.yaml", "diagram.csv", "p.csv"}
 ELSEWHERE = READERS | {"examples/ICE_example.py", "kurbel.mechanisms.harmonic_cam"}
 """Files of the reader's own, one of opentorsion, and the mechanism that the pages add as an example."""
 

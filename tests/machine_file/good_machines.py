@@ -128,6 +128,32 @@ cylinders:
   - {name: A, crank: 100 mm, rod_ratio: 4, axial_position: 0 mm}
   - {like: A, axial_position: 90 mm, bank_angle: 90 deg}
 """
+SHAFT_LINE = """\
+crank: 100 mm
+rod_ratio: 4
+flywheel: {inertia: 3 kg m2}
+shaft:
+  - {cylinder: [cylinder 1], inertia: 1 kg m2, damping: 2 N m s/rad}
+  - {stiffness: 200 kN m/rad, diameter: 60 mm, loss_factor: 1 %}
+  - flywheel
+  - {diameter: 60 mm, bore: 20 mm, length: 400 mm, shear_modulus: 80 GPa, damping: 3 N m s/rad}
+  - {name: pinion, inertia: 0.1 kg m2}
+  - {gear: 1/2}
+  - {name: wheel, inertia: 0.4 kg m2, load: true}
+  - {diameter: 60 mm, length: 400 mm}
+  - ground
+"""
+BALANCED = """\
+speed: 250 rpm
+counterweights: {share: 1/3, planes: [-750 mm, 750 mm]}
+balance_shafts:
+  - {order: 2, sense: against, mass: 2 kg, radius: 30 mm, angle: 90 deg, axial_position: 0 mm}
+locomotive: {wheel_distance: 1.5 m, wheel_diameter: 1.98 m, wheel_load: 8 tf, hammer_limit: 25 kN}
+moment_reference: 0 mm
+cylinders:
+  - {name: A, crank: 300 mm, rod_ratio: 8.5, axial_position: -1 m, masses: {other: 290 kg, rotating: 210 kg}}
+  - {like: A, axial_position: 1 m, crank_position: 90 deg, counterweights: [{product: 2 kg m, angle: 170 deg}]}
+"""
 ALL = {
     "demo": DEMO,
     "full": FULL,
@@ -137,4 +163,6 @@ ALL = {
     "effort": EFFORT,
     "equal cylinders": EQUAL,
     "like one": LIKE_ONE,
+    "shaft line": SHAFT_LINE,
+    "balanced": BALANCED,
 }

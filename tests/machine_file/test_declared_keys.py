@@ -109,9 +109,9 @@ def test_the_same_words_in_python() -> None:
 )
 def test_a_trace_is_one_cycle_at_birth(angles: list[float], pressures: list[float], message: str) -> None:
     with pytest.raises(RuleError, match=message):
-        Trace(np.array(angles, dtype=float), np.array(pressures, dtype=float))
+        Trace(np.array(angles, dtype=float), np.array([pressures], dtype=float))
 
 
 def test_a_trace_from_arrays_needs_no_file() -> None:
-    trace = Trace(np.array([10.0, 190.0, 370.0]), np.array([1e5, 2e5, 1e5]))
-    assert (trace.period, trace.even, trace.cycles, trace.file) == (360, True, ("two-stroke",), None)
+    trace = Trace(np.array([10.0, 190.0, 370.0]), np.array([[1e5, 2e5, 1e5]]))
+    assert (trace.period, trace.even, trace.cycles, trace.files) == (360, True, ("two-stroke",), ())

@@ -108,7 +108,7 @@ def test_a_trace_file_is_found_beside_the_machine_file(tmp_path: Path) -> None:
         '    trace: {file: p.csv, unit: bar, delimiter: ";", decimal: comma, skip_rows: 2, angle_zero: 360 deg}\n'
     )
     trace = load(path).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
-    assert Path(trace.file) == tmp_path / "p.csv"  # type: ignore[union-attr]
+    assert [*map(Path, trace.files)] == [tmp_path / "p.csv"]  # type: ignore[union-attr]
     assert trace.angle_zero == 360  # type: ignore[union-attr]
     assert trace.angles.tolist() == [360, 540, 720]  # type: ignore[union-attr]
     assert trace.pressures.tolist() == [1e5, 5e4, 1e5]  # type: ignore[union-attr]

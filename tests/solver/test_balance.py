@@ -374,6 +374,7 @@ def test_moments_about_another_place() -> None:
     ("text", "message"),
     [
         ("{speed: 600 rpm, crank: 50 mm, rod_ratio: 4}", "nothing moves that could be balanced"),
+        (single().replace("2 kg", "0 kg"), "nothing moves that could be balanced"),
         (single(1.00000000001), "so short a connecting rod do not settle"),
         ("{crank: 1 m, frame: 2 m, lever: 4 m, mechanism: slotted-lever, masses: {other: 1 kg}}", "are not known"),
         (
@@ -414,3 +415,20 @@ def test_the_smallest_circle() -> None:
     assert abs(circle.centre) < 1e-14
     assert circle.radius == pytest.approx(1)
     assert smallest_circle([1j, 1j])[:2] == (1j, 0.0)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_carriers_alone_have_the_same_smallest_circle(seed: int) -> None:
+    """Also where four or more points, mirror images, stand on it: no point may be dropped that holds it."""
+    angles = np.random.default_rng(seed).uniform(0, 2 * math.pi, 4)
+    points = [complex(math.cos(a), sign * math.sin(a)) for a in angles for sign in (1, -1)]
+    circle = smallest_circle(points)
+    assert max(abs(one - circle.centre) for one in points) == pytest.approx(circle.radius, rel=1e-12)
+    assert smallest_circle(list(circle.carriers)).radius == pytest.approx(circle.radius, rel=1e-12)
+
+
+def test_wheels_need_to_know_where_the_cylinders_stand() -> None:
+    found = balance_of(single(4, ", locomotive: {wheel_distance: 1 m}"))
+    assert found.locomotive is not None
+    with pytest.raises(UsageError, match="cylinder 1: weights in two planes need its 'axial_position'"):
+        _ = found.locomotive.hammer_blow

@@ -133,7 +133,7 @@ def test_the_residual_shows_gauss_across_a_kink(monkeypatch: pytest.MonkeyPatch)
 def test_friction_between_samples_where_the_rod_swings_round_within_a_hair(step: float) -> None:
     """R/L = 0.999 and 400 or 720 samples: narrow as their pieces are, those beside 90° and 270° must be narrower."""
     angles = np.arange(0.0, 360.0 + step / 2, step)
-    trace = Trace(angles, 1e5 * (6 + 4 * np.cos(np.radians(angles) - 0.4)))
+    trace = Trace(angles, 1e5 * (6 + 4 * np.cos(np.radians(angles) - 0.4))[np.newaxis])
     forces = one_cylinder(
         SliderCrank(0.2, 0.2002),
         180,

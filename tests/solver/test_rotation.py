@@ -32,7 +32,7 @@ def case(rotation: str = "", out: str = "3 bar", back: str = "0 bar", **changed:
 
 def note(solved: Case) -> str:
     report = forces_report(solved, (0.0,), None, "si")
-    (found,) = (*report.notes, *report.parts[0].warnings)
+    (found,) = (one for one in (*report.notes, *report.parts[0].warnings) if "guide" in one)
     return found
 
 

@@ -22,8 +22,8 @@ from kurbel.machine.piston import Piston
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
+from kurbel.solver.shaft.statics import FreeBody, weight_in_throw
 from kurbel.solver.strength.places import PARTS, places
-from kurbel.solver.strength.statics import FreeBody, weight_in_throw
 from machines import STEAM_CARD, constant_pressure
 from shafts import body, place_at, shaft, strength
 

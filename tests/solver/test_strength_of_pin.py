@@ -84,8 +84,8 @@ class TestTurningPartOfTheRod:
             assert shared.load_max(bearing).value == pytest.approx(exact.load_max(bearing).value, rel=1e-12)
         for bearing in ("A", "B"):
             assert shared.pressure_mean(bearing) == pytest.approx(exact.pressure_mean(bearing), rel=1e-12)
-        assert shared.rod_pull == pytest.approx(self.PULL, rel=1e-14)
-        assert exact.rod_pull == 0
+        assert shared.C_rod == pytest.approx(self.PULL, rel=1e-14)
+        assert exact.C_rod is None
 
     def test_mean_pressure_is_that_of_the_rod_force_alone(self) -> None:
         """G's k = p_m v has p_m from the force in the rod, over time."""
@@ -96,7 +96,7 @@ class TestTurningPartOfTheRod:
 
     def test_needs_a_speed(self) -> None:
         at_rest = strength(shaft(), SliderCrank(0.3, 1.5), masses=Masses(200.0, ConnectingRod(260.0)))
-        assert at_rest.rod_pull == 0
+        assert at_rest.C_rod is None
 
 
 @pytest.mark.parametrize(

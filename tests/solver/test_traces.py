@@ -264,8 +264,7 @@ def broken(line: int, text: str) -> str:
             "\n".join(GOOD[:25]),
             "line 25: no samples from 240 to 360 deg; a trace covers a whole cycle of 360 or 720 deg",
         ),
-        ("\n".join([*GOOD[:-1], *GOOD]), "line 37: 0 deg after 350 deg; a cycle ends here; keep one cycle only"),
-        ("0,1\n720,2\n1440,1\n", "line 3: the samples run over 1440 deg; cut one cycle of 720 deg out"),
+        ("0,1\n720,2\n1440,1\n", "line 3: the samples run over 1440 deg; cut whole cycles out"),
         (b"\xff\xfe0\x00,\x001\x00", "line 1"),
     ],
 )
@@ -293,8 +292,7 @@ def test_the_missing_closing_sample_is_taken_from_the_first(tmp_path: Path) -> N
     machine = machine_of(tmp_path, "\n".join(GOOD[:-1]))
     angles, pressures = columns_of(machine)
     assert (angles[-1], pressures[-1]) == (360, pressures[0])
-    (note,) = machine.cylinders[0].pistons[0].indicator.head_end.notes  # type: ignore[union-attr]
-    assert note == "the closing sample at 360 deg is missing; that at 0 deg closes the cycle"
+    assert notes_of(machine) == ()  # as loggers write them; a drift would be seen all the same
 
 
 def test_gaps_are_told(tmp_path: Path) -> None:
@@ -463,7 +461,7 @@ def finely_motored(late: float) -> list[tuple[float, float]]:
 
 def test_jump_between_the_ends() -> None:
     (warning,) = warned([(0.0, 5.0), (90.0, 9.0), (180.0, 2.0), (360.0, 4.0)])
-    assert warning == "piston, head end: the pressure jumps by 1 bar where the cycle closes"
+    assert warning.startswith("piston, head end: the pressure jumps by 1 bar where the cycle closes")
 
 
 def test_levels() -> None:
@@ -473,20 +471,20 @@ def test_levels() -> None:
     (warning,) = warned([(a, p + 1.0) for a, p in points])
     assert "write 'pressures: absolute'" in warning
     (warning,) = warned([(a, p - 1.1) for a, p in points])
-    assert "below the perfect vacuum" in warning
+    assert "the perfect vacuum being at -1.013 bar" in warning
 
 
 def test_firing_in_the_gas_exchange() -> None:
     points = [(0.0, 0.1), (350.0, 9.0), (370.0, 30.0), (500.0, 2.0), (720.0, 0.1)]
     (warning,) = warned(points, "four-stroke")
-    assert "write 'angle_zero: 360 deg'?" in warning
+    assert "write 'angle_zero: 360 deg';" in warning
     assert warned(points, "four-stroke", zero=360.0) == []
 
 
 def test_indicated_below_brake_power(tmp_path: Path) -> None:
     machine = machine_of(tmp_path, "\n".join(GOOD), more="brake_power: 500 kW\n")
     (warning,) = brake_warnings(machine, Case(machine).cylinders)
-    assert "is below the brake power, 500 kW" in warning
+    assert "far below what the driven shaft takes, 500 kW" in warning
     notes = [entry.text for section in checked(machine).sections for entry in section.entries]
     assert warning in notes
 

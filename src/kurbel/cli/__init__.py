@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 COMMANDS = (
-    *("table", "motion", "forces", "flywheel", "stress", "balance", "accuracy"),
+    *("table", "motion", "forces", "flywheel", "stress", "bearings", "balance", "harmonics", "torsion", "accuracy"),
     *("sweep", "friction", "check", "example", "keys", "units", "schema"),
 )
 """In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""

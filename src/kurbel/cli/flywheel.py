@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import Asked, machine_table, uncertainty_option
+from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option
 from kurbel.cli.row_options import AskedRows, where_option
 
 
@@ -13,7 +13,7 @@ from kurbel.cli.row_options import AskedRows, where_option
 @machine_table
 @where_option
 @uncertainty_option
-def flywheel(asked: Asked, where: str | None, spreads: tuple[tuple[str, str], ...]) -> None:
+def flywheel(asked: Asked, where: str | None, spreads: Spreads) -> None:
     """Print the turning effort of the whole machine, its excess work, and what the flywheel makes of it.
 
     Every cylinder counts at the angle of its crank; T is referred to the radius of crank 1, T_b is the share of the

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import Asked, machine_table, uncertainty_option
+from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option
 from kurbel.cli.row_options import AskedRows, row_options
 
 
@@ -13,15 +13,35 @@ from kurbel.cli.row_options import AskedRows, row_options
 @machine_table
 @uncertainty_option
 @row_options
-def forces(asked: Asked, rows: AskedRows, spreads: tuple[tuple[str, str], ...]) -> None:
+@click.option(
+    "--cycle", type=click.IntRange(min=1), metavar="N", help="This measured cycle of a trace, not their mean."
+)
+@click.option("--each-cycle", is_flag=True, help="A line for every measured cycle instead of the table over the angle.")
+def forces(asked: Asked, rows: AskedRows, cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
     """Print the forces in the crank train over the working cycle, and the key values, for every cylinder of FILE.
 
     P acts along the stroke line, S in the rod, N on the guide, D and T at the crank pin; forces toward the shaft
     count positive. At a jump of the pressure the value just after it stands in the table. Key values are exact and
     do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.forces import forces_report
+    from kurbel.report.forces import cycles_report, forces_report
 
     case = asked.case()
+    if cycle is not None:
+        from kurbel.machine.one_cycle import of_cycle
+
+        case = type(case)(of_cycle(case.machine, cycle))
+    if each_cycle:
+        _refuse_columns(asked, rows, cycle)
+        asked.write(cycles_report(case, asked.units))
+        return
     angles = rows.rows(asked) or asked.crank_angles(360.0 * case.machine.revolutions, len(case.cylinders))
     asked.write(forces_report(case, angles, asked.columns, asked.units, rows.columns), case, spreads)
+
+
+def _refuse_columns(asked: Asked, rows: AskedRows, cycle: int | None) -> None:
+    """Raise UsageError for what only a table over the angle has."""
+    ways = {"--columns": asked.columns, "--cycle": cycle, "--angles": asked.angles}
+    for way, said in (ways | {"--where": rows.where, "--over": rows.over}).items():
+        if said is not None:
+            raise click.UsageError(f"--each-cycle has no table over the angle; leave out {way}.")

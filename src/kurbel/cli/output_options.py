@@ -284,6 +284,10 @@ class Asked(NamedTuple):
         self.output.write(report)
 
 
+Spreads = tuple[tuple[str, str], ...]
+"""Dotted keys, each with its standard uncertainty as a text."""
+
+
 def uncertainty_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command standard uncertainties of inputs, which reach it as pairs of key and text."""
     option = click.option(
@@ -310,20 +314,31 @@ def _spread(text: str) -> tuple[str, str]:
     return key.strip(), spread_text(spread)
 
 
+def machine_places(command: Callable[..., None]) -> Callable[..., Any]:
+    """Give a command FILE and the options of one that tells nothing over the crank angle; see `machine_table`."""
+    return stacked(machine_file, _part_options, units_option)(output_options(_with_asked(command)))
+
+
 def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
     """Give a command FILE and all options of a table, which reach it as one `asked: Asked`."""
+    return stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
+        output_options(_with_asked(command))
+    )
+
+
+def _with_asked(command: Callable[..., None]) -> Callable[..., Any]:
 
     @wraps(command)
     def with_asked(
         file: str,
         overrides: tuple[str, ...],
-        step: float,
-        angles: tuple[float, ...] | None,
-        columns: tuple[str, ...] | None,
         units: str | None,
         cylinder: str | None,
         key_values_only: bool,
         output: Output,
+        step: float = 10.0,
+        angles: tuple[float, ...] | None = None,
+        columns: tuple[str, ...] | None = None,
         **others: Any,
     ) -> None:
         system = units or ("si" if output.look.format in ("csv", "json") else "metric")
@@ -333,4 +348,4 @@ def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
         with told_in(units or "metric"):
             command(asked=asked, **others)
 
-    return stacked(machine_file, angle_options, columns_option, _part_options, units_option)(output_options(with_asked))
+    return with_asked

@@ -42,7 +42,7 @@ class Form(ABC):
         return "…"
 
     def written(self) -> str:
-        """Return in a few words what is written for a key, for the page of keys."""
+        """Return in a few words what is written for a key, for the page of symbols."""
         return self.expected() if self.shape is str else "a mapping"
 
     def suits(self, value: Any) -> bool:
@@ -94,8 +94,11 @@ class Form(ABC):
         yield from self.places(inner, f"under '{inner}'")
 
     def meant(self, name: str, key: Key) -> dict[str, str]:
-        """Return the words that people try for what a key of this form stands for, each with the key that is meant."""
-        return dict.fromkeys(key.also, name) | {
+        """Return what people try for what a key of this form stands for, each with the key that is meant.
+
+        Such are other words for it, and the symbol with which the books write it.
+        """
+        return dict.fromkeys(filter(None, (*key.also, key.symbol)), name) | {
             word: inner
             for record in self.inline()
             for other, one in record.keys.items()

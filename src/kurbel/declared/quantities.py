@@ -7,8 +7,12 @@ from functools import partial
 from typing import NamedTuple
 
 from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
+from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES, PIN_LOSSES
+from kurbel.declared.indicated import INDICATED_COLUMNS, INDICATED_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
+from kurbel.declared.rod_load import ROD_COLUMNS, ROD_VALUES
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
+from kurbel.declared.torsion import HARMONIC_VALUES, TORSION_COLUMNS, TORSION_VALUES
 
 _FORCES, _FLYWHEEL, _STRESS = ("forces",), ("flywheel",), ("stress",)
 _motion = partial(Quantity, commands=("motion", "forces"))
@@ -24,7 +28,7 @@ _COLUMNS = (
         "angle",
         "Crank angle from the inner dead centre, in the sense of rotation",
         "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "balance"),
+        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "bearings", "balance", "torsion"),
     ),
     _motion(
         "z",
@@ -53,6 +57,7 @@ _COLUMNS = (
     ),
     _forces("p_head", "p_H", "pressure", "Gauge pressure in the head-end chamber, just after a jump", gauge=True),
     _forces("p_crank", "p_C", "pressure", "Gauge pressure in the crank-end chamber, just after a jump", gauge=True),
+    *INDICATED_COLUMNS,
     _forces("P_gas", "P_gas", "force", "Force of gas, steam or water on all pistons of the rod"),
     _forces(
         "P_gas_book",
@@ -148,8 +153,11 @@ _COLUMNS = (
         called="angular acceleration of the shaft",
     ),
     _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
+    *ROD_COLUMNS,
     *STRENGTH_COLUMNS,
+    *BEARING_COLUMNS,
     *BALANCE_COLUMNS,
+    *TORSION_COLUMNS,
 )
 
 
@@ -230,6 +238,7 @@ _WORK_VALUES = (
     _forces("resistance_work", "A_r", "energy", "Work per cycle of what the ram or rocker works against, negative"),
     _forces("power", "N_i", "power", "Indicated power"),
     _forces("mean_pressure", "p_i", "pressure", "Mean indicated pressure of the cylinder's own piston"),
+    *INDICATED_VALUES,
     _forces(
         "work_sensitivity",
         "dA_i/A_i",
@@ -247,6 +256,7 @@ _WORK_VALUES = (
         "lam f/2",
     ),
     _forces("loss_rings", "e_R", "ratio", "Work lost at the piston rings over that of the driving pistons"),
+    *PIN_LOSSES,
     _forces(
         "energy_residual",
         "ΔA/A",
@@ -255,7 +265,13 @@ _WORK_VALUES = (
         "dA/A",
         residual=True,
     ),
-    _flywheel("M_mean", "M_m", "torque", "Mean torque of the turning effort: the resistance"),
+    Quantity(
+        "M_mean",
+        "M_m",
+        "torque",
+        "Mean torque of the turning effort: the resistance",
+        commands=(*_FLYWHEEL, "harmonics"),
+    ),
     _flywheel("work_shaft", "A", "energy", "Work of the turning effort per cycle"),
     _flywheel("power_shaft", "N_e", "power", "Power at the shaft, mean torque times nominal angular velocity"),
 )
@@ -317,10 +333,14 @@ class Lists(NamedTuple):
             *_CYLINDER_VALUES,
             *extremes(found, "forces"),
             *_WORK_VALUES,
+            *ROD_VALUES,
             *extremes(found, "flywheel"),
             *_FLYWHEEL_VALUES,
             *STRENGTH_VALUES,
+            *BEARING_VALUES,
             *BALANCE_VALUES,
+            *HARMONIC_VALUES,
+            *TORSION_VALUES,
         )
         return cls(found, placed((*common, *key_values)))
 
@@ -345,16 +365,3 @@ class Lists(NamedTuple):
 COMMON = Lists.of()
 """What every machine may have; a mechanism adds its own (`kurbel.mechanisms.every_quantity`)."""
 COLUMNS = by_id(one for one in COMMON.all_columns if one.commands)
-
-FACTORS = by_id(
-    (
-        Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R", "cos phi + R/L cos 2phi"),
-        Quantity("velocity_factor", "sin(φ+ψ)/cos ψ", "ratio", "c over v, and T over P", "sin(phi+psi)/cos psi"),
-        Quantity("displacement_factor", "x/R", "ratio", "x over R"),
-        Quantity("psi", "ψ", "angle", "Angle between connecting rod and stroke line", "psi"),
-        Quantity("rod_force_factor", "S/P", "ratio", "Rod force over piston force, 1/cos ψ (R 300)"),
-        Quantity("guide_force_factor", "N/P", "ratio", "Guide force over piston force, tan ψ (R 301)"),
-        Quantity("radial_force_factor", "D/P", "ratio", "Radial over piston force, cos(φ+ψ)/cos ψ (R 302)"),
-    )
-)
-"""Rows of Zusammenstellung 112, by id."""

@@ -27,6 +27,7 @@ class Quantity(NamedTuple):
     people are not shown what of it is only that. On what is `listed`, a list of values, no bound can be put.
     `peak`: a column with extremes that has, besides, its largest magnitude as key value `<id>_peak`.
     `on_request`: the commands that print it only where it is asked for by name.
+    `wanted_large`: a bound on it is one from below, as on every smallest value.
     `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
     """
 
@@ -45,8 +46,14 @@ class Quantity(NamedTuple):
     listed: bool = False
     peak: bool = False
     on_request: tuple[str, ...] = ()
+    wanted_large: bool = False
     gauge: bool = False
     mark: str = ""
+
+    @property
+    def bounded_below(self) -> bool:
+        """Whether a bound on it is one from below."""
+        return self.wanted_large or self.id.endswith("_min")
 
     @property
     def ascii_symbol(self) -> str:

@@ -19,6 +19,7 @@ SI = {
     "time": "s",
     "angle": "deg",
     "speed": "1/s",
+    "frequency": "Hz",
     "angular_velocity": "rad/s",
     "angular_acceleration": "rad/s^2",
     "velocity": "m/s",
@@ -32,6 +33,9 @@ SI = {
     "stiffness": "N m/rad",
     "damping": "N m s/rad",
     "pressure_velocity": "W/m^2",
+    "volume": "m^3",
+    "volume_rise": "m^3/deg",
+    "pressure_rise": "Pa/deg",
     "density": "kg/m^3",
     "spring": "m/Pa",
     "ratio": "",
@@ -48,6 +52,9 @@ TECHNICAL = SI | {
     "power": "PS",
     "gd2": "kgf m^2",
     "pressure_velocity": "kgf m/s/cm^2",
+    "volume": "dm^3",
+    "volume_rise": "cm^3/deg",
+    "pressure_rise": "at/deg",
     "spring": "mm/at",
 }
 _METRIC: dict[str, Any] = {
@@ -63,6 +70,9 @@ _METRIC: dict[str, Any] = {
     "energy": ("J", "kJ", "MJ"),
     "power": ("W", "kW", "MW"),
     "pressure_velocity": "N/mm^2 m/s",
+    "volume": ("cm^3", "m^3"),
+    "volume_rise": "cm^3/deg",
+    "pressure_rise": ("mbar/deg", "bar/deg"),
     "spring": "mm/bar",
 }
 _IMPERIAL: dict[str, Any] = {
@@ -85,11 +95,14 @@ _IMPERIAL: dict[str, Any] = {
     "stiffness": "lbf ft/rad",
     "damping": "lbf ft s/rad",
     "pressure_velocity": "psi ft/s",
+    "volume": "in^3",
+    "volume_rise": "in^3/deg",
+    "pressure_rise": "psi/deg",
     "spring": "in/psi",
 }
 SYSTEMS: dict[str, dict[str, Any]] = {"si": SI, "metric": _METRIC, "technical": TECHNICAL, "imperial": _IMPERIAL}
 """Unit system -> kind -> the unit in which results are shown, or several, of which the size decides."""
-_TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3}
+_TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3, "m^3": 1.0, "bar/deg": 1e3}
 """Base value from which a larger unit is taken, where that is not one of the unit itself."""
 
 _TOLD: ContextVar[str] = ContextVar("told", default="metric")

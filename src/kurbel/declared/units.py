@@ -84,6 +84,8 @@ _POUND_FEET = {
     for a, b in (("lb", c), (c, "lb"), (c, "lbf"))
 }
 
+_PER_ANGLE: dict[str, Factor] = {"deg": (1, 1), "rad": (180, math.pi)}
+
 _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
     "length": lambda: _LENGTH,
     "area": lambda: _AREA,
@@ -106,6 +108,7 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         "Hz": (1, 1),
         "rad/s": (1, 2 * math.pi),
     },
+    "frequency": lambda: {"Hz": (1, 1), "1/s": (1, 1), "kHz": (1e3, 1), "1/min": (1, 60)},
     "angular_velocity": lambda: {"rad/s": (1, 1)},
     "angular_acceleration": lambda: {"rad/s2": (1, 1)},
     "velocity": lambda: _product(_LENGTH, _TIME, "/"),
@@ -155,6 +158,16 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         )
         | {f"{name}/kgf/cm2": (1, down * 98066.5) for name, down in (("mm", 1e3), ("cm", 1e2))}
     ),
+    "volume": lambda: {
+        "m3": (1, 1),
+        "dm3": (1, 1e3),
+        "l": (1, 1e3),
+        "cm3": (1, 1e6),
+        "mm3": (1, 1e9),
+        "in3": (254**3, 1e12),
+    },
+    "volume_rise": lambda: _product({"m3": (1, 1), "cm3": (1, 1e6), "in3": (254**3, 1e12)}, _PER_ANGLE, "/"),
+    "pressure_rise": lambda: _product({**_PRESSURE, **_POUNDS_OF_FORCE}, _PER_ANGLE, "/"),
     "pressure_velocity": lambda: {
         "W/m2": (1, 1),
         "N/mm2 m/s": (1e6, 1),
@@ -313,6 +326,8 @@ def _unit_example(kind: str) -> str:
         "gd2": "kgf m2",
         "spring": "mm/at",
         "inertia": "kg m2",
+        "volume": "cm3",
+        "pressure_rise": "bar/deg",
         "unbalance": "kg m",
     }.get(kind, next(iter(_units_of(kind))))
 

@@ -7,6 +7,7 @@ from typing import Any, Union
 
 import numpy as np
 
+from kurbel.declared.quantity import Quantity
 from kurbel.designs.columns import Answer, answered_alone
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
@@ -14,6 +15,7 @@ from kurbel.machine.side_by_side import Kinds, side_by_side
 from kurbel.numerics.cycles import Unlike
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.figures import answered
 
 _ALONE = ("energy_residual",)
@@ -29,13 +31,19 @@ Values = Union[list[Any], str]
 
 def answers_of(machines: Sequence[Machine], asked: Sequence[Answer]) -> list[Values]:
     """Return what each of many machines answers."""
-    side_by_side = [one.of_cylinder and one.quantity.id not in _ALONE for one in asked]
+    side_by_side = [one.of_cylinder and _stands_beside(one.quantity) for one in asked]
     with np.errstate(all="ignore"):
         together = _Answers(machines, [one for one, beside in zip(asked, side_by_side) if beside]).found()
         if all(side_by_side):
             return together
         alone = _Answers(machines, [one for one, beside in zip(asked, side_by_side) if not beside], True).found()
     return [_merged(first, second, side_by_side) for first, second in zip(together, alone)]
+
+
+def _stands_beside(quantity: Quantity) -> bool:
+    """Return whether a key value is one of forces or motion themselves, whose formulas take many machines."""
+    name = quantity.asks[0] if quantity.asks else quantity.id
+    return quantity.id not in _ALONE and any(hasattr(one, name) for one in (CylinderForces, Motion))
 
 
 def _merged(first: Values, second: Values, of_first: Sequence[bool]) -> Values:

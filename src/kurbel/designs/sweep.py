@@ -185,7 +185,7 @@ class Sweep:
 
         for (answer, bound), value in zip(self._limits, found, strict=True):
             number = value.value if isinstance(value, Extreme) else value
-            if number is not None and breaks(answer.quantity.id, bound, number):
+            if number is not None and breaks(answer.quantity, bound, number):
                 return answer.quantity.id
         return ""
 

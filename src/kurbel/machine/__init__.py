@@ -28,17 +28,20 @@ from kurbel.declared.forms import (
     Uncertainties,
 )
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.errors import Fault, refuse
+from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder, crowded
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from kurbel.declared.forms.figures import Expected
     from kurbel.declared.quantity import Quantity
     from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.equal import EqualCylinders
     from kurbel.machine.origin import Origin
+    from kurbel.machine.shaft_line import ShaftLine, ShaftPart
     from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
@@ -69,6 +72,15 @@ def _standing(
     return cylinders.standing(order, degrees)
 
 
+def _shaft_line(parts: tuple[ShaftPart | str, ...], cylinders: list[str]) -> ShaftLine:
+    from kurbel.machine.shaft_line import ShaftLine
+
+    try:
+        return ShaftLine.of_parts(parts, cylinders)
+    except RuleError as error:
+        raise RuleError(*(fault.below(("shaft",)) for fault in error.faults)) from None
+
+
 @dataclass(frozen=True, eq=False)
 class Machine(Described):
     """A whole machine.
@@ -97,6 +109,7 @@ class Machine(Described):
     balance_shafts: tuple[BalanceShaft, ...] = ()
     moment_reference: float | None = None
     locomotive: Locomotive | None = None
+    shaft: ShaftLine | None = None
     limits: tuple[tuple[str, float], ...] = ()
     expect: tuple[tuple[str, Expected], ...] = ()
     uncertainty: tuple[tuple[str, str], ...] = ()
@@ -189,6 +202,13 @@ class Machine(Described):
             "Driven wheels, for hammer blow and swaying couple",
             absent="no locomotive",
         ),
+        "shaft": Key(
+            Listing(OneOf(Choice(("ground", "flywheel")), Record("kurbel.machine.shaft_line:ShaftPart"))),
+            "Shaft line for torsional vibration, read along the shaft: masses, pieces between them, one pair of gears, "
+            "and the words `flywheel`, that of the machine, and `ground`, a fixed end",
+            absent="no torsional vibration",
+            also=("shaft_line", "torsion"),
+        ),
         "limits": Key(Limits(_key_values), "Bounds for key values, checked by `kurbel check`", absent="none"),
         "expect": Key(
             Expectations(_key_values), "Figures that key values are to meet, compared by `kurbel check`", absent="none"
@@ -210,6 +230,7 @@ class Machine(Described):
         load: Load | str | None = None,
         kurbel: int = FORMAT,
         brake_torque: float | None = None,
+        shaft: tuple[ShaftPart | str, ...] | None = None,
         **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
@@ -221,10 +242,12 @@ class Machine(Described):
         if firing_order or not isinstance(given, tuple):
             given = _standing(given, firing_order, keys.get("cycle", "two-stroke"))
         named = tuple(c if c.name else replace(c, name=f"cylinder {i}") for i, c in enumerate(given, 1))
+        if shaft is not None:
+            keys["shaft"] = _shaft_line(shaft, [cylinder.name for cylinder in named])
         return cls(named, load=None if isinstance(load, str) else load, **keys)
 
     def __post_init__(self) -> None:
-        if not self.cylinders and self.effort is None:
+        if not self.cylinders and self.effort is None and self.shaft is None:
             message = "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"
             refuse(Fault((), f"{message}, or 'effort', a turning-moment diagram known from elsewhere"))
         if self.cylinders and self.effort is not None:
@@ -234,11 +257,23 @@ class Machine(Described):
             if name in names[:index]:
                 refuse(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
         faults = [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
+        for index, cylinder in enumerate(self.cylinders):
+            rubbing = cylinder.friction.faults_beside(self.crankshaft) if cylinder.friction else ()
+            faults += [fault.below(("cylinders", index, "friction")) for fault in rubbing]
         faults += crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
                 faults.append(Fault((key, getattr(diagram, "key", "points")), message))
-        refuse(*faults)
+        refuse(*faults, *self._shaft_faults())
+
+    def _shaft_faults(self) -> Iterator[Fault]:
+        if self.shaft is None:
+            return
+        if self.coupling is not None:
+            message = "'coupling' is a shaft line of two masses, and 'shaft' another one; leave one of them out"
+            yield Fault(("coupling",), message)
+        if any(mass.flywheel for mass in self.shaft.masses) and not (self.flywheel and self.flywheel.inertia):
+            yield Fault(("shaft",), "the shaft line has a 'flywheel'; give the machine one with its 'inertia'")
 
     def _cycle_faults(self, index: int) -> list[Fault]:
         """A four-stroke cycle needs four-line cards, a two-stroke one two-line cards; some need absolute pressures."""
@@ -277,8 +312,7 @@ class Machine(Described):
             piston.indicator for cylinder in self.cylinders for piston in cylinder.pistons if piston.indicator
         ]
         measured = (*(end for one in indicators for end in (one.head_end, one.crank_end)), self.effort)
-        files = (getattr(one, "file", None) for one in measured)
-        return tuple(dict.fromkeys(file for file in files if file))
+        return tuple(dict.fromkeys(file for one in measured for file in getattr(one, "files", ())))
 
     def lean_of(self, cylinder: Cylinder) -> float | None:
         """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""

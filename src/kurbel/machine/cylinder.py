@@ -95,7 +95,7 @@ class Cylinder(Described):
         "masses": Key(Record("kurbel.machine.masses:Masses"), "Masses of the moving parts", absent="no inertia"),
         "friction": Key(
             Record("kurbel.machine.friction:Friction"),
-            "Friction of crosshead and piston rings, or a force",
+            "Friction of crosshead, piston rings, pins and journals, or a force",
             absent="no friction",
         ),
         "crank_position": Key(Physical("angle"), "Angle by which this crank follows crank 1", absent="0 deg"),
@@ -195,6 +195,8 @@ def _of_rod(cylinder: Cylinder) -> Iterator[Fault]:
     if friction is not None and friction.crosshead is not None and not (mechanism.has_rod and mechanism.guided):
         reason = "crosshead guide" if mechanism.has_rod else "connecting rod to press a crosshead on its guide"
         yield Fault(("friction", "crosshead"), f"a {mechanism.name} has no {reason}; leave 'crosshead' out")
+    for key in friction.of_pins if friction and not mechanism.has_rod else ():
+        yield Fault(("friction", key), f"a {mechanism.name} has no connecting rod; leave '{key}' out")
     if masses is not None and masses.connecting_rod is not None and not mechanism.has_rod:
         message = f"a {mechanism.name} has no connecting rod; give what goes to and fro as 'other'"
         yield Fault(("masses", "connecting_rod"), message)

@@ -84,12 +84,16 @@ class ConnectingRod(Described):
 class Masses(Described):
     """Moving masses in kg: the sum of piston, piston rod, crosshead and others, the connecting rod, and what turns.
 
-    rotating: at the radius of the crank pin, beside what of the connecting rod turns with it.
+    rotating: at the radius of the crank pin, beside what of the connecting rod turns with it; crosshead: what of the
+    sum is the crosshead's, None where that is not known; undivided: the sum was given as one and has the connecting
+    rod's share in it.
     """
 
     parts: float
     connecting_rod: ConnectingRod | None = None
     rotating: float = 0.0
+    crosshead: float | None = None
+    undivided: bool = False
 
     KEYS: ClassVar[Keys] = {
         "reciprocating": Key(
@@ -122,13 +126,14 @@ class Masses(Described):
         **parts: float | tuple[float, ...],
     ) -> Masses:
         """Return the masses that these keys of a machine file describe."""
-        each = [mass for part in parts.values() for mass in (part if isinstance(part, tuple) else (part,))]
-        if not each and connecting_rod is None and rotating is None:
+        sums = {name: math.fsum(part) if isinstance(part, tuple) else part for name, part in parts.items()}
+        if not sums and connecting_rod is None and rotating is None:
             refuse(
                 Fault((), "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …")
             )
         rod = ConnectingRod(connecting_rod) if isinstance(connecting_rod, float) else connecting_rod
-        return cls(math.fsum(each), rod, rotating or 0.0)
+        crosshead, undivided = sums.get("crosshead"), "reciprocating" in sums
+        return cls(math.fsum(sums.values()), rod, rotating or 0.0, crosshead, undivided)
 
     def at_pin(self, rod_length: float) -> float:
         """Mass in kg that turns with the crank pin, with what of a connecting rod of this length in m does."""

@@ -56,6 +56,8 @@ class Kinds:
             mirrored = value.crank_end is value.head_end
             ends = _chamber(value.head_end), _chamber(value.crank_end)
             return _ALONE if _ALONE in ends else (Indicator, *ends, mirrored, value.absolute)
+        if getattr(value, "of_pins", ()):  # whose loads bend where they all but vanish
+            return _ALONE
         if is_dataclass(value):
             own = self._together(one for name, one in vars(value).items() if name != "name")
             return _ALONE if own is _ALONE else (type(value), own)

@@ -123,7 +123,7 @@ class Effort:
 
     angles: tuple[float, ...]
     torques: tuple[float, ...]
-    file: str | None = None
+    files: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
     @classmethod
@@ -140,7 +140,7 @@ class Effort:
     @property
     def key(self) -> str:
         """The key that the torques stand under."""
-        return "file" if self.file else "points"
+        return "file" if self.files else "points"
 
 
 @dataclass(frozen=True, eq=False)

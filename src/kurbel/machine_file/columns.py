@@ -1,7 +1,8 @@
-"""Files of columns, as data loggers write them: two columns of figures, or the first line that has none."""
+"""Files of columns, as data loggers write them: columns of figures, or the first line that has none."""
 
 from __future__ import annotations
 
+import io
 import itertools
 import os
 import re
@@ -11,24 +12,27 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kurbel.declared.bounds import MOST_POINTS
 from kurbel.declared.numerals import familiar
 from kurbel.errors import Fault, RuleError, refuse
+from kurbel.machine_file.text_file import text_of
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
 
-LARGEST_FILE = 64 * 2**20
-"""Bytes; half a million samples have about ten million."""
-_LONGEST_LINE = 10_000
+MOST_NUMBERS = 5_000_000
+"""Numbers that are taken from one file."""
 _FIGURES = re.compile(r"[-+.,;:%0-9eE \t]*[0-9][-+.,;:%0-9eE \t]*")
+_QUOTED = re.compile(r'"([^"\n]*)"')
 
 
 class Columns(NamedTuple):
-    """How a file of columns is laid out: columns count from 1, skip_rows are the lines above the first figures."""
+    """How a file of columns is laid out: columns count from 1, skip_rows are the lines above the first figures.
 
-    angle: int = 1
-    pressure: int = 2
+    angle: None where the rows only count; values: the columns of what was measured.
+    """
+
+    angle: int | None = 1
+    values: tuple[int, ...] = (2,)
     skip_rows: int = 0
     delimiter: str = ","
     decimal: str = "."
@@ -38,57 +42,86 @@ class Columns(NamedTuple):
         """What splits a line; None for any run of blanks."""
         return None if self.delimiter == " " else self.delimiter
 
+    @property
+    def wanted(self) -> tuple[int, ...]:
+        """The columns that are read, in their order."""
+        return (*(() if self.angle is None else (self.angle,)), *self.values)
 
-def read_columns(file: str, columns: Columns) -> tuple[Array, Array, Callable[[int], str]]:
-    """Return the two columns of a file, and what names the line of a sample; raises RuleError with the line."""
-    try:
-        table = _table(file, columns)
-    except ValueError:
-        raise RuleError(_first_fault(file, columns)) from None
-    except OSError as error:
-        raise RuleError(Fault(("file",), f"cannot be read: {error.strerror or error}")) from None
-    if len(table) > MOST_POINTS:
-        refuse(Fault(("file",), f"has more than {MOST_POINTS} samples; thin them out"))
-    if not len(table):
+    def tidied(self, text: str) -> str:
+        """Return a text with decimal points, and without quotation marks, between which a comma is a decimal one."""
+        if '"' in text:
+            text = _QUOTED.sub(self._unquoted, text)
+        return text.replace(self.decimal, ".") if self.decimal not in (".", self.delimiter) else text
+
+    def _unquoted(self, found: re.Match[str]) -> str:
+        """Return a cell without its quotation marks; with them, if without it would be two."""
+        cell = found[1].strip().replace(self.decimal, ".")
+        return found[0] if self.delimiter in cell else cell
+
+    def cells(self, line: str) -> list[str]:
+        """Return the cells of a line."""
+        return self.tidied(line).split(self.between)
+
+
+class Table(NamedTuple):
+    """What was read: angles (n,) or None, values (m, n) of m columns, and what names the line of a sample."""
+
+    angles: Array | None
+    values: Array
+    line: Callable[[int], str]
+
+
+def read_columns(file: str, columns: Columns) -> Table:
+    """Return the columns of a file; raises RuleError with the line of the first that cannot be read."""
+    text = text_of(file)
+    if columns.delimiter == columns.decimal and '"' not in text:
+        message = "a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'"
+        refuse(Fault(("decimal",), message))
+    table = _table(text, columns)
+    if not table.size:
         refuse(Fault(("file",), f"{os.path.basename(file)} has no figures{_below(columns)}"))
-    return table[:, 0], table[:, 1], lambda index: f"line {_line_number(file, columns, index)}"
+    if table.size > MOST_NUMBERS:
+        refuse(Fault(("file",), f"has more than {MOST_NUMBERS} numbers; thin them out"))
+    angles = None if columns.angle is None else table[:, 0]
+    values = table[:, -len(columns.values) :].T
+    return Table(angles, values, lambda index: f"line {_line_number(text, columns, index)}")
 
 
-def _table(file: str, columns: Columns) -> Array:
-    """Return both columns (n, 2); no more rows than show that there are too many of them are ever held in memory."""
+def _table(text: str, columns: Columns) -> Array:
+    """Return the wanted columns (n, k); look-alikes of a blank or a minus are sought only where one is in the way."""
+    try:
+        return _loaded(columns.tidied(text), columns)
+    except ValueError:
+        known = familiar(text)
+    try:
+        return _loaded(columns.tidied(known), columns)
+    except ValueError:
+        raise RuleError(_first_fault(known, columns)) from None
+
+
+def _loaded(text: str, columns: Columns) -> Array:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # an empty file, of which a message of ours speaks
         return np.loadtxt(
-            (familiar(line).replace(columns.decimal, ".") for line in _lines(file)),
+            io.StringIO(text),
             delimiter=columns.between,
             skiprows=columns.skip_rows,
-            usecols=(columns.angle - 1, columns.pressure - 1),
+            usecols=tuple(column - 1 for column in columns.wanted),
             ndmin=2,
-            max_rows=MOST_POINTS + 1,
+            max_rows=MOST_NUMBERS // len(columns.wanted) + 1,
         )
 
 
-def _lines(file: str) -> Iterator[str]:
-    """Yield the lines of a file; headings may be in any encoding, figures are ASCII."""
-    if os.path.getsize(file) > LARGEST_FILE:
-        refuse(Fault(("file",), f"is larger than {LARGEST_FILE // 2**20} MiB; thin out the samples"))
-    with open(file, encoding="utf-8-sig", errors="replace") as stream:
-        while line := stream.readline(_LONGEST_LINE + 1):
-            if len(line) > _LONGEST_LINE:
-                refuse(Fault(("file",), f"has a line of more than {_LONGEST_LINE} characters"))
-            yield line
-
-
-def _figure_lines(file: str, columns: Columns) -> Iterator[tuple[int, str]]:
+def _figure_lines(text: str, columns: Columns) -> Iterator[tuple[int, str]]:
     """Yield number and text of every line below the headings that has more than a comment, as numpy.loadtxt sees it."""
-    for number, line in enumerate(_lines(file), 1):
-        figures = familiar(line).partition("#")[0].strip()
+    for number, line in enumerate(io.StringIO(text), 1):
+        figures = line.partition("#")[0].strip()
         if number > columns.skip_rows and figures:
             yield number, figures
 
 
-def _line_number(file: str, columns: Columns, index: int) -> int:
-    return next(number for number, _ in itertools.islice(_figure_lines(file, columns), index, None))
+def _line_number(text: str, columns: Columns, index: int) -> int:
+    return next(number for number, _ in itertools.islice(_figure_lines(text, columns), index, None))
 
 
 def _below(columns: Columns) -> str:
@@ -97,19 +130,20 @@ def _below(columns: Columns) -> str:
     return f" below its first {columns.skip_rows} lines" if columns.skip_rows > 1 else " below its first line"
 
 
-def _first_fault(file: str, columns: Columns) -> Fault:
-    """Return the fault of the first line that is no row of figures."""
-    last = max(columns.angle, columns.pressure)
-    for number, line in _figure_lines(file, columns):
-        cells = line.split(columns.between)
+def _first_fault(text: str, columns: Columns) -> Fault:
+    """Return the fault of the first line that is no row of figures, and what to write so that it could be read."""
+    from kurbel.machine_file.layout import advice
+
+    last = max(columns.wanted)
+    for number, line in _figure_lines(text, columns):
+        cells = columns.cells(line)
         if len(cells) < last:
             shown = f": {_quoted(line)}".rstrip(": ")
-            return Fault(("file",), f"line {number} has no column {last}{shown}{_hint(line, number, columns)}")
-        for column in (columns.angle, columns.pressure):
-            cell = cells[column - 1].strip()
-            if not _is_number(cell.replace(columns.decimal, ".")):
+            return Fault(("file",), f"line {number} has no column {last}{shown}{advice(text, number, line, columns)}")
+        for column in columns.wanted:
+            if not is_number(cell := cells[column - 1].strip()):
                 wrong = f"'{shown}' is no number" if (shown := _quoted(cell)) else f"column {column} holds no number"
-                return Fault(("file",), f"line {number}: {wrong}{_hint(line, number, columns, cell)}")
+                return Fault(("file",), f"line {number}: {wrong}{advice(text, number, line, columns, cell)}")
     return Fault(("file",), "its rows cannot be read as numbers")
 
 
@@ -120,18 +154,7 @@ def _quoted(text: str) -> str:
     return " ".join(text.split()) if len(text) <= 40 else f"{' '.join(text[:40].split())}…"
 
 
-def _hint(line: str, number: int, columns: Columns, cell: str = "") -> str:
-    """Return what to write so that a line could be read."""
-    if _is_number(cell.replace(",", ".")) and columns.decimal == ".":
-        return "; write 'decimal: comma'"
-    signs = (("semicolon", ";"), ("tab", "\t"), ("comma", ","), ("space", " "))
-    joined = [word for word, sign in signs if sign in (cell or line).strip() and sign != columns.delimiter]
-    if any(c.isdigit() for c in line) and joined:
-        return f"; write 'delimiter: {joined[0]}' if that stands between its columns"
-    return f"; write 'skip_rows: {number}' if it is a heading" if number == columns.skip_rows + 1 else ""
-
-
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
     """Return whether numpy.loadtxt takes a text for a number."""
     try:
         float(text)

@@ -10,7 +10,7 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, refuse
 from kurbel.machine.turning import Effort, Harmonics
-from kurbel.machine_file.trace import layout_keys, samples_of
+from kurbel.machine_file.samples import Layout, layout_keys, samples_of
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -71,9 +71,14 @@ def _by_harmonics(unit: Factor, mean: float, harmonics: list[tuple[float, float,
 
 
 def _from_file(unit: Factor, file: str, angle_zero: float = 0.0, **layout: Any) -> Effort:
-    samples = samples_of(file, unit, "torque", **layout)
+    up, down = unit
+    samples = samples_of(file, Layout.of_keys("torque", **layout), "torque", lambda torques: torques * up / down)
+    if len(samples.values) > 1:
+        lap = samples.angles[-1] - samples.angles[0]
+        refuse(Fault(("file",), f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle"))
     angles, torques = _from_zero(samples, angle_zero)
-    return Effort(tuple(angles.tolist()), tuple(torques.tolist()), file, samples.notes)
+    closed = ("the closing sample is missing; the first one closes the cycle",) if samples.completed else ()
+    return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed))
 
 
 def _from_zero(samples: Samples, angle_zero: float) -> tuple[Array, Array]:
@@ -83,7 +88,7 @@ def _from_zero(samples: Samples, angle_zero: float) -> tuple[Array, Array]:
     period = float(round(samples.angles[-1] - samples.angles[0]))
     begun = samples.angles - angle_zero
     begun = begun - period * np.ceil(begun[0] / period)  # begins in (−period, 0]
-    angles, torques = np.concatenate([begun, begun + period]), np.tile(samples.values, 2)
+    angles, torques = np.concatenate([begun, begun + period]), np.tile(samples.values[0], 2)
     first, last = np.searchsorted(angles, 0.0, side="right"), np.searchsorted(angles, period, side="left")
     between = np.interp(0.0, angles, torques)
     at_zero = torques[first - 1] if angles[first - 1] == 0 else between

@@ -2,41 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from kurbel.declared.bounds import Point
-from kurbel.declared.forms import Choice, Count, FilePath, Physical, Points, UnitName
+from kurbel.declared.forms import Choice, ColumnRange, FilePath, Number, OneOf, Physical, Points, Record, UnitName
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, refuse
+from kurbel.machine.indicator import CLEARANCE
+from kurbel.machine_file.samples import Layout, layout_keys, samples_of, turned
 
 if TYPE_CHECKING:
-    from kurbel.machine.trace import Trace
+    from kurbel.arrays import Array
+    from kurbel.machine.trace import Pegging, Trace
+    from kurbel.machine_file.motored import Motored
     from kurbel.machine_file.whole_cycle import Samples
 
-DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
-"""Word in the machine file -> what stands between two columns."""
-_DECIMALS = {"point": ".", "comma": ","}
-
-
-def layout_keys(what: str) -> Keys:
-    """Return the keys that say how a file of columns, angles and what was measured, is laid out."""
-    return {
-        "angle_column": Key(Count(), "Column of the angles, counted from 1", absent="1"),
-        f"{what}_column": Key(Count(), f"Column of the {what}s, counted from 1", absent="2"),
-        "skip_rows": Key(Count(least=0), "Number of lines above the first figures", absent="0"),
-        "delimiter": Key(
-            Choice((*DELIMITERS, *DELIMITERS.values())), "What stands between two columns", absent="comma"
-        ),
-        "decimal": Key(Choice(tuple(_DECIMALS)), "Decimal point or decimal comma", absent="point"),
-        "angle_zero": Key(
-            Physical("angle"), "Angle of the firing or inner dead centre as the file counts", absent="0 deg"
-        ),
-    }
+_LAYOUT = layout_keys("pressure")
 
 
 class Measured(Described):
-    """What becomes a `Trace` once its samples are read and closed to a whole cycle."""
+    """What becomes a `Trace` once its samples are read and closed to whole cycles."""
 
     KEYS: ClassVar[Keys] = {
         "file": Key(
@@ -47,7 +33,34 @@ class Measured(Described):
         ),
         "points": Key(Points("deg", "pressure"), "Pressure over the crank angle; or give `file`", instead="file"),
         "unit": Key(UnitName("pressure"), "Unit of the pressures", required=True),
-        **layout_keys("pressure"),
+        **_LAYOUT,
+        "pressure_columns": Key(
+            ColumnRange(), "Columns of pressures, one for each measured cycle", instead="pressure_column"
+        ),
+        "angle_zero": Key(
+            OneOf(Physical("angle"), Record("kurbel.machine_file.motored:Motored")),
+            "Angle of the firing or inner dead centre as the file counts; or a motored trace by which it is found",
+            absent="0 deg",
+        ),
+        "angle_sense": Key(
+            Choice(("with", "against")), "Whether angles count with the rotation, or against it", absent="with"
+        ),
+        "scale": Key(Number(), "Pressure, in the unit, for 1 of the file, such as bar for a volt", absent="1"),
+        "offset": Key(Physical("pressure"), "Pressure that is added after the scale", absent="0 bar"),
+        "pegging": Key(
+            OneOf(Choice(("ambient",)), Record("kurbel.machine.trace:Pegging")),
+            "Where the level of every cycle is known; `ambient`: at the dead centre where the compression begins",
+            absent="pressures as measured",
+        ),
+        "drift": Key(
+            Choice(("linear",)), "Drift that is taken off every cycle, so that it closes", absent="none is taken off"
+        ),
+        "clearance": Key(
+            CLEARANCE, "Clearance over stroke volume, for exponents and volumes", "ε₀", absent="not known"
+        ),
+        "compression_ratio": Key(
+            Number(above=1), "The same as the largest volume over the smallest", "ε", instead="clearance", example="17"
+        ),
     }
 
     @classmethod
@@ -56,56 +69,77 @@ class Measured(Described):
         unit: Factor,
         file: str | None = None,
         points: list[Point] | None = None,
-        angle_zero: float = 0.0,
-        **layout: str | int,
+        angle_zero: float | Motored = 0.0,
+        angle_sense: str = "with",
+        scale: float | None = None,
+        offset: float | None = None,
+        pegging: Pegging | str | None = None,
+        drift: str | None = None,
+        clearance: float | None = None,
+        compression_ratio: float | None = None,
+        **layout: Any,
     ) -> Trace:
         """Return the trace that these keys describe, its file read."""
-        from kurbel.machine.trace import Trace
+        from kurbel.machine.trace import Pegging, Trace
 
+        against = angle_sense == "against"
+        gauge = _Gauge(unit, scale, offset)
         if file is None:
             refuse(*(Fault((key,), f"'{key}' describes a file; leave it out beside 'points'") for key in layout))
-            samples = _from_points(points or [], unit)
+            samples, laid_out = _from_points(points or [], gauge, against), Layout()
         else:
-            samples = samples_of(file, unit, "pressure", **layout)  # type: ignore[arg-type]
-        return Trace(samples.angles, samples.values, angle_zero, file, samples.notes)
+            laid_out = Layout.of_keys("pressure", **layout)
+            samples = samples_of(file, laid_out, "pressure", gauge.pressures, against)
+        zero, files, notes = _zero(angle_zero, laid_out, gauge, against)
+        return Trace(
+            samples.angles,
+            samples.values,
+            angle_zero=-zero if against else zero,
+            files=(*((file,) if file else ()), *files),
+            notes=(*samples.notes, *notes),
+            completed=samples.completed,
+            clearance=1 / (compression_ratio - 1) if compression_ratio else clearance,
+            level=drift == "linear",
+            pegging=Pegging() if isinstance(pegging, str) else pegging,
+            against=against,
+            scale=1.0 if scale is None else scale,
+            offset=offset or 0.0,
+        )
 
 
-def samples_of(
-    file: str,
-    unit: Factor,
-    what: str,
-    angle_column: int = 1,
-    skip_rows: int = 0,
-    delimiter: str = "comma",
-    decimal: str = "point",
-    **column: int,
-) -> Samples:
-    """Return one cycle of what was measured, in the base of its unit, from a file; raises RuleError."""
-    between, point = DELIMITERS.get(delimiter, delimiter), _DECIMALS[decimal]
-    value_column = column.get(f"{what}_column", 2)
-    refuse(*_column_faults(angle_column, value_column, what, between, point))
-    from kurbel.machine_file.columns import Columns, read_columns
-    from kurbel.machine_file.whole_cycle import whole_cycle
+class _Gauge(NamedTuple):
+    """What turns figures of a file into pressures in Pa."""
 
-    layout = Columns(angle_column, value_column, skip_rows, between, point)
-    angles, values, line = read_columns(file, layout)
-    return whole_cycle(angles, values * unit[0] / unit[1], lambda index: Fault(("file",), line(index)), what)
+    unit: Factor
+    scale: float | None
+    offset: float | None
+
+    def pressures(self, figures: Array) -> Array:
+        """Return pressures of the shape of the figures; raises RuleError for a scale of 0."""
+        if self.scale == 0:
+            refuse(Fault(("scale",), "0 leaves no pressure; write the pressure for 1 of the file"))
+        up, down = self.unit
+        found = figures * up / down
+        return found * (1.0 if self.scale is None else self.scale) + (self.offset or 0.0)
 
 
-def _column_faults(angle: int, value: int, what: str, between: str, point: str) -> list[Fault]:
-    faults = []
-    if angle == value:
-        faults.append(Fault((f"{what}_column",), f"column {value} is that of the angles"))
-    if between == point:
-        message = "a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'"
-        faults.append(Fault(("decimal",), message))
-    return faults
-
-
-def _from_points(points: list[Point], unit: Factor) -> Samples:
+def _from_points(points: list[Point], gauge: _Gauge, against: bool) -> Samples:
     import numpy as np
 
     from kurbel.machine_file.whole_cycle import whole_cycle
 
     angles, values = np.array(points, dtype=float).T
-    return whole_cycle(angles, values * unit[0] / unit[1], lambda index: Fault(("points", index), ""))
+    pressures = gauge.pressures(values[np.newaxis])
+    return whole_cycle(*turned(angles, pressures, lambda index: Fault(("points", index), ""), against))
+
+
+def _zero(
+    given: float | Motored, layout: Layout, gauge: _Gauge, against: bool
+) -> tuple[float, tuple[str, ...], tuple[str, ...]]:
+    """Return the angle of the dead centre as the file counts, the files that it was read from, and what to say."""
+    if isinstance(given, (int, float)):
+        return given, (), ()
+    from kurbel.machine_file.motored import dead_centre
+
+    zero, note = dead_centre(given, layout, gauge.pressures, against)
+    return zero, (given.motored,), (note,)

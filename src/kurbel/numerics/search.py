@@ -34,7 +34,7 @@ class Curve(NamedTuple):
     """One quantity over the cycle, each (n,): nodes of a grid, and every angle between them where it turns round.
 
     They stand in order; between neighbouring angles of one piece, told by its row, it only rises or only falls.
-    first: (v,) where each variant begins.
+    first: (v,) where each variant begins; turning: (k,) which of them are no nodes.
     """
 
     degrees: Array
@@ -42,6 +42,17 @@ class Curve(NamedTuple):
     value: Array
     first: Indices
     grid: Grid
+    turning: Indices
+
+    @property
+    def within(self) -> Array:
+        """The middles of the pieces, (n,)."""
+        return np.asarray(self.grid.within[self.row, 0])
+
+    @property
+    def peaks(self) -> tuple[Array, Array]:
+        """Angles (k,) between the nodes at which it turns round, and the middles of their pieces."""
+        return self.degrees[self.turning], self.within[self.turning]
 
     @property
     def following(self) -> Indices:
@@ -121,7 +132,8 @@ def _with_peaks(
     )
     degrees, row, values = (np.insert(at_nodes, into, at_peaks[own][order]) for at_nodes, at_peaks in parts)
     first = np.searchsorted(standing, grid.first * nodes)
-    return Curve(degrees, row, values, first + np.searchsorted(into, first, side="right"), grid)
+    first = first + np.searchsorted(into, first, side="right")
+    return Curve(degrees, row, values, first, grid, into + np.arange(len(into)))
 
 
 def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
@@ -150,7 +162,7 @@ def _turns(owner: int, curve: Curve, size: float | None) -> tuple[Brackets, Indi
     kept = np.flatnonzero(magnitude > curve.of_each(noise))
     beginning = np.searchsorted(kept, curve.first)
     begun = beginning[np.diff(np.append(beginning, len(kept))) > 0]  # of what has any sign at all
-    signed = Curve(curve.degrees[kept], curve.row[kept], curve.value[kept], begun, curve.grid)
+    signed = Curve(curve.degrees[kept], curve.row[kept], curve.value[kept], begun, curve.grid, kept[:0])
     value, row, following = signed.value, signed.row, signed.following
     last = np.flatnonzero(value * value[following] < 0)
     first = following[last]
@@ -169,7 +181,7 @@ def lasting(curve: Curve, changes: Array, noise: float) -> Array:
     if not noise or not len(changes):
         return changes
     # which change each value follows: at a jump the side of the piece decides
-    beside = curve.degrees + 1e-9 * (curve.grid.within[curve.row, 0] - curve.degrees)
+    beside = curve.degrees + 1e-9 * (curve.within - curve.degrees)
     reach = np.zeros(len(changes))
     np.maximum.at(reach, np.searchsorted(changes, beside) - 1, np.abs(curve.value))
     clear = np.flatnonzero(reach > noise)

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from kurbel.render import Look
     from kurbel.report.tables import Column, Part, Report, Value
 
+_FIRST = {"ratios": "rod_ratio", "bearings": "bearing"}
+"""Group of the parts of a report -> head of the column that tells them apart, if not `cylinder`."""
 _FORMULA = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
 """What a formula begins with in a spreadsheet, also in wide characters."""
 
@@ -42,7 +44,7 @@ def _table(report: Report, parts: list[Part], look: Look, separator: str) -> Ite
     """Yield head and rows; a number is never quoted, so that none is looked at twice."""
     heads = _merged([[head(column) for column in part.columns] for part in parts])
     named = report.group == "ratios" or len([*parts, *(part for part in report.parts if part.nowhere)]) > 1
-    first = "rod_ratio" if report.group == "ratios" else "cylinder"
+    first = _FIRST.get(report.group, "cylinder")
     yield _line([*([first] if named else []), *heads], separator)
     for part in parts:
         columns = {head(column): column for column in part.columns}
@@ -67,7 +69,7 @@ def _merged(orders: list[list[str]]) -> list[str]:
 
 def _key_value_rows(report: Report, look: Look) -> Iterator[list[str]]:
     named = len(report.all_parts) > 1
-    yield [*(["cylinder"] if named else []), "key_value", "unit", "value", "at_deg"]
+    yield [*([_FIRST.get(report.group, "cylinder")] if named else []), "key_value", "unit", "value", "at_deg"]
     for part in report.all_parts:
         for one in part.key_values:
             for value in one.value if isinstance(one.value, tuple) else (one.value,):
@@ -79,8 +81,9 @@ def _place_rows(report: Report, look: Look) -> Iterator[list[str]]:
     tables = [(part, table) for part in report.all_parts for table in part.place_tables]
     heads = list(dict.fromkeys(name for _, table in tables for name in table.heads))
     columns = list(dict.fromkeys(head(column) for _, table in tables for column in table.columns))
-    named = report.group == "scenes"
-    yield [*(["scene"] if named else []), "table", *heads, *columns]
+    scenes = report.group == "scenes"
+    named = scenes or any(part is not tables[0][0] for part, _ in tables)
+    yield [*(["scene" if scenes else "cylinder"] if named else []), "table", *heads, *columns]
     for part, table in tables:
         texts = {head(column): [_number(v, look.digits, look) for v in column.values] for column in table.columns}
         texts |= {

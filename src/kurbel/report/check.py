@@ -50,6 +50,7 @@ def checked(machine: Machine) -> Checked:
         Section("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
         Section("Crankshaft", tuple(_crankshaft_entries(machine))),
         Section("Balance", tuple(_balance_entries(machine))),
+        Section("Shaft line", tuple(_shaft_entries(machine))),
         Section("Limits", tuple(one for one in entries if one.path[0] == "limits")),
         Section("Expected", tuple(one for one in entries if one.path[0] == "expect")),
     )
@@ -59,7 +60,8 @@ def checked(machine: Machine) -> Checked:
 
 
 def _machine_entries(machine: Machine) -> Iterable[Entry]:
-    yield Entry("cylinders", str(len(machine.cylinders)) if machine.cylinders else "none, a given turning effort")
+    none = "none, a given turning effort" if machine.effort else "none, a shaft line alone"
+    yield Entry("cylinders", str(len(machine.cylinders)) if machine.cylinders else none)
     yield Entry("cycle", f"{machine.cycle}, {360 * machine.revolutions} deg")
     yield Entry("speed", "not given" if machine.speed is None else show(machine.speed, "speed"))
 
@@ -98,6 +100,8 @@ def _notes(found: Sequence[Note], cylinder: str | None, path: Path = ()) -> Iter
 
 def _turning_entries(machine: Machine) -> Iterable[Entry]:
     """Yield what kurbel flywheel has to say of a machine, where that is more than its only cylinder has."""
+    if not machine.cylinders and not machine.effort:
+        return
     given = (machine.flywheel, machine.load, machine.effort, machine.coupling)
     if len(machine.cylinders) == 1 and machine.efficiency == 1 and not any(given):
         return
@@ -121,6 +125,10 @@ def _load(machine: Machine) -> str:
 def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
     if machine.crankshaft is None:
         return
+    from kurbel.solver.shaft.line import shaft_obstacle
+
+    if not shaft_obstacle(machine):
+        yield Entry("computed", "loads on pins and main bearings")
     if obstacle := machine.strength_obstacle:
         yield Entry("left out", f"strength: {obstacle}", "info", ("crankshaft",))
         return
@@ -146,6 +154,25 @@ def _balance_entries(machine: Machine) -> Iterable[Entry]:
     yield Entry("computed", "free forces and moments, their orders, best counterweights")
     for what, why in missing:
         yield Entry("left out", f"{what}: {why}", "info")
+
+
+def _shaft_entries(machine: Machine) -> Iterable[Entry]:
+    """Yield what kurbel torsion has to say of a shaft line, or why it refuses it."""
+    if machine.shaft is None:
+        return
+    from kurbel.report.torsion import torsion_left_out
+    from kurbel.solver.case import Case
+
+    yield Entry("masses", str(len(machine.shaft.masses)))
+    try:
+        found = Case(machine).torsion
+    except KurbelError as error:
+        yield Entry("left out", f"torsional vibration: {error}", "info", ("shaft",))
+        return
+    forced = "" if found.obstacle else ", torques and stresses"
+    yield Entry("computed", f"natural frequencies, critical speeds{forced}")
+    for what, why in torsion_left_out(found):
+        yield Entry("left out", f"{what}: {why}", "info", ("shaft",))
 
 
 def _described(mechanism: Mechanism) -> str:

@@ -92,20 +92,20 @@ def compared(path: Path, quantity: Quantity, figure: float | Expected, where: st
 
 
 def _kept(quantity: Quantity, bound: float, value: float) -> tuple[str, str, bool]:
-    """Judge by a bound: a `_min` may not fall below it, all else may not exceed it; of a residual the size counts."""
-    name, unit = quantity.id, getattr(bound, "unit", "")
-    lower, bars = name.endswith("_min"), "|" if name.endswith("_residual") else ""
-    broken = breaks(name, bound, value)
+    """Judge by a bound, from below or from above; of a residual the size counts."""
+    unit = getattr(bound, "unit", "")
+    lower, bars = quantity.bounded_below, "|" if quantity.id.endswith("_residual") else ""
+    broken = breaks(quantity, bound, value)
     relation = ("<" if broken else "≥") if lower else (">" if broken else "≤")
     size = f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else f"{bars}{_shown(value, quantity.kind, unit)}{bars}"
     text = f"{size} {relation} {_shown(bound, quantity.kind, unit)}"
     return text, "BROKEN" if broken else "kept", not broken
 
 
-def breaks(id: str, bound: float, value: float) -> bool:
-    """Return whether a key value breaks its bound: a `_min` falls below it, all else exceeds it."""
-    magnitude = abs(value) if id.endswith("_residual") else value
-    excess = bound - value if id.endswith("_min") else magnitude - bound
+def breaks(quantity: Quantity, bound: float, value: float) -> bool:
+    """Return whether a key value breaks its bound: falls below one from below, exceeds any other."""
+    magnitude = abs(value) if quantity.id.endswith("_residual") else value
+    excess = bound - value if quantity.bounded_below else magnitude - bound
     return excess > _ROUNDING * abs(bound)
 
 

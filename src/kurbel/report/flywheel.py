@@ -46,11 +46,9 @@ def subjects(case: Case) -> Iterable[Subject]:
     turning = case.flywheel
     for forces in case.cylinders:
         yield Subject(forces.drive.name, (_DeadCentre(turning, forces),))
-    results = (turning, *((turning.elastic,) if turning.elastic else ()))
-
     yield Subject(
         "whole machine",
-        results,
+        turning.answering,
         lambda degrees: of_state(turning.at(degrees)),
         left_out=lambda: flywheel_left_out(case.machine),
         warnings=lambda: of_machine(machine_notes(case.machine, case), case.machine),

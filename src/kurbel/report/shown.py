@@ -85,7 +85,7 @@ def shown_key_value(quantity: Quantity, value: Any, system: str) -> KeyValue:
         raise too_large(quantity)
     unit = shown_unit(quantity.kind, system, max(map(abs, each), default=0.0))
     shown = [float(convert(one, quantity.kind, unit)) + 0.0 for one in each]
-    number = tuple(shown) if isinstance(raw, tuple) else shown[0]
+    number = tuple(shown) if isinstance(raw, tuple) else raw if isinstance(raw, int) else shown[0]  # a count
     noise = any(map(quantity.is_noise, shown))
     symbols = (quantity.symbol, quantity.ascii_symbol)
     return KeyValue(quantity.id, *symbols, quantity.marked(unit), number, quantity.text, at, noise)

@@ -36,7 +36,7 @@ def stress_report(
         tables = tuple(_place_tables(case.strength, system))
         whole = whole._replace(name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
         cool, verdict = shell_verdict(case.strength)
-        notes = (*_NOTES, *((_TURNING_ROD,) if case.strength.rod_pull else ()), *(verdict if cool else ()))
+        notes = (*_NOTES, *((_TURNING_ROD,) if case.strength.C_rod else ()), *(verdict if cool else ()))
     frame = Frame("stress", angles, columns, system)
     return frame.report(case.machine, "Festigkeit der Kurbelwelle", (), whole, notes)
 

@@ -128,10 +128,10 @@ class Report(NamedTuple):
     """One answer of one command.
 
     title: head line over the printed table, with its German title; command and machine as in JSON (`machine` is None
-    for `kurbel table`); group: `cylinders`, `ratios` or `scenes`, the JSON key of `parts`; whole: the results of the
-    whole machine, if any; mirrored: what changes under a second head line of the angles 360° − φ (empty: no such line);
-    notes: sentences below the table; head: sentences right below the title; provenance: None where no file was read;
-    cylinders: the names of all that the machine has.
+    for `kurbel table`); group: `cylinders`, `bearings`, `ratios` or `scenes`, the JSON key of `parts`; whole: the
+    results of the whole machine, if any; mirrored: what changes under a second head line of the angles 360° − φ
+    (empty: no such line); notes: sentences below the table; head: sentences right below the title; provenance: None
+    where no file was read; cylinders: the names of all that the machine has.
     """
 
     title: str

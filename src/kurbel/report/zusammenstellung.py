@@ -8,7 +8,8 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.quantities import COLUMNS, FACTORS
+from kurbel.declared.factors import FACTORS
+from kurbel.declared.quantities import COLUMNS
 from kurbel.declared.quantity import Quantity, called
 from kurbel.errors import UsageError
 from kurbel.mechanisms import crank_formulas as formulas

@@ -14,12 +14,16 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Figure, Results
 
 if TYPE_CHECKING:
+    from kurbel.arrays import Array
     from kurbel.solver.balance.machine_balance import MachineBalance
+    from kurbel.solver.bearings.shaft_bearings import ShaftBearings
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
+    from kurbel.solver.torsion.vibration import ShaftVibration
     from kurbel.solver.turning.flywheel import MachineTurning
+    from kurbel.solver.turning.harmonics import MachineOrders
 
 
-_WHOLE = {"stress": "strength", "flywheel": "flywheel", "balance": "balance"}
+_WHOLE = {"stress": "strength", "flywheel": "flywheel", "balance": "balance", "torsion": "torsion"}
 """Command of the whole machine -> the results of a case that answer it."""
 
 
@@ -48,6 +52,8 @@ class Case:
         whole = next((_WHOLE[command] for command in _WHOLE if command in commands), "")
         if "forces" in commands and not whole:
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
+        if "bearings" in commands:
+            raise UsageError(f"each pin and main bearing has its own {name}: ask one of case.bearings.parts")
         results: Results = getattr(self, whole or "flywheel")
         return results[name]
 
@@ -82,6 +88,13 @@ class Case:
         return self.strength
 
     @cached_property
+    def bearings(self) -> ShaftBearings:
+        """Loads on pins and main bearings. Raises UsageError where nothing loads them."""
+        from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+
+        return ShaftBearings(self.machine, self.cylinders)
+
+    @cached_property
     def balance(self) -> MachineBalance:
         """Free forces and moments of the whole machine. Raises UsageError where no masses move."""
         from kurbel.solver.balance.machine_balance import MachineBalance
@@ -94,3 +107,20 @@ class Case:
         from kurbel.solver.turning.flywheel import MachineTurning
 
         return MachineTurning(self.machine, self.cylinders)
+
+    def harmonics(self, orders: Array | None = None) -> MachineOrders:
+        """Return the orders (n,) of the turning effort, or the usual ones. Raises UsageError where nothing turns it."""
+        from kurbel.solver.turning.harmonics import MachineOrders
+
+        return MachineOrders(self.flywheel.turned, orders)
+
+    @cached_property
+    def torsion(self) -> ShaftVibration:
+        """Torsional vibration of the shaft line, by the usual orders. Raises UsageError where there is none."""
+        return self.torsion_of(None)
+
+    def torsion_of(self, orders: Array | None) -> ShaftVibration:
+        """Return the torsional vibration by these orders (k,)."""
+        from kurbel.solver.torsion.vibration import ShaftVibration
+
+        return ShaftVibration(self.machine, self.cylinders, orders)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from kurbel.declared.forms.alike import Alike
+from kurbel.declared.forms.column_range import ColumnRange
 from kurbel.declared.forms.figures import Expectations, Limits
 from kurbel.declared.forms.firing_order import FiringOrder
 from kurbel.declared.forms.points import Points
@@ -14,6 +15,7 @@ from kurbel.declared.forms.uncertainties import Uncertainties
 __all__ = [
     "Alike",
     "Choice",
+    "ColumnRange",
     "Count",
     "Expectations",
     "FilePath",

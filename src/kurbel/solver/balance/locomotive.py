@@ -50,16 +50,16 @@ class LocomotiveBalance:
         found = vector.largest
         return Extreme(found.value * self._omega * self._omega, found.degrees)
 
-    def _in_wheels(self, weights: Iterable[Weight], owner: str) -> tuple[complex, complex]:
-        """Return the sums of weights in the two wheels, as by a lever, in kg m."""
-        parts = [levered(one, self._balance.wheels, owner) for one in weights]
+    def _in_wheels(self, weights: Iterable[tuple[str, Weight]]) -> tuple[complex, complex]:
+        """Return the sums of weights in the two wheels, as by a lever, in kg m; each with what it is of."""
+        parts = [levered(one, self._balance.wheels, owner) for owner, one in weights]
         return sum(part[0].product for part in parts), sum(part[1].product for part in parts)
 
     @cached_property
     def unbalanced(self) -> tuple[complex, complex]:
         """What turns in each wheel in kg m, counterweights and rotating masses together."""
-        rotating = [one.weight(one.rotating) for one in self._balance.throws]
-        return self._in_wheels((*rotating, *self._balance.counterweights), self._balance.machine.name)
+        rotating = [(one.drive.name, one.weight(one.rotating)) for one in self._balance.throws]
+        return self._in_wheels((*rotating, *(("counterweights", one) for one in self._balance.counterweights)))
 
     @property
     def hammer_blow(self) -> float:
@@ -87,6 +87,6 @@ class LocomotiveBalance:
         """Largest share of the reciprocating masses of which the counterweights keep the limit of the hammer blow."""
         if self._given.hammer_limit is None:
             return None
-        whole = self._in_wheels((one.weight(one.drive.mass) for one in self._balance.throws), "locomotive")
+        whole = self._in_wheels((one.drive.name, one.weight(one.drive.mass)) for one in self._balance.throws)
         blow = max(map(abs, whole)) * self._omega * self._omega
         return min(1.0, self._given.hammer_limit / blow) if blow else 1.0

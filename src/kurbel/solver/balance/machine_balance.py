@@ -48,7 +48,7 @@ class MachineBalance(Results):
         self._cylinders = cylinders
         first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
         self.throws = tuple(Throw(one.drive, first) for one in cylinders if one.drive.cylinder.masses)
-        if not self.throws:
+        if not any(one.drive.mass or one.rotating for one in self.throws):
             raise UsageError(f"{machine.name}: nothing moves that could be balanced; give 'masses' to its cylinders")
         for throw in self.throws:
             if throw.drive.mechanism.quick_return:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
     from kurbel.machine.resistance import RamForce
     from kurbel.solver.cylinder.gas import PistonGas
+    from kurbel.solver.cylinder.pins import PinFriction
     from kurbel.solver.cylinder.rod import ExactRod
 
 
@@ -72,6 +73,18 @@ class Drive:
         return ExactRod(masses.connecting_rod, length, self.mechanism.crank, self.omega, self._incline)
 
     @cached_property
+    def rod_pull(self) -> float:
+        """Centrifugal force m R ω² in N of the connecting rod's part that turns with the pin, away from the shaft.
+
+        Of a rod given by its `share` only: the D of an exact rod contains it already, that of R 302 does not.
+        """
+        rod = self.cylinder.masses.connecting_rod if self.cylinder.masses else None
+        if rod is None or rod.exact or self.omega is None:
+            return 0.0
+        # a float squared by ** raises where the product is infinite
+        return rod.mass * (1 - rod.share) * self.mechanism.crank * self.omega * self.omega
+
+    @cached_property
     def pin_inertia(self) -> Any:
         """Moment of inertia m R² in kg m² of what turns with the crank pin."""
         masses = self.cylinder.masses
@@ -95,10 +108,12 @@ class Drive:
     @cached_property
     def weight(self) -> tuple[Any, Any] | None:
         """Weight of the reciprocating masses in N along the stroke line and on the guide; None where it is left out."""
+        return self.weight_of(self.mass) if self.cylinder.masses else None
+
+    def weight_of(self, mass: float) -> tuple[float, float] | None:
+        """Return the weight in N of a mass in kg along the stroke line and on the guide; None where it is left out."""
         incline = self._incline
-        if incline is None or self.cylinder.masses is None:
-            return None
-        return self.mass * GRAVITY * incline.sin, self.mass * GRAVITY * incline.cos
+        return None if incline is None else (mass * GRAVITY * incline.sin, mass * GRAVITY * incline.cos)
 
     @property
     def guide_weight(self) -> Any:
@@ -174,6 +189,16 @@ class Drive:
         """Friction in N that is the same over the stroke: of the piston rings, and what is given as a force."""
         friction = self.cylinder.friction
         return self.ring_force + (0.0 if friction is None or friction.constant is None else friction.constant)
+
+    @cached_property
+    def pin_friction(self) -> PinFriction | None:
+        """Friction in the pins of the rod and in the journals; None where no coefficient of it is given."""
+        friction = self.cylinder.friction
+        if friction is None or not (friction.crank_pin or friction.crosshead_pin or friction.journals):
+            return None
+        from kurbel.solver.cylinder.pins import PinFriction
+
+        return PinFriction(self)
 
     @property
     def has_friction(self) -> bool:

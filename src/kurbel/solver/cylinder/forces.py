@@ -24,6 +24,10 @@ from kurbel.solver.figures import Results, answered, crank_angles
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.declared.quantities import Lists
+    from kurbel.solver.cylinder.brake import Brake
+    from kurbel.solver.cylinder.indicated import Indicated
+    from kurbel.solver.cylinder.pin_works import PinWorks
+    from kurbel.solver.cylinder.rod_load import RodLoad
 
 
 class CylinderForces(Searched, Results):
@@ -52,7 +56,43 @@ class CylinderForces(Searched, Results):
     @property
     def answering(self) -> tuple[Any, ...]:
         """What answers key values, the first that knows one."""
-        return (self, self.motion)
+        gas, brake = self.drive.own_gas, self.drive.machine.brake_power
+        return (
+            self,
+            self.motion,
+            *((self.rod_load, self.pin_works) if self.drive.has_force else ()),
+            *((self.indicated,) if gas else ()),
+            *((self.brake,) if gas and brake is not None else ()),
+        )
+
+    @cached_property
+    def pin_works(self) -> PinWorks:
+        """Works of friction in pins and journals."""
+        from kurbel.solver.cylinder.pin_works import PinWorks
+
+        return PinWorks(self)
+
+    @cached_property
+    def rod_load(self) -> RodLoad:
+        """The rod load, as compressors are judged by it."""
+        from kurbel.solver.cylinder.rod_load import RodLoad
+
+        return RodLoad(self)
+
+    @cached_property
+    def indicated(self) -> Indicated:
+        """What the traces of the cylinder's own piston tell."""
+        from kurbel.solver.cylinder.indicated import Indicated
+
+        return Indicated(self.drive.own_gas)
+
+    @cached_property
+    def brake(self) -> Brake | None:
+        """What the brake tells, where this is the only cylinder."""
+        from kurbel.solver.cylinder.brake import Brake
+
+        machine = self.drive.machine
+        return Brake(machine, (self,)) if len(machine.cylinders) == 1 else None
 
     def __getattr__(self, id: str) -> Any:
         """Return a key value that is no attribute here: extremes, and what the motion or the mechanism has."""
@@ -130,6 +170,8 @@ class CylinderForces(Searched, Results):
     @property
     def wear_max(self) -> Extreme | None:
         """Largest value of the wear line f |N| |c| in W."""
+        if self.drive.guide_area is None:
+            return None
         found = self.extremes_over(("wear",))
         return found["wear"].largest if found else None
 
@@ -198,6 +240,12 @@ class CylinderForces(Searched, Results):
         gas = self.drive.own_gas
         return None if gas is None else gas.work / gas.swept_volume
 
+    @property
+    def swept_rate(self) -> float | None:
+        """Volume in m³ per turn that the cylinder's own piston sweeps against its pressures, once in a cycle."""
+        gas = self.drive.own_gas
+        return None if gas is None else gas.swept_volume / self.drive.revolutions
+
     @cached_property
     def work_sensitivity(self) -> float | None:
         """Change of the indicated work of the measured traces if they are put 0.1° later, over that work.
@@ -213,6 +261,8 @@ class CylinderForces(Searched, Results):
         """∮ f |N| |dx| in J per cycle."""
         if not self.drive.has_force or not self.drive.rubs:
             return 0.0 if self._has_crosshead else None
+        if self.drive.pin_friction:  # whose couple bends N where a load all but vanishes
+            return float(integral(self.grid, lambda pieces: np.asarray(self._on(pieces).crosshead_power)))
         return self.grid.integral(self.samples.crosshead_power.value)
 
     @property
@@ -242,8 +292,11 @@ class CylinderForces(Searched, Results):
     @cached_property
     def friction_work(self) -> Any:
         """Work of all friction in J per cycle."""
-        given = [work for work in (self.crosshead_work, self.ring_work, self.constant_work) if work is not None]
-        return total(*given) if given and self.drive.has_force else None
+        if not self.drive.has_force:
+            return None
+        every = (self.crosshead_work, self.ring_work, self.constant_work, *self.pin_works.all)
+        given = [work for work in every if work is not None]
+        return total(*given) if given else None
 
     @cached_property
     def resistance_work(self) -> Any:
@@ -308,9 +361,12 @@ class CylinderForces(Searched, Results):
             return None
         turnover = self.grid.integral(np.abs(self.samples.M.value))
         pieces = self.drive.pieces.other()
-        if self.drive.rubs:
-            pieces = self.cut_at_turns(Assembled(self.drive, pieces))
+        if self._is_cut:
+            pieces = self.cut_at_bends(Assembled(self.drive, pieces))
         return float(integral(pieces, self._torque) - self.work_left) / turnover if turnover else 0.0
 
     def _torque(self, pieces: Pieces) -> Array:
-        return np.asarray(State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond)).M)
+        return np.asarray(self._on(pieces).M)
+
+    def _on(self, pieces: Pieces) -> State:
+        return State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond))

@@ -81,9 +81,10 @@ class PistonGas:
         )
 
     @property
-    def work(self) -> Any:
+    def work(self) -> float:
         """Indicated work in J per cycle."""
-        return total(*self.works)
+        work: float = total(*self.works)
+        return work
 
     @cached_property
     def traced(self) -> tuple[float, float] | None:
@@ -102,8 +103,16 @@ class PistonGas:
         noises = [getattr(end, "noise", None) for end, _ in ends]
         return math.hypot(*(noise * area for noise, (_, area) in zip(noises, ends) if noise))
 
+    @cached_property
+    def clearance_volumes(self) -> tuple[float, float]:
+        """Smallest volumes in m³ of head end and crank end; 0 where one is not known."""
+        indicator = self.piston.indicator
+        chambers = (indicator.head_end, indicator.crank_end) if indicator else (None, None)
+        shares = [getattr(chamber, "clearance", None) or 0.0 for chamber in chambers]
+        return shares[0] * self.piston.head_area * self._stroke, shares[1] * self.piston.crank_area * self._stroke
+
     @property
-    def swept_volume(self) -> Any:
+    def swept_volume(self) -> float:
         """Volume in m³ swept in the chambers that have pressures."""
         head = self.piston.head_area if self.head else 0.0
         return (head + (self.piston.crank_area if self.crank else 0.0)) * self._stroke

@@ -43,9 +43,11 @@ class Quantities:
 
     drive: Drive
     names: tuple[str, ...]
+    rubs: bool = True
 
     def __call__(self, degrees: Array, within: Array) -> dict[str, Sampled]:
-        return self.of_state(self.drive.jets_at(degrees, within))
+        state = self.drive.jets_at(degrees, within)
+        return self.of_state(state if self.rubs else state.unrubbed)
 
     def of_state(self, state: Any) -> dict[str, Sampled]:
         """Return them in a state."""
@@ -66,7 +68,11 @@ class Searched:
     @cached_property
     def grid(self) -> Grid:
         """The cycle in smooth pieces, cut also where the guide force changes sides, if friction makes that a kink."""
-        return self.cut_at_turns(self._uncut) if self.drive.rubs else self.drive.pieces
+        return self.cut_at_bends(self._uncut) if self._is_cut else self.drive.pieces
+
+    @property
+    def _is_cut(self) -> bool:
+        return self.drive.rubs or (self.drive.pin_friction is not None and self.drive.has_force)
 
     @cached_property
     def _uncut(self) -> Assembled:
@@ -80,10 +86,17 @@ class Searched:
         rubbing = ("crosshead_power",) if self.drive.rubs and self.drive.has_force else ()
         return (*(one.id for one in declared if "forces" in one.extremes), *rubbing)
 
-    def cut_at_turns(self, samples: Assembled) -> Grid:
-        """Return the grid of samples cut where the guide force changes sides."""
-        sense = self.quantities("guide_sense")
-        return samples.grid.split_at(zeros(samples.grid, sense.of_state(samples), sense)["guide_sense"])
+    def cut_at_bends(self, samples: Assembled) -> Grid:
+        """Return the grid of samples cut where the guide force changes sides, and near the least force on a pin."""
+        grid, pins = samples.grid, self.drive.pin_friction
+        if self.drive.rubs:
+            sense = self.quantities("guide_sense")
+            grid = grid.split_at(zeros(grid, sense.of_state(samples), sense)["guide_sense"])
+            if pins:  # what makes pins rub has the guide force where they do not yet
+                sense = Quantities(self.drive, ("guide_sense",), rubs=False)
+                sampled = sense(samples.grid.degrees, samples.grid.within)
+                grid = grid.split_at(zeros(samples.grid, sampled, sense)["guide_sense"])
+        return grid.split_at(pins.bends(grid)) if pins and self.drive.has_force else grid
 
     def quantities(self, *names: str) -> Quantities:
         """Return what gives these columns with their slopes."""
@@ -92,7 +105,7 @@ class Searched:
     @cached_property
     def samples(self) -> Assembled:
         """The state at the nodes of the grid."""
-        return Assembled(self.drive, self.grid, self._together, self._uncut if self.drive.rubs else None)
+        return Assembled(self.drive, self.grid, self._together, self._uncut if self._is_cut else None)
 
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
@@ -151,13 +164,18 @@ class Searched:
 
         Of those that are the noise of a trace alone the middle one stands for all. Of many variants one tuple each.
         """
-        if self._reversals is None:
-            return None
         if isinstance(self._reversals, Flat):
             return self._reversals.of_each(self.drive.count or 0)
-        if not self._noise:
-            return tuple(self._reversals.tolist())
-        return tuple(lasting(self._whole("P"), self._reversals, _SURE * self._noise).tolist())
+        return self._lasting("P", self._reversals)
+
+    def reversals_of(self, column: str) -> tuple[float, ...] | None:
+        """Return the crank angles in degrees at which a force of the gas takes the other sign for longer than noise."""
+        return None if getattr(self.samples, column) is None else self._lasting(column, self._changes(column))
+
+    def _lasting(self, column: str, changes: Any) -> tuple[float, ...] | None:
+        if changes is None or not self._noise:
+            return None if changes is None else tuple(changes.tolist())
+        return tuple(lasting(self._whole(column), changes, _SURE * self._noise).tolist())
 
     @property
     def reversals_in_noise(self) -> int:

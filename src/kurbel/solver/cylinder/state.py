@@ -15,26 +15,32 @@ from kurbel.mechanisms import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.cycles import Unlike
 from kurbel.numerics.jet import once_each
+from kurbel.solver.cylinder.chamber import OfChamber
+from kurbel.solver.cylinder.rod_load import rod_load
 from kurbel.solver.cylinder.rod_point import OfPoint
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.cylinder.drive import Drive
+    from kurbel.solver.cylinder.pins import Rubbing
 
 
-class State(OfPoint):
+class State(OfPoint, OfChamber):
     """A cylinder at crank angles (n,); its attributes are named by the ids of the columns, in SI, each of shape (n,).
 
     angle: the crank angles; with jets for sine and cosine every quantity becomes a jet with its slope by φ.
     within: angles in degrees (n,) that say on which side of a jump each one is meant; the angles themselves mean the
-    side just after it. A quantity that the machine does not have is None. What the mechanism offers is one of them.
+    side just after it. rubs: whether friction in pins and journals counts.
+    A quantity that the machine does not have is None. What the mechanism offers is one of them.
     """
 
-    def __init__(self, drive: Drive, angle: CrankAngle, within: Array | None = None) -> None:
+    def __init__(self, drive: Drive, angle: CrankAngle, within: Array | None = None, rubs: bool = True) -> None:
         self.drive = drive
         self.angle = angle
+        self._asked = angle, within
+        self._rubs = rubs
         self.within = angle.degrees if within is None else within
-        self._beside = None if within is None else State(drive, CrankAngle.of(once_each(within)))
+        self._beside = None if within is None else State(drive, CrankAngle.of(once_each(within)), rubs=rubs)
 
     def __getattr__(self, id: str) -> Any:
         """Return a column that the mechanism offers; None for one that only others do."""
@@ -182,6 +188,17 @@ class State(OfPoint):
         return _sum(self.P_inertia, self.P_start)
 
     @cached_property
+    def P_rod(self) -> Any:
+        """Rod load in N: force at the crosshead pin of all but the connecting rod and friction (API 618)."""
+        return rod_load(self)
+
+    @cached_property
+    def P_piston_rod(self) -> Any:
+        """The same without the crosshead, in N: force at the end of the piston rod; None where its mass is unknown."""
+        masses = self.drive.cylinder.masses
+        return None if not masses or masses.crosshead is None else rod_load(self, without=masses.crosshead)
+
+    @cached_property
     def _after_steady_friction(self) -> Any:
         """Force left for crosshead and rod after friction that is the same over the stroke, in N."""
         steady = self.drive.steady_friction
@@ -196,13 +213,36 @@ class State(OfPoint):
     @cached_property
     def _guide_load(self) -> Any:
         """What rests on the guide beside the push of the rod in N: weight less the couple of an exact rod."""
-        return self.drive.guide_weight - self._rod_side if self.drive.rod else self.drive.guide_weight
+        return self.drive.guide_weight - self._rod_side if self._has_couple else self.drive.guide_weight
+
+    @property
+    def _has_couple(self) -> bool:
+        return self.drive.rod is not None or self.rubbing is not None
 
     @cached_property
     def _rod_side(self) -> Any:
-        """Side force of the couple of an exact rod in N."""
-        assert self.drive.rod is not None
-        return self.drive.rod.side_force(self._rod, self.angle)
+        """Side force in N of the couples on the rod: of an exact one, and of the friction in its pins."""
+        exact = self.drive.rod.side_force(self._rod, self.angle) if self.drive.rod else 0.0
+        return exact if self.rubbing is None else exact + self._pin_side
+
+    @cached_property
+    def rubbing(self) -> Rubbing | None:
+        """Moments of friction in pins and journals in N m; None where there is none."""
+        friction = self.drive.pin_friction if self._rubs else None
+        if friction is None or self.P is None:
+            return None
+        return friction.moments(self.unrubbed)
+
+    @property
+    def unrubbed(self) -> State:
+        """The state as it would be if pins and journals did not rub: the loads that make them rub."""
+        return State(self.drive, *self._asked, rubs=False)
+
+    @property
+    def _pin_side(self) -> Any:
+        """Side force in N of the friction in both pins of the rod."""
+        assert self.rubbing is not None
+        return self.rubbing.couple / self.drive.mechanism.rod_length / self._rod[1]
 
     @cached_property
     def N(self) -> Any:
@@ -278,7 +318,7 @@ class State(OfPoint):
         if self.P is None or self._rod is None:
             return None
         push = self.along_rod / self._rod[1]
-        return push - self._rod_side * self._rod[0] if self.drive.rod else push
+        return push - self._rod_side * self._rod[0] if self._has_couple else push
 
     @cached_property
     def S_crosshead(self) -> Any:
@@ -302,9 +342,9 @@ class State(OfPoint):
         if radial is None:
             return None
         push = self.along_rod * radial
-        if self.drive.rod is None or self._rod is None:
-            return push
-        return push + self.drive.rod.radial(self._rod, self.angle)
+        if self.drive.rod is not None and self._rod is not None:
+            push = push + self.drive.rod.radial(self._rod, self.angle)
+        return push if self.rubbing is None else push + self.angle.sin * self._pin_side
 
     @property
     def _output(self) -> Any:
@@ -317,15 +357,26 @@ class State(OfPoint):
         if self._output is None:
             return None
         push = self._output * (self.slope / self.drive.mechanism.crank)
-        return push + self._rod_tangential if self.drive.rod else push
+        push = push + self._rod_tangential if self.drive.rod else push
+        return push if self.rubbing is None else push - self.angle.cos * self._pin_side
+
+    @cached_property
+    def _free_torque(self) -> Any:
+        """Torque in N m before pins and journals rub, from the work of the force at the output."""
+        torque = self._output * self.slope
+        return torque + self._rod_tangential * self.drive.mechanism.crank if self.drive.rod else torque
 
     @cached_property
     def M(self) -> Any:
         """Torque on the shaft in N m."""
         if self._output is None:
             return None
-        torque = self._output * self.slope
-        return torque + self._rod_tangential * self.drive.mechanism.crank if self.drive.rod else torque
+        return self._free_torque if self.rubbing is None else self._free_torque - self.rubbing.lost
+
+    @property
+    def torque(self) -> Any:
+        """Torque T R in N m of the force on the pin, before crank pin and journals rub, from the work as M is."""
+        return self._free_torque if self.rubbing is None else self._free_torque - self.rubbing.by_couple
 
     @cached_property
     def _rod_tangential(self) -> Any:

@@ -25,14 +25,15 @@ if TYPE_CHECKING:
 class Setting(NamedTuple):
     """Where a chamber stands and what its pressures count from.
 
-    cycle: degrees of crank angle, 360 or 720; ambient: absolute pressure in Pa; absolute: whether the chamber's own
+    cycle: degrees of crank angle, 360 or 720; ambient: absolute pressure in Pa, of many variants (v,); absolute:
+    whether the chamber's own
     figures are; mirrored: the crank end repeats the head end's figures one stroke later.
     """
 
     mechanism: Mechanism
     cycle: float
     head_end: bool
-    ambient: Any
+    ambient: float
     absolute: bool
     mirrored: bool = False
 
@@ -41,12 +42,12 @@ class Setting(NamedTuple):
         return self._replace(mechanism=taken(self.mechanism, index), ambient=taken(self.ambient, index))
 
     @property
-    def base(self) -> Any:
+    def base(self) -> float:
         """What the chamber's figures less this are gauge pressures, in Pa."""
         return self.ambient if self.absolute else 0.0
 
     @property
-    def lift(self) -> Any:
+    def lift(self) -> float:
         """What the chamber's figures plus this are absolute pressures, in Pa."""
         return 0.0 if self.absolute else self.ambient
 
@@ -117,7 +118,8 @@ def _processes(chamber: Any, setting: Setting) -> Processes:
     if (count := count_of(setting.ambient)) is None:
         return Processes(tuple(_load(one, _PROCESSES)(one, setting) for one in chambers.each), chambers.which)
     which = np.zeros(count, dtype=np.intp) if chambers.which is None else chambers.which
-    one_by_one = zip([chambers.each[place] for place in which.tolist()], setting.ambient.tolist())
+    ambients: Any = setting.ambient
+    one_by_one = zip([chambers.each[place] for place in which.tolist()], ambients.tolist())
     each = (_load(one, _PROCESSES)(one, setting._replace(ambient=ambient)) for one, ambient in one_by_one)
     return Processes(tuple(each), np.arange(count))
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kurbel.solver.cylinder.state import State
+from kurbel.solver.shaft.statics import FreeBody
 from kurbel.solver.strength.places import PARTS, Place
-from kurbel.solver.strength.statics import FreeBody
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array

@@ -17,12 +17,12 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid, Pieces, integral
 from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.pins import on_pin
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.figures import Results
+from kurbel.solver.shaft.statics import FreeBody, Vector, equilibrium_residual, norm, weight_in_throw
 from kurbel.solver.strength.columns import StrengthColumns, strength_columns
 from kurbel.solver.strength.places import Place, Stresses, places
-from kurbel.solver.strength.sections import norm
-from kurbel.solver.strength.statics import FreeBody, Vector, equilibrium_residual, weight_in_throw
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -73,27 +73,13 @@ class CrankshaftStrength(Results):
             turned = weight_in_throw(self.weight, angle, inclination)
         return FreeBody(self.shaft, self.forces.drive.mechanism.crank, pin, turned)
 
-    @cached_property
-    def rod_pull(self) -> float:
-        """Centrifugal force m R ω² in N of the connecting rod's part that turns with the pin, away from the shaft.
-
-        Of a rod given by its `share` only: the D of an exact rod contains it already, that of R 302 does not.
-        """
-        drive = self.forces.drive
-        masses, omega = drive.cylinder.masses, drive.omega
-        rod = masses.connecting_rod if masses else None
-        if rod is None or rod.exact or omega is None:
-            return 0.0
-        # a float squared by ** raises where the product is infinite
-        return rod.mass * (1 - rod.share) * drive.mechanism.crank * omega * omega
-
     @property
     def C_rod(self) -> float | None:
-        """The same where there is any."""
-        return self.rod_pull or None
+        """Centrifugal force in N of the connecting rod's turning part that D does not contain; None without one."""
+        return self.forces.drive.rod_pull or None
 
     def _running(self, state: State) -> FreeBody:
-        return self._body(Vector(state.D - self.rod_pull, state.T), state.angle)
+        return self._body(on_pin(state), state.angle)
 
     def at(self, degrees: Any) -> StrengthColumns:
         """Return forces on the bearings and stresses at crank angles (n,) in degrees, just after a jump."""
@@ -282,7 +268,7 @@ class CrankshaftStrength(Results):
         """What is left of the sums of forces and moments on the shaft, over the sizes of their terms, at its worst."""
         degrees = self._grid.degrees.ravel()
         state = State(self.forces.drive, CrankAngle.of(degrees), self._grid.within.ravel())
-        return equilibrium_residual(self._running(state), np.asarray(state.M))
+        return equilibrium_residual(self._running(state), np.asarray(state.torque))
 
 
 def _with_kinks(body: FreeBody) -> dict[str, Any]:

@@ -27,19 +27,18 @@ from operator import attrgetter
 from typing import Any, NamedTuple
 
 from kurbel.machine.crankshaft import Crankshaft
+from kurbel.solver.shaft.statics import FreeBody, Vector, WebLoads, norm
 from kurbel.solver.strength.sections import (
     bach,
     bach_factor,
     direct_stress,
     narrow_face_torsion,
-    norm,
     rectangle_bending,
     round_bending,
     round_torsion,
     von_mises,
     wide_face_torsion,
 )
-from kurbel.solver.strength.statics import FreeBody, Vector, WebLoads
 
 PARTS = ("pin", "web_A", "web_B", "journal_A", "journal_B")
 

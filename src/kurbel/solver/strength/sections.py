@@ -9,9 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from kurbel.numerics.jet import Jet
+from kurbel.solver.shaft.statics import norm
 
 
 def direct_stress(force: Any, thickness: float, width: float) -> Any:
@@ -93,13 +91,3 @@ def von_mises(sigma: Any, tau: Any) -> Any:
     3.0
     """
     return norm(sigma, math.sqrt(3) * tau)
-
-
-def norm(first: Any, second: Any) -> Any:
-    """Return √(x² + y²); a jet that vanishes gets the slope 0, where the root has a kink and no slope."""
-    square = first * first + second * second
-    if not isinstance(square, Jet):
-        return np.sqrt(square) if isinstance(square, np.ndarray) else math.sqrt(square)
-    root = np.sqrt(square.value)
-    slope = np.divide(square.slope, 2 * root, out=np.zeros_like(root), where=root > 0)
-    return Jet(root, slope)

@@ -39,12 +39,17 @@ class TurningColumns:
             return None if self._speed is None else self._speed.curves(self.phi, within).get(column)
         if column == "E":
             return Sampled(self.E, self._turned.excess.torque.torque(self.phi, within).slope)
-        masses, efficiency = self._turned.masses, self._turned.efficiency
-        torque = Sum(*((efficiency, mass) for mass in masses)) if column == "T_inertia" else self._turned.effort
-        if not torque.parts or (column != "M" and self._crank is None):
+        arm = 1.0 if column == "M" else self._crank
+        torque = self._inertia if column == "T_inertia" else self._turned.effort
+        if arm is None or not torque.parts:
             return None
-        found = torque.torque(self.phi, within) * (1.0 if column == "M" else 1 / (self._crank or 1.0))
-        return Sampled(found.value, found.slope)
+        found = torque.torque(self.phi, within)
+        return Sampled(found.value / arm, found.slope / arm)
+
+    @property
+    def _inertia(self) -> Sum:
+        """The torque of the inertia forces, with its share of the losses."""
+        return Sum(*((self._turned.efficiency, mass) for mass in self._turned.masses))
 
     @cached_property
     def M(self) -> Array:
@@ -59,11 +64,9 @@ class TurningColumns:
     @property
     def T_inertia(self) -> Array | None:
         """The share of the inertia forces in T, in N (Tolle)."""
-        masses, efficiency = self._turned.masses, self._turned.efficiency
-        if self._crank is None or not masses:
+        if self._crank is None or not self._turned.masses:
             return None
-        torque = Sum(*((efficiency, mass) for mass in masses)).torque(self.phi, self.phi)
-        return np.asarray(torque.value / self._crank)
+        return np.asarray(self._inertia.torque(self.phi, self.phi).value / self._crank)
 
     @property
     def E(self) -> Array:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
+from kurbel.solver.cylinder.following import Following
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.state import State
 
@@ -15,24 +14,19 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
 
 
-class CylinderEffort:
-    """A torque of one cylinder at the angles φ of crank 1: its own crank stands at φ − position.
+class CylinderEffort(Following):
+    """A torque of one cylinder at the angles φ of crank 1.
 
     torque_in: what is asked of the cylinder's state: all its torque, or one of the functions below.
     """
 
     def __init__(self, forces: CylinderForces, cycle: float, torque_in: Callable[[State], Any]) -> None:
-        self.drive = forces.drive
+        super().__init__(forces, cycle)
         self._torque_in = torque_in
-        # whole cycles off, which is exact: beside a large position an angle would lose its digits
-        self.position = math.fmod(forces.drive.cylinder.crank_position, self.drive.cycle)
-        own = Cuts(self.drive.cuts.smooth, forces.grid.breaks[:-1])
-        self.cuts = own.shifted(self.position, cycle)
 
     def torque(self, degrees: Array, within: Array) -> Jet:
         """Return the torque; see `Torque`."""
-        state = self.drive.jets_at(degrees - self.position, within - self.position)
-        torque: Jet = self._torque_in(state)
+        torque: Jet = self._torque_in(self.jets_at(degrees, within))
         return torque
 
 

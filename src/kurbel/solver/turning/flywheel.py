@@ -13,6 +13,7 @@ from kurbel.machine import Machine
 from kurbel.numerics.collocation import Standstill, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import rising_root
+from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Results, crank_angles
 from kurbel.solver.turning.columns import OF_SPEED, TurningColumns
@@ -43,6 +44,7 @@ class MachineTurning(Results):
         self.excess = self.turned.excess
         self.omega = self.turned.omega
         self.crank = machine.cylinders[0].mechanism.crank if machine.cylinders else None
+        self.brake = Brake(machine, cylinders)
         self._lines = SpeedLines(self.turned, self.omega) if self.omega else None
 
     command = "flywheel"
@@ -50,7 +52,7 @@ class MachineTurning(Results):
     @property
     def answering(self) -> tuple[Any, ...]:
         """What answers key values, the first that knows one."""
-        return (self, *((self.elastic,) if self.elastic else ()))
+        return (self, *((self.elastic,) if self.elastic else ()), self.brake)
 
     def at(self, degrees: Array) -> TurningColumns:
         """Return every column at crank angles (n,) of crank 1 in degrees, just after a jump where there is one."""

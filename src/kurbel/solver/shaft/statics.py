@@ -16,17 +16,19 @@ its only web and bearing B.
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.arithmetic import where
+from kurbel.numerics.jet import Jet
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.machine.crankshaft import Crankshaft
 
 
 class Vector(NamedTuple):
@@ -62,6 +64,30 @@ def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Vec
         weight * (angle.sin * incline.cos + angle.cos * incline.sin),
         weight * (angle.sin * incline.sin - angle.cos * incline.cos),
     )
+
+
+def turned(force: Vector, degrees: float) -> Vector:
+    """Return a force in the frame of one throw as it is in that of another, which stands `degrees` behind it.
+
+    Outward and in the sense of rotation, −D + iT is a complex number, and this its product with e^{iθ}.
+
+    >>> turned(Vector(-1.0, 0.0), 90.0)
+    Vector(D=0.0, T=1.0)
+    """
+    if not degrees:
+        return force
+    angle = CrankAngle.of(degrees)
+    return Vector(force.D * angle.cos + force.T * angle.sin, force.T * angle.cos - force.D * angle.sin)
+
+
+def norm(first: Any, second: Any) -> Any:
+    """Return √(x² + y²); a jet that vanishes gets the slope 0, where the root has a kink and no slope."""
+    square = first * first + second * second
+    if not isinstance(square, Jet):
+        return np.sqrt(square) if isinstance(square, np.ndarray) else math.sqrt(square)
+    root = np.sqrt(square.value)
+    slope = np.divide(square.slope, 2 * root, out=np.zeros_like(root), where=root > 0)
+    return Jet(root, slope)
 
 
 class FreeBody:

@@ -1,0 +1,25 @@
+"""`kurbel bearings`: loads on crank pins, crosshead pins and main bearings."""
+
+from __future__ import annotations
+
+import click
+
+from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
+from kurbel.cli.output_options import Asked, machine_table
+
+
+@click.command(short_help="Loads on pins and main bearings.", epilog=exit_statuses(NO_SOLUTION))
+@machine_table
+def bearings(asked: Asked) -> None:
+    """Print the loads on crank pins, crosshead pins and main bearings over the cycle.
+
+    The direction of each load is told in the frames of throw, engine and rod; key values are the largest, smallest
+    and mean load, pressures, p v, and what of the surfaces is never loaded. Main bearings need 'crankshaft', whose
+    throw stands for every throw of a machine with several. --cylinder takes the name of a pin or bearing. Key values
+    are exact and do not depend on --step. FILE may be - for standard input.
+    """
+    from kurbel.report.bearings import bearings_report
+
+    case = asked.case()
+    angles = asked.crank_angles(360.0 * case.machine.revolutions)
+    asked.write(bearings_report(case, angles, asked.columns, asked.units))

@@ -1,0 +1,80 @@
+"""What to write about the layout of a file of columns so that it can be read: tried out on its first lines."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+
+from kurbel.machine_file.columns import Columns, is_number
+
+_SIGNS = {";": "semicolon", "\t": "tab", ",": "comma", " ": "space"}
+_TRIED = 200
+"""Lines that are looked at: headings are no longer."""
+
+
+def advice(text: str, number: int, line: str, columns: Columns, cell: str = "") -> str:
+    """Return what to write so that a file could be read: keys under which its first lines are rows, or a guess.
+
+    number, line, cell: the line, and the cell in it, that could not be.
+    """
+    lines = list(itertools.islice(text.split("\n", _TRIED), _TRIED))
+    found = min(_layouts(lines, columns), key=lambda one: one.skip_rows, default=None)
+    written = _written(found, columns) if found else ()
+    if not written:
+        return _guess(number, line, columns, cell)
+    alone = len(written) == 1 and "skip_rows" in written[0]
+    return f"; write {' and '.join(written)}{' if it is a heading' if alone else ''}"
+
+
+def _layouts(lines: Sequence[str], columns: Columns) -> Iterator[Columns]:
+    """Yield the layouts, the given one first, in which figures begin below lines that are no rows."""
+    signs = dict.fromkeys((columns.delimiter, *_SIGNS))
+    for delimiter, decimal in itertools.product(signs, dict.fromkeys((columns.decimal, ".", ","))):
+        if delimiter != decimal or any('"' in line for line in lines):
+            for wanted in _columns_tried(columns):
+                one = wanted._replace(delimiter=delimiter, decimal=decimal, skip_rows=0)
+                begin = _begin_of_figures(lines, one)
+                if begin is not None:
+                    yield one._replace(skip_rows=begin)
+
+
+def _columns_tried(columns: Columns) -> Iterator[Columns]:
+    yield columns
+    if columns.angle is None:  # rows that only count need no column beside that of what was measured
+        yield columns._replace(values=(1,))
+
+
+def _begin_of_figures(lines: Sequence[str], columns: Columns) -> int | None:
+    """Return how many lines stand above the first of at least two rows of figures; None where rows are broken."""
+    rows = {i: _is_row(line, columns) for i, line in enumerate(lines) if line.partition("#")[0].strip()}
+    begin = next((index for index, row in rows.items() if row), len(lines))
+    below = [row for index, row in rows.items() if index >= begin]
+    if len(below) < 2 or not all(below):
+        return None
+    return begin if any(index < begin for index in rows) else 0
+
+
+def _is_row(line: str, columns: Columns) -> bool:
+    cells = columns.cells(line.partition("#")[0].strip())
+    return len(cells) >= max(columns.wanted) and all(is_number(cells[one - 1].strip()) for one in columns.wanted)
+
+
+def _written(found: Columns, given: Columns) -> tuple[str, ...]:
+    """Return the keys that make the given layout that which was found."""
+    keys = (
+        (found.skip_rows != given.skip_rows, f"'skip_rows: {found.skip_rows}'"),
+        (found.delimiter != given.delimiter, f"'delimiter: {_SIGNS.get(found.delimiter)}'"),
+        (found.decimal != given.decimal, f"'decimal: {'comma' if found.decimal == ',' else 'point'}'"),
+        (found.values != given.values, f"'pressure_column: {found.values[0]}'"),
+    )
+    return tuple(text for differs, text in keys if differs)
+
+
+def _guess(number: int, line: str, columns: Columns, cell: str) -> str:
+    """Return what the first bad line itself hints at."""
+    if is_number(cell.replace(",", ".")) and columns.decimal == ".":
+        return "; write 'decimal: comma'"
+    joined = [word for sign, word in _SIGNS.items() if sign in (cell or line).strip() and sign != columns.delimiter]
+    if any(c.isdigit() for c in line) and joined:
+        return f"; write 'delimiter: {joined[0]}' if that stands between its columns"
+    return f"; write 'skip_rows: {number}' if it is a heading" if number == columns.skip_rows + 1 else ""

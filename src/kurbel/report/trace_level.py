@@ -1,0 +1,165 @@
+"""Whether the pressures of a trace are those that an engine can have: level, unit, and the line of its compression."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from itertools import pairwise
+
+from kurbel.report.trace_readings import ENGINE, Reading, in_bar, zero_text
+from kurbel.solver.pressure.exponents import AS_GIVEN, COMPRESSION, Supposed, exponent
+
+_NEAR_AMBIENT = 0.7, 1.3
+_SENSIBLE = 1.2, 1.4
+"""Exponents of a compression of air or mixture; less is wet or leaks, more than that of air cannot be."""
+_AIMED = 1.32
+_SLACK = 0.02
+_LARGEST_PEAK = 300e5
+_SMALLEST_PEAK = 1e5
+"""Pa between which cylinders peak, where no clearance tells more."""
+_TO_COMPRESSION = 0.25, 8.0
+"""Peak over what the compression from the ambient gives: throttled by three quarters, or supercharged and fired."""
+_USUAL_PEAK = 60e5
+_POWERS = 0.001, 0.01, 0.1, 10.0, 100.0, 1000.0
+_LATEST = 10.0
+"""Degrees by which a dead centre is found wrong; beyond, other notes speak."""
+
+
+def level_notes(reading: Reading) -> Iterable[str]:
+    """Yield the one note on level, unit or compression of a trace, if any."""
+    for judge in (_of_unit, _of_level, _of_compression):
+        if found := judge(reading):
+            yield found
+            return
+
+
+def _of_unit(reading: Reading) -> str:
+    """Judge the peak by what this geometry can compress to, or else by what cylinders stand."""
+    low, high, aimed = _peaks(reading)
+    power = _power(reading)
+    if power == 1:
+        return ""
+    trace = reading.pressure.trace
+    other = reading.otherwise(samples=trace.samples * power)
+    what = f"{1 / power:g} times too large" if power < 1 else f"{power:g} times too small"
+    can = f"compression gives about {in_bar(aimed / 2)}" if trace.clearance else "cylinders peak at 1 to 300 bar"
+    if low <= reading.absolute_peak <= high:
+        can = f"four strokes compress more than from {in_bar(reading.absolute_low)}"
+    return (
+        f"the peak is {in_bar(reading.absolute_peak)} absolute, where {can}: pressures {what}? mend 'unit', or write "
+        f"'scale: {trace.scale * power:g}'; {reading.against(other)}"
+    )
+
+
+def _power(reading: Reading) -> float:
+    """Return the power of ten by which the pressures are likely to be too small; 1 where nothing speaks for one."""
+    low, high, aimed = _peaks(reading)
+    lift, ambient = reading.pressure.setting.lift, reading.pressure.setting.ambient
+    if low <= reading.absolute_peak <= high:
+        return _power_of_flat(reading) if reading.pressure.setting.cycle == 720 else 1.0
+    found = min(_POWERS, key=lambda one: abs(_log((reading.peak * one + lift) / aimed)))
+    return found if low <= reading.peak * found + lift <= max(high, ambient) else 1.0
+
+
+def _power_of_flat(reading: Reading) -> float:
+    """Return the power of a four-stroke trace that, as it is, hardly compresses, or only against a vacuum."""
+    lift, ambient = reading.pressure.setting.lift, reading.pressure.setting.ambient
+    if lift:  # gauge
+        risen = ((reading.peak * one + lift) / max(reading.low * one + lift, 0.2 * ambient) for one in _POWERS[3:])
+        return 1.0 if reading.ratio > ENGINE else next((one for one, r in zip(_POWERS[3:], risen) if r > ENGINE), 1.0)
+    as_gauge = (reading.peak + ambient) / max(reading.low + ambient, 1.0)
+    if not 0 < reading.low < 0.1 * ambient or as_gauge > ENGINE:
+        return 1.0
+    return min(_POWERS, key=lambda one: abs(_log(reading.low * one / ambient)))
+
+
+def _log(ratio: float) -> float:
+    from math import inf, log
+
+    return log(ratio) if ratio > 0 else inf
+
+
+def _peaks(reading: Reading) -> tuple[float, float, float]:
+    """Return the smallest and the largest absolute peak in Pa that there can be, and the usual one."""
+    setting, clearance = reading.pressure.setting, reading.pressure.trace.clearance
+    if clearance is not None:
+        compressed = setting.ambient * (1 + 1 / clearance) ** _AIMED
+        return _TO_COMPRESSION[0] * compressed, max(_TO_COMPRESSION[1] * compressed, _SMALLEST_PEAK), 2 * compressed
+    four_stroke = setting.cycle == 720 and setting.head_end  # which always compresses; a Stirling engine hardly does
+    return (_SMALLEST_PEAK + setting.ambient if four_stroke else 0.0), _LARGEST_PEAK, _USUAL_PEAK
+
+
+def _of_level(reading: Reading) -> str:
+    """Judge by the level below which the cycle lies for a while whether gauge and absolute are mixed up."""
+    setting, low = reading.pressure.setting, reading.low
+    said = f"for 15 % of the cycle the pressure lies below {in_bar(low)}"
+    stays = f"p_i stays, P changes by {in_bar(setting.ambient)} times the area"
+    if setting.absolute and low < 0.1 * setting.ambient:
+        return f"{said} absolute: these look like gauge pressures; write 'pressures: gauge'; {stays}"
+    if not setting.absolute and low < -setting.ambient:
+        return f"{said}, the perfect vacuum being at {in_bar(-setting.ambient)}; write 'pegging: ambient'; {stays}"
+    known = "" if reading.pressure.trace.clearance else "; a 'compression_ratio' would tell by the compression"
+    near = _NEAR_AMBIENT[0] < low / max(setting.ambient, 1.0) < _NEAR_AMBIENT[1]
+    if not setting.absolute and near and not _sensible(reading):
+        return f"{said} gauge, about the ambient: absolute? Then write 'pressures: absolute'; {stays}{known}"
+    return ""
+
+
+def _sensible(reading: Reading, supposed: Supposed = AS_GIVEN) -> bool:
+    found = exponent(reading.pressure, COMPRESSION, supposed)
+    slack = _SLACK + (2 * found.error if found else 0.0)
+    return found is not None and _SENSIBLE[0] - slack <= found.value <= _SENSIBLE[1] + slack
+
+
+def _of_compression(reading: Reading) -> str:
+    """Judge the compression by its exponent; what would make it sensible is tried out."""
+    found = reading.compression
+    if found is None or not reading.engine or _sensible(reading):
+        return ""
+    begin = f"its compression goes by p V^{found.value:.3g}, where air has 1.2 to 1.4"
+    setting = reading.pressure.setting
+    other_level = -setting.ambient if not setting.absolute else setting.ambient
+    if _sensible(reading, Supposed(raised=other_level)):
+        word = "absolute" if other_level < 0 else "gauge"
+        return f"{begin}: as {word} pressures it would; write 'pressures: {word}'; p_i stays"
+    ways = [one for one in (_by_dead_centre(reading), _by_level(reading)) if one]
+    return f"{begin}: {', or '.join((*ways, 'mend the clearance'))}"
+
+
+def _by_dead_centre(reading: Reading) -> str:
+    later = _root(lambda shift: _off(reading, Supposed(later=shift)), _LATEST)
+    if later is None:
+        return ""
+    other = reading.put_at(reading.pressure.trace.angle_zero - later)
+    return f"write {zero_text(other)}, {abs(later):.2g} deg away ({reading.against(other)})"
+
+
+def _by_level(reading: Reading) -> str:
+    raised = _root(lambda lift: _off(reading, Supposed(raised=lift)), 2 * reading.pressure.setting.ambient)
+    if raised is None:
+        return ""
+    return f"write 'offset: {in_bar(reading.pressure.trace.offset + raised)}' or 'pegging' (p_i stays)"
+
+
+def _off(reading: Reading, supposed: Supposed) -> float | None:
+    found = exponent(reading.pressure, COMPRESSION, supposed)
+    return None if found is None else found.value - _AIMED
+
+
+def _root(off: Callable[[float], float | None], most: float) -> float | None:
+    """Return the root nearest to 0 of what changes sign within ±most; None where there is none."""
+    steps = [most * number / 10 for number in range(11)]
+    for near, far in pairwise(steps):
+        for sign in (1.0, -1.0):
+            a, b = off(sign * near), off(sign * far)
+            if a is not None and b is not None and a * b <= 0:
+                return _bisected(off, sign * near, sign * far)
+    return None
+
+
+def _bisected(off: Callable[[float], float | None], near: float, far: float) -> float:
+    below = (off(near) or 0.0) < 0
+    for _ in range(40):
+        middle = (near + far) / 2
+        value = off(middle)
+        near, far = (middle, far) if value is not None and (value < 0) == below else (near, middle)
+    return (near + far) / 2

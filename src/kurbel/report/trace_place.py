@@ -1,0 +1,106 @@
+"""Whether the peak of a trace stands where that of an engine can: dead centre, firing turn, and sense of the angle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from kurbel.report.trace_readings import Reading, zero_text
+from kurbel.solver.pressure.trace import TracePressure
+
+_FIRED = -15.0, 45.0
+"""Degrees after the firing dead centre between which a fired four-stroke cycle peaks."""
+_TWO_STROKE = -50.0, 60.0
+"""The same in two strokes, where a compressor delivers before the dead centre, and a steam engine admits."""
+_AIMED = -2.0, 30.0
+"""Where a peak is to come to stand by whole quarter turns."""
+_USUAL = 8.0
+"""Degrees after the dead centre at which fired engines peak, more or less."""
+_MOTORED_LEAD = 1.5  # deg; heat loss and leakage put a motored peak up to about 1° before the dead centre
+_MOTORED_SEARCH = 10.0, 30.0  # deg before and after the dead centre; what peaks elsewhere is a compressor or pump
+_MOTORED_SIDES = 10.0, 20.0, 30.0, 45.0, 60.0, 75.0, 90.0  # deg from the peak at which both its sides are compared
+_MOTORED_RATIO = 0.6, 1.1  # of the pressures after and before the peak: what heat loss and leakage take, and noise
+_MOTORED_RISE = 3.0  # least pressure of the peak over that at its feet; what is flat has no peak
+
+
+def place_notes(reading: Reading) -> Iterable[str]:
+    """Yield the one note on where the peak stands, if any; its advice has been tried out."""
+    for judge in (_backward, _elsewhere, _motored_off):
+        if found := judge(reading):
+            yield found
+            return
+
+
+def _backward(reading: Reading) -> str:
+    pressure = reading.pressure
+    judged = reading.engine and (pressure.setting.cycle == 720 or pressure.trace.clearance is not None)
+    early = -60.0 < reading.peak_at < -_MOTORED_LEAD - reading.step
+    if not judged or not early or pressure.area >= 0 or motored(pressure, reading.top):
+        return ""
+    other = reading.reversed()
+    if other.pressure.area <= 0 or not _stands_well(other):
+        return ""
+    return (
+        f"the peak stands {-reading.peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
+        f"count against the rotation? write 'angle_sense: against'; {reading.against(other)}"
+    )
+
+
+def _stands_well(reading: Reading) -> bool:
+    low, high = _FIRED if reading.pressure.setting.cycle == 720 else _TWO_STROKE
+    return low <= reading.peak_at <= high
+
+
+def _elsewhere(reading: Reading) -> str:
+    if not reading.engine or _stands_well(reading):
+        return ""
+    other = _brought_back(reading)
+    away = "after" if reading.peak_at > 0 else "before"
+    where = "firing dead centre" if reading.pressure.setting.cycle == 720 else "dead centre"
+    gas_exchange = abs(reading.peak_at) > 180
+    return (
+        f"the peak stands {abs(reading.peak_at):.4g} deg {away} the {where}"
+        f"{', in the gas exchange' if gas_exchange else ''}: write {zero_text(other)}; {reading.against(other)}"
+    )
+
+
+def _brought_back(reading: Reading) -> Reading:
+    """Return the reading whose peak stands as it may: by quarter turns, or else where such a peak usually is."""
+    pressure = reading.pressure
+    zero = pressure.trace.angle_zero
+    if motored(pressure, reading.top):
+        return reading.put_at(zero + reading.peak_at)
+    for quarter in np.arange(90.0, pressure.setting.cycle, 90.0).tolist():
+        if _AIMED[0] <= (other := reading.put_at(zero + quarter)).peak_at <= _AIMED[1]:
+            return other
+    return reading.put_at(float(round(zero + reading.peak_at - _USUAL)))
+
+
+def _motored_off(reading: Reading) -> str:
+    before, later = _MOTORED_SEARCH
+    after, step = reading.peak_at, reading.step
+    off = -before <= after < -_MOTORED_LEAD - step or step < after <= later
+    if not off or not motored(reading.pressure, reading.top):
+        return ""
+    other = reading.put_at(reading.pressure.trace.angle_zero + after)
+    return (
+        f"no combustion shows, and the peak stands {abs(after):.3g} deg {'after' if after > 0 else 'before'} "
+        f"the dead centre; that of a motored engine stands at it or just before: check angle_zero; with "
+        f"{zero_text(other)} {reading.against(other).replace('is then', 'is')}"
+    )
+
+
+def motored(pressure: TracePressure, top: int) -> bool:
+    """Judge by the shape whether nothing burns: the two sides of the peak, the sample `top`, are alike.
+
+    The sign of the work tells nothing, since a motored trace that stands too late does work.
+    """
+    trace, lift, sides = pressure.trace, pressure.setting.lift, np.array(_MOTORED_SIDES)
+    before, after = (
+        lift + np.interp(trace.angles[top] + side, trace.angles, pressure.pressures, period=trace.period)
+        for side in (-sides, sides)
+    )
+    low, high = _MOTORED_RATIO
+    alike = bool(np.all((low * before <= after) & (after <= high * before)))
+    return alike and bool(lift + pressure.pressures[top] > _MOTORED_RISE * max(before[-1], after[-1]))

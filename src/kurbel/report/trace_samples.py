@@ -1,0 +1,107 @@
+"""What looks wrong with the samples of a trace: drift, angles that stand twice, turns that belong together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from kurbel.report.trace_readings import Reading, in_bar
+from kurbel.solver.pressure.corrected import LAST, drift_of
+
+_RANGE = 0.02
+"""Share of the range of a trace that the ends of its cycle may differ by."""
+_WORK = 0.01
+"""Share of p_i below which a drift is not worth a word."""
+_SURE = 6.0
+"""Standard deviations of the noise that a drift must stand out by."""
+_WANDERED = 10.0
+"""Degrees by which the cycles of one engine never move from the first to the last."""
+_TWICE = 0.25
+"""Share of samples that stand at the angle of the one before, from which on angles are rounded."""
+_OTHER = 0.2
+"""Share of the range by which the turns of a two-stroke cycle never differ by twos."""
+
+
+def sample_notes(reading: Reading) -> Iterable[str]:
+    """Yield the one note on the samples, if any; what is judged later may only look wrong by what comes before."""
+    for judge in (_of_turns, _of_speed, _of_twins, _of_drift):
+        if found := tuple(judge(reading)):
+            yield from found
+            return
+
+
+def _of_turns(reading: Reading) -> Iterable[str]:
+    """A four-stroke record of which only the angle of one turn is told may be meant for two strokes by mistake."""
+    pressure = reading.pressure
+    each = pressure.each
+    if pressure.setting.cycle != 360 or len(each) < 2:
+        return
+    odd, even = each[0::2].mean(axis=0), each[1::2].mean(axis=0)
+    if np.abs(odd - even).max() > _OTHER * max(np.ptp(odd), np.ptp(even)) and len(each) % 2 == 0:
+        yield (
+            f"its turns differ by twos, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}: a four-stroke "
+            f"cycle? write 'cycle: four-stroke' at the top; p_i is then {in_bar(2 * pressure.area)} instead of "
+            f"{in_bar(pressure.area)}"
+        )
+
+
+def _of_speed(reading: Reading) -> Iterable[str]:
+    """Cycles of one engine do not wander against each other; those that are told by time and a wrong speed do."""
+    pressure = reading.pressure
+    each, trace = pressure.each, pressure.trace
+    if len(each) < 3:
+        return
+    wave = np.exp(-2j * np.pi * trace.angles / trace.period) * np.gradient(trace.angles)
+    phases = np.unwrap(np.angle(each[:, :-1] @ wave[:-1]))
+    wandered = float(phases[0] - phases[-1]) * trace.period / (2 * np.pi)
+    if abs(wandered) <= _WANDERED:
+        return
+    off = wandered / (trace.period * (len(each) - 1))
+    first, last = (float(pressure.weights @ one) for one in (each[0], each[-1]))
+    yield (
+        f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last, "
+        f"and p_i goes from {in_bar(first)} to {in_bar(last)}: was the speed another, or not constant? A "
+        f"'recorded_speed' about {abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'} brings both together"
+    )
+
+
+def _of_twins(reading: Reading) -> Iterable[str]:
+    trace = reading.pressure.trace
+    twins = int(np.count_nonzero(np.diff(trace.angles) == 0))
+    if twins < _TWICE * len(trace.angles):
+        return
+    step = trace.period / (len(trace.angles) - 1)
+    even = trace.angles[0] + step * np.arange(len(trace.angles))
+    even[-1] = trace.angles[-1]
+    other = reading.otherwise(angles=even)
+    zero = trace.written_zero - (-trace.angles[-1] if trace.against else float(trace.angles[0]))
+    moved = f" and 'angle_zero: {zero:g} deg'" if trace.angles[0] else ""
+    key = f"write 'angle_step: {step:g} deg'{moved}" if trace.files else "give each point an angle of its own"
+    yield f"{twins} samples stand at the angle of the one before: rounded angles? {key}; {reading.against(other)}"
+
+
+def _of_drift(reading: Reading) -> Iterable[str]:
+    pressure = reading.pressure
+    trace, p = pressure.trace, pressure.pressures
+    jump = float(drift_of(trace, p[np.newaxis])[0])
+    if abs(jump) <= max(_RANGE * float(np.ptp(p)), _doubt(reading)):
+        return
+    other = reading.otherwise(level=True)
+    change = abs(other.pressure.area - pressure.area)
+    if change > _WORK * abs(pressure.area):
+        yield (
+            f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write "
+            f"'drift: linear'; {reading.against(other)}"
+        )
+
+
+def _doubt(reading: Reading) -> float:
+    """Return in Pa what noise, and the bend of the pressure, may do to the jump where the cycle closes."""
+    pressure = reading.pressure
+    if not pressure.trace.completed:
+        return _SURE * pressure.noise
+    p = pressure.pressures[:-1]
+    bends = np.sort(np.abs(np.concatenate((np.diff(p[-4:], 2), np.diff(p[:4], 2)))))
+    coarse = pressure.trace.angles[-1] - pressure.trace.angles[-4] > LAST
+    return max(_SURE * pressure.noise, 3.0 * float(bends[-1] if coarse else bends[len(bends) // 2]))

@@ -1,0 +1,1 @@
+"""What pins and main bearings carry over the cycle, and in which directions."""

@@ -1,0 +1,254 @@
+"""What one pin or main bearing carries over the cycle: directions in every frame, means, pressures, friction."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import Cuts, Grid, Pieces, integral
+from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
+from kurbel.solver.bearings.directions import Plane, Unloaded, unloaded
+from kurbel.solver.cylinder.following import Following
+from kurbel.solver.figures import Results
+from kurbel.solver.shaft.statics import norm
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
+FRAMES = ("throw", "engine", "rod")
+_NO_LOAD = 1e-12
+"""A load no larger than this beside the largest one is rounding and has no direction."""
+
+
+class Loads(NamedTuple):
+    """A load in the frames that it has, and by how much its surfaces turn on one another, over that of the crank."""
+
+    frames: dict[str, Plane]
+    rate: Any = 1.0
+
+
+class BearingColumns(NamedTuple):
+    """What is told over the crank angle, by the ids of the columns: N, and degrees in each frame; None without it."""
+
+    phi: Array
+    load: Array
+    load_throw: Array | None
+    load_engine: Array | None
+    load_rod: Array | None
+
+
+class Size(NamedTuple):
+    """Diameter and length in m, None where they are not given."""
+
+    diameter: float | None
+    length: float | None
+
+
+class Bearing(Results):
+    """A pin or a main bearing at the angles of crank 1. Attributes are named by the ids of the key values, in SI.
+
+    name: as it is printed; followed: the cylinders that load it; size; journal, shell: the frames in which its two
+    surfaces stand still; contact: degrees from the direction of the load to where they touch.
+    """
+
+    command = "bearings"
+    journal: str
+    shell: str
+    contact = 180.0
+
+    def __init__(self, name: str, followed: Sequence[Following], size: Size, speed: float | None) -> None:
+        self.name = name
+        self.followed = tuple(followed)
+        self.size = size
+        self.omega = None if speed is None else 2 * math.pi * speed
+
+    @abstractmethod
+    def loads(self, degrees: Array, within: Array) -> Loads:
+        """Return the load, as jets, at angles (n,) of crank 1 in degrees, on the sides of jumps that hold `within`."""
+
+    @property
+    @abstractmethod
+    def work_rubbing(self) -> float | None:
+        """Work of its friction in J per cycle of the machine; None without a coefficient."""
+
+    def at(self, degrees: Any) -> BearingColumns:
+        """Return the load at angles (n,) of crank 1 in degrees, just after a jump."""
+        angles = np.asarray(degrees, dtype=float)
+        found = self._evaluate(angles, angles)
+        # of the two names of one direction the positive one
+        directions = (np.where(one.value == -180, 180.0, one.value) if one else None for one in map(found.get, FRAMES))
+        return BearingColumns(angles, found["load"].value, *directions)
+
+    # the cycle
+
+    def _evaluate(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        """Return size and directions of the load, and the rate at which its surfaces rub."""
+        with np.errstate(all="ignore"):  # a load of 0 has no direction
+            loads = self.loads(degrees, within)
+            found = {name: plane.direction for name, plane in loads.frames.items()}
+            found |= {"load": norm(*next(iter(loads.frames.values()))), "rate": loads.rate}
+        return {name: Sampled.of(one, degrees.shape) for name, one in found.items()}
+
+    @cached_property
+    def _grid(self) -> Grid:
+        """The cycle in smooth pieces, cut also where a component of the load is zero: its size may bend there."""
+        grid = Cuts.joined([one.cuts for one in self.followed]).grid()
+
+        def components(degrees: Array, within: Array) -> dict[str, Sampled]:
+            first = next(iter(self.loads(degrees, within).frames.values()))
+            return {str(number): Sampled.of(part, degrees.shape) for number, part in enumerate(first)}
+
+        found = zeros(grid, components(grid.degrees, grid.within), components)
+        return grid.split_at(np.concatenate(tuple(found.values())))
+
+    @cached_property
+    def _curves(self) -> dict[str, Curve]:
+        return curves(self._grid, self._evaluate(self._grid.degrees, self._grid.within), self._evaluate)
+
+    @cached_property
+    def _load(self) -> Extremes:
+        return extremes_of(self._curves["load"])
+
+    @property
+    def load_max(self) -> Extreme:
+        """Largest load in N."""
+        return self._load.largest
+
+    @property
+    def load_min(self) -> Extreme:
+        """Smallest load in N."""
+        return self._load.smallest
+
+    @cached_property
+    def _means(self) -> tuple[float, float]:
+        """Means over time of the load in N, and of the rate."""
+
+        def both(pieces: Pieces) -> Array:
+            found = self._evaluate(pieces.degrees, pieces.within)
+            return np.stack([found["load"].value, np.abs(found["rate"].value)])
+
+        load, rate = integral(self._grid, both) / math.radians(self._grid.breaks[-1])
+        return float(load), float(rate)
+
+    @property
+    def load_mean(self) -> float:
+        """Mean load in N over the time of a cycle."""
+        return self._means[0]
+
+    @cached_property
+    def load_high(self) -> float:
+        """Mean load in N over the time in which it exceeds half its largest."""
+        half, whole = self.load_max.value / 2, self._curves["load"]
+        if not half:
+            return 0.0
+
+        def beyond(degrees: Array, within: Array) -> dict[str, Sampled]:
+            found = self._evaluate(degrees, within)["load"]
+            return {"load": Sampled(found.value - half, found.slope)}
+
+        passed = sign_changes(self._grid, {"load": whole._replace(value=whole.value - half)}, beyond, 2 * half)["load"]
+
+        def high(pieces: Pieces) -> Array:
+            middle = pieces.within[:, :1]
+            above = np.where(beyond(middle, middle)["load"].value > 0, 1.0, 0.0)
+            return np.stack(
+                [self._evaluate(pieces.degrees, pieces.within)["load"].value * above, above + pieces.degrees * 0]
+            )
+
+        load, time = integral(self._grid.split_at(passed), high)
+        return float(load / time)
+
+    # the surfaces
+
+    def _unloaded(self, frame: str) -> Unloaded | None:
+        """Return the arc of the surface that stands still in a frame; None where it is loaded nowhere."""
+        points = [self._curves[name] for name in (frame, "load")]
+        degrees = np.concatenate([one.degrees for one in points])
+        within = np.concatenate([one.within for one in points])
+        order = np.lexsort((degrees, within))
+        degrees, within = degrees[order], within[order]
+        found = self._evaluate(degrees, within)
+        loaded = found["load"].value > _NO_LOAD * self.load_max.value
+        if not loaded.any():
+            return None
+        beside = loaded[1:] & loaded[:-1] & (within[1:] == within[:-1])
+        kept = np.flatnonzero(loaded)
+        # neighbours among the loaded ones were neighbours before
+        joined = beside[kept[:-1]] & (np.diff(kept) == 1)
+        return unloaded(found[frame].value[kept] + self.contact, joined)
+
+    @cached_property
+    def _of_journal(self) -> Unloaded | None:
+        return self._unloaded(self.journal)
+
+    @cached_property
+    def _of_shell(self) -> Unloaded | None:
+        return self._unloaded(self.shell)
+
+    @property
+    def unloaded_arc(self) -> float | None:
+        """Degrees of the surface of pin or journal that are never loaded."""
+        return self._of_journal and self._of_journal.arc
+
+    @property
+    def unloaded_middle(self) -> float | None:
+        """Direction in degrees of the middle of its widest piece; None where all of it is loaded."""
+        return self._of_journal and self._of_journal.middle
+
+    @property
+    def unloaded_arc_shell(self) -> float | None:
+        """Degrees of the surface of the shell that are never loaded."""
+        return self._of_shell and self._of_shell.arc
+
+    @property
+    def unloaded_middle_shell(self) -> float | None:
+        """Direction in degrees of the middle of its widest piece; None where all of it is loaded."""
+        return self._of_shell and self._of_shell.middle
+
+    # pressures and rubbing
+
+    @property
+    def _area(self) -> float | None:
+        diameter, length = self.size
+        return diameter * length if diameter and length else None
+
+    @property
+    def pressure_max(self) -> Extreme | None:
+        """Largest load over d l in Pa."""
+        return None if self._area is None else Extreme(self.load_max.value / self._area, self.load_max.degrees)
+
+    @property
+    def pressure_mean(self) -> float | None:
+        """Mean load over d l in Pa."""
+        return None if self._area is None else self.load_mean / self._area
+
+    @property
+    def _surface_speed(self) -> float | None:
+        """ω d/2 in m/s."""
+        diameter = self.size.diameter
+        return None if self.omega is None or not diameter else self.omega * diameter / 2
+
+    @property
+    def rubbing_speed_max(self) -> Extreme | None:
+        """Largest speed in m/s of one surface on the other."""
+        if self._surface_speed is None:
+            return None
+        rate = extremes_of(self._curves["rate"]).peak
+        return Extreme(rate.value * self._surface_speed, rate.degrees)
+
+    @property
+    def rubbing_speed_mean(self) -> float | None:
+        """Mean speed in m/s of one surface on the other."""
+        return None if self._surface_speed is None else self._means[1] * self._surface_speed
+
+    @property
+    def pressure_velocity(self) -> float | None:
+        """Mean pressure times mean speed, p_m v in W/m²."""
+        pressure, speed = self.pressure_mean, self.rubbing_speed_mean
+        return None if pressure is None or speed is None else pressure * speed

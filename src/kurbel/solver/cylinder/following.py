@@ -1,0 +1,32 @@
+"""One cylinder among several, told at the angles of crank 1."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from kurbel.numerics.grid import Cuts
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.state import State
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
+
+class Following:
+    """A cylinder at the angles φ of crank 1: its own crank stands at φ − position.
+
+    cuts: where something of it bends or jumps, over a cycle in degrees that may be longer than its own.
+    """
+
+    def __init__(self, forces: CylinderForces, cycle: float) -> None:
+        self.forces = forces
+        self.drive = forces.drive
+        # whole cycles off, which is exact: beside a large position an angle would lose its digits
+        self.position = math.fmod(forces.drive.cylinder.crank_position, self.drive.cycle)
+        own = Cuts(self.drive.cuts.smooth, forces.grid.breaks[:-1])
+        self.cuts = own.shifted(self.position, cycle)
+
+    def jets_at(self, degrees: Array, within: Array) -> State:
+        """Return the state with slopes at angles (n,) of crank 1 in degrees, on the sides that hold `within`."""
+        return self.drive.jets_at(degrees - self.position, within - self.position)

@@ -1,0 +1,258 @@
+"""Loads on pins and main bearings: against the free forces, against the statics of one throw, by closed form."""
+
+from __future__ import annotations
+
+import cmath
+import itertools
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import fixed_quad
+
+from kurbel.errors import UsageError
+from kurbel.machine import Machine
+from kurbel.machine_file import loads
+from kurbel.solver.bearings.bearing import Bearing
+from kurbel.solver.bearings.directions import unloaded
+from kurbel.solver.case import Case
+
+ENGINE = (Path(__file__).parents[2] / "configs" / "gas-engine.yaml").read_text("utf-8")
+SHAFT = """crankshaft: {a: 60 mm, b: 50 mm, web_distance: 30 mm, web_thickness: 15 mm, web_width: 60 mm,
+             pin_diameter: 50 mm, pin_length: 40 mm, journal_diameter: 55 mm, journal_length: 24 mm}
+"""
+EACH = """crank: 45 mm
+    rod: 150 mm
+    bore: 90 mm
+    indicator: {head_end: {diesel: {intake: 0 bar, compression_ratio: 18, cut_off: 0.06}}}
+    masses: {piston: 1.2 kg, rotating: 0.9 kg,
+             connecting_rod: {mass: 2 kg, center_of_gravity: 0.1 m, inertia: 7e-3 kg m2}}
+"""
+HEAD = "speed: 1800 rpm\ncycle: four-stroke\n" + SHAFT
+IN_LINE = HEAD + f"cylinders:\n  count: 4\n  firing_order: 1-3-4-2\n  spacing: 110 mm\n  each:\n    {EACH}"
+VEE = HEAD + f"cylinders:\n  count: 2\n  bank_angles: [0 deg, 90 deg]\n  each:\n    {EACH}"
+OVERHUNG = (
+    HEAD + f"cylinders:\n  - {EACH}    axial_position: 0 mm\n  - like: cylinder 1\n    crank_position: 90 deg\n"
+    "    axial_position: 500 mm\n"
+).replace("b: 50 mm", "b: 400 mm, overhung: true")
+COUNTERWEIGHTS = (
+    "counterweights: [{product: 0.03 kg m, angle: 170 deg, axial_position: 20 mm}, {mass: 1 kg, radius: 40 mm}]\n"
+)
+MACHINES = {
+    "one": HEAD + EACH.replace("\n    ", "\n"),
+    "one, counterweights": HEAD + EACH.replace("\n    ", "\n") + COUNTERWEIGHTS,
+    "one, a share": HEAD + EACH.replace("\n    ", "\n") + "counterweights: {share: 0.5}\n",
+    "four in line": IN_LINE,
+    "four in line, planes": IN_LINE + "counterweights: {share: 0.3, planes: [-20 mm, 400 mm]}\n",
+    "vee": VEE,
+    "two overhung": OVERHUNG,
+    "offset": HEAD + EACH.replace("\n    ", "\n") + "offset: 12 mm\n",
+    "rod by its share": HEAD
+    + EACH.replace("\n    ", "\n").replace("center_of_gravity: 0.1 m, inertia: 7e-3 kg m2", "share: 0.4"),
+}
+
+
+def main_bearings(case: Case) -> list[Bearing]:
+    return [part for part in case.bearings.parts if part.name.startswith("bearing")]
+
+
+def in_engine(part: Bearing, degrees: np.ndarray) -> np.ndarray:
+    found = part.at(degrees)
+    assert found.load_engine is not None
+    return found.load * np.exp(1j * np.radians(found.load_engine))
+
+
+def counterweights(machine: Machine) -> complex:
+    """Sum in kg m of all counterweights, along the throw of crank 1: from the machine file alone."""
+    given = machine.counterweights
+    if isinstance(given, tuple):
+        return sum(one.product * cmath.exp(1j * math.radians(one.angle)) for one in given)
+    return -sum(
+        (one.masses.at_pin(one.mechanism.rod_length) + given.share * one.masses.at_crosshead(one.mechanism.rod_length))
+        * one.mechanism.crank
+        * cmath.exp(1j * math.radians(one.bank_angle - one.crank_position))
+        for one in machine.cylinders
+    )
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_bearings_guides_and_covers_give_the_free_force_at_every_angle(name: str) -> None:
+    """Internal forces cancel: what shaft, crossheads and gas leave on the frame is −Σ m a of what moves."""
+    case = Case(loads(MACHINES[name]))
+    machine, omega = case.machine, 2 * math.pi * 30
+    phi = np.linspace(0.0, 720.0, 721) + 0.3
+    on_frame = sum(in_engine(part, phi) for part in main_bearings(case))
+    free = counterweights(machine) * omega**2 * np.exp(1j * np.radians(phi))
+    for forces in case.cylinders:
+        one = forces.drive.cylinder
+        own, line = phi - one.crank_position, cmath.exp(1j * math.radians(one.bank_angle))
+        state = forces.at(own)
+        on_frame = on_frame + line * (state.P_gas - 1j * state.N)
+        turning = one.masses.at_pin(one.mechanism.rod_length) * one.mechanism.crank * omega**2
+        free = free + line * (forces.drive.mass * state.b + turning * np.exp(1j * np.radians(own)))
+    largest = max(part.load_max.value for part in main_bearings(case))
+    told = case.balance.columns(phi)
+    assert np.abs(told["F_x"] + 1j * told["F_y"] - free).max() <= 1e-13 * largest
+    assert np.abs(on_frame - free).max() <= 1e-13 * largest
+    # and over a turn nothing is left of it
+    assert abs(on_frame[:-1].mean()) <= 1e-13 * largest
+
+
+def test_one_throw_carries_what_its_statics_say() -> None:
+    case = Case(loads(ENGINE))
+    pin, crosshead, A, B = case.bearings.parts
+    assert [part.name for part in (pin, crosshead, A, B)] == ["crank pin", "crosshead pin", "bearing A", "bearing B"]
+    for part, name in ((pin, "pin"), (A, "A"), (B, "B")):
+        assert part.load_max.value == pytest.approx(case.strength.load_max(name).value, rel=1e-13)
+        assert part.pressure_max.value == pytest.approx(case.strength.pressure_max(name).value, rel=1e-13)
+    for part, name in ((A, "A"), (B, "B")):
+        assert part.pressure_mean == pytest.approx(case.strength.pressure_mean(name), rel=1e-12)
+        assert part.pressure_velocity == pytest.approx(case.strength.pressure_velocity(name), rel=1e-12)
+
+
+def test_a_bearing_between_two_throws_carries_both() -> None:
+    case = Case(loads(IN_LINE))
+    alone = Case(loads(MACHINES["one"]))
+    A, B = main_bearings(alone)
+    phi = np.linspace(0.0, 720.0, 73)
+    turn = np.array([0.0, 540.0, 180.0, 360.0])  # crank positions of 1-3-4-2
+    fixed = [in_engine(A, np.mod(phi - turn[0], 720.0))]
+    fixed += [
+        in_engine(B, np.mod(phi - turn[k], 720.0)) + in_engine(A, np.mod(phi - turn[k + 1], 720.0)) for k in range(3)
+    ]
+    fixed += [in_engine(B, np.mod(phi - turn[3], 720.0))]
+    assert len(main_bearings(case)) == 5
+    for part, wanted in zip(main_bearings(case), fixed):
+        assert np.abs(in_engine(part, phi) - wanted).max() <= 1e-12 * part.load_max.value
+
+
+def test_two_rods_on_one_pin_have_half_of_it_each() -> None:
+    parts = Case(loads(VEE)).bearings.parts
+    assert [part.name for part in parts] == [
+        *("crank pin of cylinder 1", "crosshead pin of cylinder 1", "crank pin of cylinder 2"),
+        *("crosshead pin of cylinder 2", "bearing A", "bearing B"),
+    ]
+    assert parts[0].pressure_max.value == pytest.approx(parts[0].load_max.value / (0.050 * 0.020), rel=1e-14)
+
+
+def test_directions_in_the_three_frames() -> None:
+    """At 90° the throw stands square to the stroke line, and the rod leads back by ψ from the pin to the crosshead."""
+    pin, crosshead, *_ = Case(loads(MACHINES["one"])).bearings.parts
+    (throw,), (engine,), (rod,) = (getattr(pin.at([90.0]), f"load_{frame}") for frame in ("throw", "engine", "rod"))
+    assert engine - throw == pytest.approx(90.0, abs=1e-12)
+    assert rod - engine == pytest.approx(math.degrees(math.asin(0.3)), abs=1e-12)
+    state = Case(loads(MACHINES["one"])).cylinders[0].at([90.0])
+    assert throw == pytest.approx(math.degrees(math.atan2(state.T[0], -state.D[0])), abs=1e-12)
+    assert crosshead.at([90.0]).load_throw is None
+
+
+PLAIN = """crank: 100 mm
+rod: infinite
+bore: 100 mm
+speed: 60 rpm
+indicator: {head_end: {constant: {expansion: 10 bar, compression: 10 bar}}}
+"""
+
+
+def test_what_a_constant_force_never_loads() -> None:
+    """It goes all round the crank pin, stands in one place of its shell, and of the crosshead pin and its bush."""
+    pin, crosshead = Case(loads(PLAIN)).bearings.parts
+    assert (pin.unloaded_arc, pin.unloaded_middle) == (0.0, None)
+    assert pin.unloaded_arc_shell == pytest.approx(240, abs=1e-9)
+    assert abs(pin.unloaded_middle_shell) == pytest.approx(180, abs=1e-9)  # the rod presses its end from the crosshead
+    assert crosshead.unloaded_arc == pytest.approx(240, abs=1e-9)
+    assert crosshead.unloaded_middle == pytest.approx(0, abs=1e-9)
+    for load in (pin.load_max.value, pin.load_min.value, pin.load_mean, pin.load_high):
+        assert load == pytest.approx(1e6 * math.pi / 400, rel=1e-14)
+
+
+def test_a_weight_alone_has_directions_too() -> None:
+    """Along the stroke line nothing varies, across it does."""
+    only = "crank: 100 mm\nrod: 400 mm\ninclination: 30 deg\nmasses: {piston: 10 kg}\n"
+    _, crosshead = Case(loads(only)).bearings.parts
+    largest = 10 * 9.80665 * 0.5 / math.sqrt(1 - 1 / 16)
+    assert crosshead.load_max.value == pytest.approx(largest, rel=1e-14)
+    assert crosshead.unloaded_arc == pytest.approx(240 - 2 * math.degrees(math.asin(0.25)), abs=1e-9)
+
+
+def test_no_load_has_no_direction_and_no_unloaded_arc() -> None:
+    pin, _ = Case(loads(PLAIN.replace("10 bar", "0 bar"))).bearings.parts
+    assert pin.load_max.value == 0
+    assert (pin.unloaded_arc, pin.unloaded_arc_shell) == (None, None)
+
+
+def test_unloaded_arcs_against_many_samples() -> None:
+    """Of the gas engine, by marking every hundredth of a degree that any of 36 000 loads reaches."""
+    for part in Case(loads(ENGINE)).bearings.parts:
+        columns = part.at(np.arange(0.0, 720.0, 0.02))
+        for frame, arc in ((part.journal, part.unloaded_arc), (part.shell, part.unloaded_arc_shell)):
+            centres = np.unique(np.round(getattr(columns, f"load_{frame}") * 100).astype(int) % 36000)
+            edges = np.diff(np.concatenate((centres, [centres[0] + 36000])))
+            assert arc == pytest.approx(sum(max(gap / 100 - 120, 0.0) for gap in edges), abs=0.1)
+
+
+def test_arcs_join_round_the_circle() -> None:
+    joined = np.array([True, False])
+    found = unloaded(np.array([350.0, 20.0, 200.0]), joined)
+    assert found.arc == pytest.approx(360 - (30 + 120) - 120)
+    assert found.middle == pytest.approx(math.remainder((80 + 140) / 2, 360))
+    assert unloaded(np.array([0.0, 100.0, 200.0, 300.0]), np.zeros(3, bool)).arc == 0
+
+
+def test_means_against_scipy() -> None:
+    pin = Case(loads(ENGINE)).bearings.parts[0]
+    bends = sorted({float(one) for one in pin._grid.breaks})
+    pieces = list(itertools.pairwise(bends))
+
+    def load(degrees: np.ndarray, within: float) -> np.ndarray:
+        return pin._evaluate(degrees, np.full_like(degrees, within))["load"].value
+
+    whole = sum(fixed_quad(load, low, high, args=((low + high) / 2,), n=60)[0] for low, high in pieces)
+    assert pin.load_mean == pytest.approx(whole / 720, rel=1e-12)
+    sampled = pin.at(np.arange(0.005, 720.0, 0.01)).load
+    assert pin.load_high == pytest.approx(sampled[sampled > pin.load_max.value / 2].mean(), rel=1e-4)
+    assert pin.load_min.value == pytest.approx(sampled.min(), rel=1e-6)
+
+
+def test_rubbing_speeds() -> None:
+    pin, crosshead, A, _ = Case(
+        loads(
+            ENGINE + "friction: {crosshead_pin: 0.05, crosshead_pin_diameter: 180 mm, crosshead_pin_length: 250 mm}\n"
+        )
+    ).bearings.parts
+    omega = 2 * math.pi * 200 / 60
+    assert pin.rubbing_speed_max.value == pytest.approx(omega * 0.105 * 1.2, rel=1e-13)
+    assert pin.rubbing_speed_mean == pytest.approx(omega * 0.105, rel=1e-12)
+    assert A.rubbing_speed_max.value == pytest.approx(omega * 0.100, rel=1e-13)
+    assert A.rubbing_speed_mean == pytest.approx(omega * 0.100, rel=1e-13)
+    assert crosshead.rubbing_speed_max.value == pytest.approx(omega * 0.090 * 0.2, rel=1e-12)
+    assert crosshead.rubbing_speed_mean == pytest.approx(omega * 0.090 * 4 * math.asin(0.2) / (2 * math.pi), rel=1e-12)
+    assert crosshead.pressure_max.value == pytest.approx(crosshead.load_max.value / (0.18 * 0.25), rel=1e-14)
+
+
+def test_work_of_friction_is_that_of_the_energy_balance() -> None:
+    rubs = "friction: {crank_pin: 0.05, crosshead_pin: 0.06, crosshead_pin_diameter: 180 mm, journals: 0.04}\n"
+    case = Case(loads(ENGINE + rubs))
+    pin, crosshead, A, B = case.bearings.parts
+    works = case.cylinders[0].pin_works
+    assert pin.work_rubbing == works.work_of("crank_pin")
+    assert crosshead.work_rubbing == works.work_of("crosshead_pin")
+    assert A.work_rubbing + B.work_rubbing == pytest.approx(works.work_of("journals"), rel=1e-12)
+
+
+def test_every_bearing_has_its_own_key_values() -> None:
+    case = Case(loads(ENGINE))
+    with pytest.raises(UsageError, match=r"own load_max: ask one of case\.bearings\.parts"):
+        _ = case["load_max"]
+    assert case.bearings.parts[0]["load_max"].unit == "N"
+    assert set(case.bearings.parts[2].columns([0.0, 90.0])) == {"phi", "load", "load_throw", "load_engine"}
+
+
+def test_nothing_loads_a_bearing() -> None:
+    with pytest.raises(UsageError, match="nothing loads a bearing: that needs a cylinder with a connecting rod"):
+        _ = Case(loads("mechanism: scotch-yoke\ncrank: 100 mm\nbore: 100 mm\nindicator: {head_end: 3 bar}\n")).bearings
+    with pytest.raises(UsageError, match="nothing loads a bearing"):
+        _ = Case(loads("crank: 100 mm\nrod: 500 mm\n")).bearings
+    with pytest.raises(UsageError, match="nothing loads a bearing"):
+        _ = Case(loads("effort: {unit: N m, mean: 100, harmonics: [[1, 5, 5]]}")).bearings

@@ -1,0 +1,145 @@
+"""Friction in the pins of the rod and in the journals: closed forms, the free rod, and the balance of energy."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpmath import atanh, ellipk
+
+from kurbel.errors import MachineFileError
+from kurbel.machine_file import loads
+from kurbel.solver.case import Case
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.pin_works import PinWorks
+from kurbel.solver.cylinder.pins import on_crosshead_pin, on_pin
+
+ENGINE = (Path(__file__).parents[2] / "configs" / "gas-engine.yaml").read_text("utf-8")
+RUBS = """friction: {crosshead: 0.05, crank_pin: 0.05, crosshead_pin: 0.06, crosshead_pin_diameter: 180 mm,
+           journals: 0.04}
+"""
+EXACT = ENGINE.replace("share: 0.4", "center_of_gravity: 900 mm, inertia: 60 kg m2")
+PLAIN = """crank: 100 mm
+rod: 250 mm
+bore: 100 mm
+indicator: {head_end: {constant: {expansion: 1 bar, compression: -1 bar}}}
+friction: {crank_pin: 0.05, crank_pin_diameter: 60 mm, crosshead_pin: 0.06, crosshead_pin_diameter: 40 mm,
+           journals: 0.03, journal_diameter: 70 mm}
+"""
+FORCE = 1e5 * math.pi / 400
+
+
+def solved(text: str) -> CylinderForces:
+    return Case(loads(text)).cylinders[0]
+
+
+def test_constant_piston_force_against_elliptic_integrals() -> None:
+    """S = P/cos ψ: ∮ dφ/cos ψ = 4 K(λ²) on crank pin and journals, ∮ |dψ|/cos ψ = 4 artanh λ on the crosshead pin."""
+    forces = solved(PLAIN)
+    turned, swung = float(4 * ellipk(0.16)), float(4 * atanh(0.4))
+    assert forces.pin_works.work_of("crank_pin") == pytest.approx(0.05 * 0.030 * FORCE * turned, rel=1e-13)
+    assert forces.pin_works.work_of("crosshead_pin") == pytest.approx(0.06 * 0.020 * FORCE * swung, rel=1e-13)
+    assert forces.pin_works.work_of("journals") == pytest.approx(0.03 * 0.035 * FORCE * turned, rel=1e-13)
+
+
+def test_infinite_rod_does_not_swing() -> None:
+    forces = solved(PLAIN.replace("250 mm", "infinite"))
+    assert forces.pin_works.work_of("crosshead_pin") == 0
+    assert forces.pin_works.work_of("crank_pin") == pytest.approx(0.05 * 0.030 * FORCE * 2 * math.pi, rel=1e-13)
+
+
+def test_shares_are_of_the_work_that_drives() -> None:
+    forces = solved(PLAIN)
+    work = 2 * FORCE * 0.2
+    for name in ("crank_pin", "crosshead_pin", "journals"):
+        assert forces[f"loss_{name}"].value == pytest.approx(forces[f"work_{name}"].value / work, rel=1e-13)
+    lost = math.fsum(forces.pin_works.all)
+    assert forces.friction_work == pytest.approx(lost, rel=1e-14)
+    assert pytest.approx((work - lost) / (0.2 * math.pi), rel=1e-13) == forces.W
+
+
+@pytest.mark.parametrize("degrees", [20.0, 130.0, 200.0, 340.0])
+def test_a_rod_without_mass_is_in_equilibrium_with_friction_at_both_its_ends(degrees: float) -> None:
+    """Forces of both pins and both moments, drawn in the plane, the crank pin at R e^{iφ}."""
+    state = solved(PLAIN).at([degrees])
+    (along,), (across,) = on_crosshead_pin(state)
+    (radial,), (tangential,) = on_pin(state)
+    turned = np.exp(1j * np.radians(degrees))
+    pin = 0.1 * turned
+    crosshead = pin.real + math.sqrt(0.25**2 - pin.imag**2)
+    at_crosshead = -along - 1j * (-across)  # of the crosshead on the rod; N > 0 lies on the guide away from +i
+    at_crank = -(-radial + 1j * tangential) * turned  # of the pin on the rod
+    assert abs(at_crosshead + at_crank) <= 1e-12 * FORCE
+    unrubbed = state.unrubbed
+    assert state.rubbing is not None
+    slope = 0.4 * math.cos(math.radians(degrees)) / math.sqrt(1 - (0.4 * math.sin(math.radians(degrees))) ** 2)
+    crank = 0.05 * 0.030 * math.hypot(*(float(one[0]) for one in on_pin(unrubbed)))
+    crosshead_pin = 0.06 * 0.020 * math.hypot(*(float(one[0]) for one in on_crosshead_pin(unrubbed)))
+    couple = crank + math.copysign(crosshead_pin, slope)
+    moment = ((crosshead - pin).conjugate() * at_crosshead).imag + couple
+    assert abs(moment) <= 1e-12 * FORCE
+    journals = 0.03 * 0.035 * math.hypot(*(float(one[0]) for one in on_pin(unrubbed)))
+    assert state.M[0] == pytest.approx(0.1 * tangential - crank - journals, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "engine",
+    [
+        ENGINE,
+        EXACT,
+        EXACT.replace("inclination: 0", "inclination: 70"),
+        ENGINE.replace("rod_ratio: 5", "rod_ratio: infinite"),
+        ENGINE.replace("rod_ratio: 5", "rod_ratio: 3\noffset: 100 mm"),
+    ],
+    ids=["share", "exact", "leaning", "infinite", "offset"],
+)
+def test_energy_balance_closes(engine: str) -> None:
+    case = Case(loads(engine + RUBS))
+    forces = case.cylinders[0]
+    assert abs(forces.energy_residual or 0.0) <= 1e-12
+    assert pytest.approx(forces.W, rel=1e-10) == case.flywheel.W
+    assert case.strength.equilibrium_residual <= 1e-14
+
+
+@pytest.mark.parametrize("name", ["crank_pin", "crosshead_pin", "journals"])
+def test_energy_balance_sees_a_fault(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    works = PinWorks._works.func  # type: ignore[attr-defined]
+    wrong = property(lambda self: {**works(self), name: works(self)[name] * (1 + 1e-6)})
+    monkeypatch.setattr(PinWorks, "_works", wrong)
+    assert abs(solved(ENGINE + RUBS).energy_residual or 0.0) > 1e-10
+
+
+def test_journals_bear_the_flywheel_too() -> None:
+    without = ENGINE.replace("  flywheel_mass: 4 t\n", "").replace("  flywheel_position: 450 mm", "#")
+    heavy, light = solved(ENGINE + RUBS), solved(without + RUBS)
+    assert heavy.pin_works.work_of("journals") > 1.2 * light.pin_works.work_of("journals")
+    assert heavy.pin_works.work_of("crank_pin") == pytest.approx(light.pin_works.work_of("crank_pin"), rel=1e-13)
+
+
+BAD = {
+    "friction: {crank_pin: 0.05}": "'crank_pin' needs a diameter: write for instance 'crank_pin_diameter: 120 mm'",
+    "friction: {journals: 0.05}": "or give 'journal_diameter' in 'crankshaft'",
+    "friction: {crosshead_pin: 0.05}": "'crosshead_pin' needs 'crosshead_pin_diameter' beside it",
+    "friction: {crank_pin: -0.05, crank_pin_diameter: 60 mm}": "friction.crank_pin: -0.05 is too small",
+    "friction: {crank_pin_diameter: 60 mm, crosshead: 0.1}": "'crank_pin_diameter' needs 'crank_pin' beside it",
+    "friction: {}": "'crank_pin', 'crosshead_pin' or 'journals'",
+}
+
+
+@pytest.mark.parametrize("friction", BAD)
+def test_what_is_wrong_is_told(friction: str) -> None:
+    with pytest.raises(MachineFileError) as caught:
+        loads(PLAIN[: PLAIN.index("friction")] + friction + "\n")
+    assert BAD[friction] in str(caught.value)
+
+
+def test_a_diameter_stands_in_one_place_only() -> None:
+    with pytest.raises(MachineFileError, match="'pin_diameter' in 'crankshaft' says the same; leave one of them out"):
+        loads(ENGINE + "friction: {crank_pin: 0.05, crank_pin_diameter: 210 mm}\n")
+
+
+def test_a_scotch_yoke_has_no_rod_that_rubs() -> None:
+    with pytest.raises(MachineFileError, match="a scotch-yoke has no connecting rod; leave 'crank_pin' out"):
+        loads("mechanism: scotch-yoke\n" + PLAIN.replace("rod: 250 mm\n", ""))

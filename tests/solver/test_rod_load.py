@@ -1,0 +1,165 @@
+"""The rod load of compressors (API 618, 6.6), against mpmath, by law, and as a user asks for it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+from mpmath import cos, findroot, mp, mpf, pi, sin, sqrt
+
+from kurbel.cli import kurbel
+from kurbel.machine_file import loads
+from kurbel.report.warnings import cylinder_warnings
+from kurbel.solver.case import Case
+from kurbel.solver.cylinder.forces import CylinderForces
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+RLO1, RLO5 = ((EXAMPLES / f"{name}.yaml").read_text("utf-8") for name in ("RLO1", "RLO5"))
+PARTS = "masses: {piston: 60 kg, piston_rod: 30 kg, crosshead: 50 kg, other: 10 kg, connecting_rod: 80 kg}"
+
+
+def solved(text: str) -> CylinderForces:
+    return Case(loads(text)).cylinders[0]
+
+
+def run(*arguments: str, file: str) -> Result:
+    return CliRunner().invoke(kurbel, list(arguments), input=file)
+
+
+def pressure(fraction: mpf, rises: bool) -> mpf:
+    """Absolute pressure in bar of RLO1 over the fraction of the stroke from the chamber's smallest volume."""
+    suction, delivery, clearance, exponent = mpf(1), mpf(6), mpf(1) / 10, mpf(13) / 10
+    if rises:
+        return min(delivery, suction * ((1 + clearance) / (clearance + fraction)) ** exponent)
+    return max(suction, delivery * (clearance / (clearance + fraction)) ** exponent)
+
+
+def rod_load(degrees: mpf) -> mpf:
+    """Rod load in N of RLO1 from its own data: R = p_H A_H − p_C A_C − m b, areas and acceleration by formula."""
+    crank, rod, omega = mpf("0.15"), mpf("0.75"), 10 * pi
+    head, shaft = pi / 4 * mpf("0.09"), pi / 4 * mpf("0.0036")
+    phi = degrees * pi / 180
+    kappa, lam = sqrt(1 - (crank / rod * sin(phi)) ** 2), crank / rod
+    x = crank * (1 - cos(phi)) + rod * (1 - kappa)
+    b = crank * omega**2 * (cos(phi) + lam * (cos(phi) ** 2 - sin(phi) ** 2 + lam**2 * sin(phi) ** 4) / kappa**3)
+    back = degrees > 180
+    at_head, at_crank = pressure(x / (2 * crank), back), pressure(1 - x / (2 * crank), not back)
+    ambient = mpf("1.01325")
+    return 100000 * ((at_head - ambient) * head - (at_crank - ambient) * (head - shaft)) - 150 * b
+
+
+def test_reversal_angles_are_roots_to_1e_9_degrees() -> None:
+    with mp.workdps(40):
+        wanted = [findroot(rod_load, (mpf(low), mpf(low) + mpf("0.1"))) for low in (15.9, 208.4)]
+    found = solved(RLO1).rod_load.phi_rod_reversal
+    assert found == pytest.approx([float(one) for one in wanted], rel=0, abs=1e-9)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 10.0, 100.0, 200.0, 355.0])
+def test_rod_load_against_mpmath(degrees: float) -> None:
+    with mp.workdps(40):
+        assert float(solved(RLO1).at([degrees]).P_rod[0]) == pytest.approx(float(rod_load(mpf(degrees))), rel=1e-13)
+
+
+def test_connecting_rod_and_friction_do_not_count_and_at_the_piston_rod_the_crosshead_neither() -> None:
+    forces = solved(RLO1.replace("masses: {other: 150 kg}", PARTS + "\nfriction: {crosshead: 0.05}"))
+    state = forces.at([0.0, 77.0, 240.0])
+    assert state.P_rod == pytest.approx(state.P + 40 * state.b, rel=1e-13)
+    assert state.P_piston_rod == pytest.approx(state.P_gas - 100 * state.b, rel=1e-13)
+    assert forces.rod_compression_max.value == pytest.approx(solved(RLO1).rod_compression_max.value, rel=1e-13)
+
+
+def test_weight_counts_where_the_stroke_line_leans() -> None:
+    leaning = solved(RLO1 + "inclination: 90 deg\n").at([30.0]).P_rod
+    assert leaning - solved(RLO1).at([30.0]).P_rod == pytest.approx(150 * 9.80665, rel=1e-10)
+
+
+def test_one_end_unloaded_reverses_by_inertia_alone() -> None:
+    unloaded = RLO1.replace(
+        "head_end: {compressor: {suction: 1 bar, delivery: 6 bar, clearance: 0.1, exponent: 1.3}}", "head_end: 1 bar"
+    )
+    slow, fast = (solved(unloaded.replace("300 rpm", speed)) for speed in ("1 rpm", "300 rpm"))
+    assert fast.reversal_angle == pytest.approx(71.8322459, abs=5e-8)  # RLO3
+    assert slow.reversal_angle == 0
+    assert slow.reversal_ratio == 0
+    assert slow.rod_compression_max.value == 0
+    told = run("forces", "-", "--key-values", file=unloaded.replace("300 rpm", "1 rpm")).stdout
+    assert "the rod load never reverses" in told
+
+
+def test_pieces_of_the_reversed_load_add_up_and_the_longest_is_told() -> None:
+    """A pressure that pulls on the outstroke from 20° to 30° and from 50° to 80° only; harder on the way back."""
+    steps = ((0, 20, 2), (20, 30, -1), (30, 50, 2), (50, 80, -1), (80, 180, 2), (180, 360, 3))
+    points = [[degrees, bar] for start, end, bar in steps for degrees in range(start, end + 1, 5)]
+    trace = f"{{trace: {{unit: bar, points: {points}}}}}"
+    found = solved(f"crank: 100 mm\nrod: 500 mm\nbore: 100 mm\nindicator: {{head_end: {trace}}}\n").rod_load
+    assert found.phi_rod_reversal == pytest.approx([20, 30, 50, 80], abs=1e-9)
+    assert found.reversal_angle == pytest.approx(40, abs=1e-9)
+    assert found.reversal_longest == pytest.approx(30, abs=1e-9)
+    assert found.reversal_ratio == pytest.approx(1 / 3, rel=1e-12)
+
+
+def test_limits_bound_it_from_below() -> None:
+    limits = "limits: {reversal_angle: 15 deg, reversal_ratio: 0.03}\n"
+    broken, kept = (run("check", "-", file=text + limits) for text in (RLO5, RLO1))
+    assert broken.exit_code == 1
+    assert "5.88474652 deg < 15 deg  BROKEN" in broken.stdout
+    assert "0.0256515391 < 0.03  BROKEN" in broken.stdout
+    assert kept.exit_code == 0
+    assert kept.stdout.count("kept") == 2
+
+
+def test_an_engine_is_asked_for_it_by_name_only() -> None:
+    engine = (Path(__file__).parents[2] / "configs" / "waterworks.yaml").read_text("utf-8")
+    assert "P_G" not in run("forces", "-", file=engine).stdout
+    parsed = json.loads(run("forces", "-", "--columns", "P_rod", "-f", "json", "--angles", "0", file=engine).stdout)
+    assert [column["id"] for column in parsed["cylinders"][0]["columns"]] == ["phi", "P_rod"]
+
+
+def test_a_sum_of_masses_is_taken_whole_and_that_is_said() -> None:
+    told = run("forces", "-", "--step", "90", file=RLO1.replace("other", "reciprocating")).stdout
+    assert "P_G counts all of it" in " ".join(told.split())
+
+
+def test_api_618_is_quoted_where_either_half_of_its_rule_is_broken() -> None:
+    assert "API 618 asks for 15 deg and 3 %" in " ".join(run("check", "-", file=RLO5).stdout.split())
+    assert "asks for 15 deg" not in run("check", "-", file=RLO1).stdout
+
+
+ALWAYS_PRESSED = """
+speed: 300 rpm
+stroke: 200 mm
+rod_ratio: 5
+bore: 150 mm
+indicator:
+  pressures: absolute
+  head_end:
+    compressor: {suction: 3 bar, delivery: 8 bar, clearance: 0.1, exponent: 1.3}
+"""
+MOTORED = """
+cycle: four-stroke
+speed: 750 rpm
+stroke: 180 mm
+rod_ratio: 4
+bore: 150 mm
+indicator:
+  pressures: absolute
+  head_end:
+    unit: bar
+    clearance: 0.08
+    interpolate: polytropic
+    intake: [[0, 0.95], [1, 0.95]]
+    compression: [[1, 0.95], [0, 28]]
+    expansion: [[0, 26], [1, 0.9]]
+    exhaust: [[1, 1.05], [0, 1.05]]
+"""
+
+
+def test_a_motored_engine_is_no_compressor() -> None:
+    """Its gas work is negative, as a compressor's, but nobody judges it by the rod load of compressors."""
+    forces = Case(loads(f"{MOTORED}masses: {{piston: 3 kg}}\n")).cylinders[0]
+    assert forces.work < 0
+    assert [one for one in cylinder_warnings(forces) if "rod load" in one] == []
+    assert [one for one in cylinder_warnings(Case(loads(ALWAYS_PRESSED)).cylinders[0]) if "rod load" in one]

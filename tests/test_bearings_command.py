@@ -1,0 +1,117 @@
+"""`kurbel bearings` as a user calls it."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+
+CONFIGS = Path(__file__).parents[1] / "configs"
+ENGINE = (CONFIGS / "gas-engine.yaml").read_text("utf-8")
+FOUR = (CONFIGS / "four-cylinder-generator.yaml").read_text("utf-8")
+SHAFT = ENGINE[ENGINE.index("crankshaft:") : ENGINE.index("limits:")]
+
+
+def run(*arguments: str, file: str = ENGINE) -> Result:
+    return CliRunner().invoke(kurbel, list(arguments), input=file)
+
+
+def test_json_has_one_part_for_each_pin_and_bearing() -> None:
+    result = json.loads(run("bearings", "-", "-f", "json", "--step", "90").stdout)
+    parts = {part["name"]: part for part in result["bearings"]}
+    assert list(parts) == ["crank pin", "crosshead pin", "bearing A", "bearing B"]
+    columns = {column["id"]: column for column in parts["crank pin"]["columns"]}
+    assert list(columns) == ["phi", "load", "load_throw", "load_engine", "load_rod"]
+    assert [columns[id]["unit"] for id in columns] == ["deg", "N", "deg", "deg", "deg"]
+    assert columns["load_throw"]["values"][0] == 180  # in the dead centre the piston presses the pin toward the shaft
+    assert [column["id"] for column in parts["bearing A"]["columns"]] == ["phi", "load", "load_throw", "load_engine"]
+    values = {value["id"]: value for value in parts["bearing A"]["key_values"]}
+    asked = {"load_max", "load_mean", "load_min", "unloaded_arc", "pressure_max", "pressure_velocity"}
+    assert asked <= values.keys()
+    assert values["load_max"]["value"] >= max(parts["bearing A"]["columns"][1]["values"])
+
+
+def test_key_values_do_not_hang_on_the_step() -> None:
+    coarse, fine = (json.loads(run("bearings", "-", "-f", "json", "--step", step).stdout) for step in ("90", "7"))
+    assert [part["key_values"] for part in coarse["bearings"]] == [part["key_values"] for part in fine["bearings"]]
+
+
+def test_csv_tells_the_bearings_apart() -> None:
+    rows = list(csv.DictReader(io.StringIO(run("bearings", "-", "-f", "csv", "--step", "180").stdout)))
+    assert [row["bearing"] for row in rows[::5]] == ["crank pin", "crosshead pin", "bearing A", "bearing B"]
+    assert rows[-1]["load_rod_deg"] == ""
+
+
+def test_one_bearing_alone() -> None:
+    text = run("bearings", "-", "--cylinder", "bearing B", "--key-values").stdout
+    assert "Lagerkräfte: bearing B" in text
+    assert "F_L,max" in text
+    wrong = run("bearings", "-", "--cylinder", "cylinder 1")
+    assert wrong.exit_code == 2
+    assert "it has those of crank pin, crosshead pin, bearing A, bearing B" in wrong.stderr
+
+
+def test_several_throws_are_said_to_be_statically_determinate() -> None:
+    text = " ".join(run("bearings", "-", "--key-values", file=FOUR + SHAFT).stdout.split())
+    assert "Statically determinate, throw by throw" in text
+    assert "Key values: bearing 5" in text
+    assert "do not fit bearings between them" not in text
+
+
+def test_throws_that_do_not_fit_their_bearings_are_told() -> None:
+    spaced = FOUR.replace("count: 4", "count: 4\n  spacing: 300 mm")
+    text = " ".join(run("bearings", "-", "--key-values", file=spaced + SHAFT).stdout.split())
+    assert (
+        "throws 300 mm apart along the shaft do not fit bearings between them, by which they are a + b = 800 mm" in text
+    )
+
+
+def test_without_a_crankshaft_there_are_pins_only() -> None:
+    text = run("bearings", "-", "--key-values", file=ENGINE[: ENGINE.index("crankshaft:")]).stdout
+    assert "Key values: crosshead pin" in text
+    assert "bearing A" not in text
+    assert "main bearings  no 'crankshaft' given" in text
+
+
+def test_three_throws_cannot_be_overhung() -> None:
+    shaft = SHAFT.replace("b: 400 mm", "b: 1200 mm\n  overhung: true")
+    text = " ".join(run("bearings", "-", "--key-values", file=FOUR + shaft).stdout.split())
+    assert "main bearings 4 throws cannot all be overhung; a shaft has two ends" in text
+
+
+@pytest.mark.parametrize("width", ["40", "80", "120"])
+def test_it_fits_a_terminal(width: str) -> None:
+    text = run("bearings", "-", "--width", width).stdout
+    table = text[: text.index("Loads are")]
+    assert max(map(len, table.splitlines())) <= int(width)
+
+
+def test_limits_bound_every_bearing() -> None:
+    told = run("check", "-", file=ENGINE + "  load_max: 200 kN\n  load_min: 1 kN\n")
+    assert told.exit_code == 1
+    text = " ".join(told.stdout.split())
+    assert "load_max 226.675092 kN > 200 kN BROKEN (crank pin)" in text
+    assert text.count("≥ 1 kN kept") == 4
+
+
+def test_a_machine_without_loads_is_refused() -> None:
+    result = run("bearings", "-", file="crank: 100 mm\nrod: 500 mm\n")
+    assert result.exit_code == 2
+    assert "nothing loads a bearing" in result.stderr
+
+
+def test_ascii_has_names_for_the_directions() -> None:
+    environment = {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"}
+    command = [sys.executable, "-m", "kurbel", "bearings", str(CONFIGS / "gas-engine.yaml"), "--step", "180"]
+    text = subprocess.run(command, capture_output=True, env={**os.environ, **environment}, check=True).stdout
+    assert b"eps_K  deg" in text
+    assert b"eps_S from the rod's line" in text

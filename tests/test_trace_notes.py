@@ -1,0 +1,221 @@
+"""Notes on measured traces: what is seen, what it changes, and a way out that leads to no further note."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from indicated import Engine, absolute, cycles, indicated
+from kurbel.cli import kurbel
+from kurbel.machine_file import loads
+from kurbel.report.notes import machine_notes
+from kurbel.solver.case import Case
+
+AMBIENT = 1.01325
+ENGINE = Engine()
+FINE = np.arange(0.0, 720.0, 0.2)
+SHIFTED = "{file: p.csv, unit: bar%s}"
+
+
+def written(folder: Path, angles: Any, pressures: Any) -> Path:
+    """Write a file of angles and pressures (n,) or (n, m) in bar."""
+    np.savetxt(folder / "p.csv", np.column_stack((angles, pressures)), delimiter=",", fmt="%.6f")
+    return folder / "p.csv"
+
+
+def machine_text(file: Path, keys: str = "", pressures: str = "absolute", cycle: str = "four-stroke") -> str:
+    return (
+        f"cycle: {cycle}\nspeed: 1500 rpm\nstroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\n"
+        f"indicator: {{pressures: {pressures}, head_end: {{trace: {{file: '{file}', unit: bar{keys}}}}}}}\n"
+    )
+
+
+def notes_of(text: str) -> list[str]:
+    """All notes on a machine, but for that on the rod load, which every motored engine has."""
+    return [note.text for note in machine_notes(loads(text)) if not note.text.startswith("the rod load")]
+
+
+def test_good_noisy_cycles_are_not_accused(tmp_path: Path) -> None:
+    """Sixty cycles with 0.3 bar of noise, gauge and absolute, alone and together, with and without clearance."""
+    angles, each = cycles(ENGINE, 60, 1.0, noise=0.3, spread=0.08)
+    assert float(each.min()) < 0.1  # by single samples nearly every one looks like gauge
+    for pressures, lift in (("absolute", 0.0), ("gauge", AMBIENT)):
+        file = written(tmp_path, angles, (each - lift).T)
+        for keys in ("", ", compression_ratio: 15"):
+            assert notes_of(machine_text(file, f", pressure_columns: 2-61{keys}", pressures)) == []
+            for column in range(2, 62, 10):
+                assert notes_of(machine_text(file, f", pressure_column: {column}{keys}", pressures)) == []
+
+
+@pytest.mark.parametrize("engine", [Engine(heat=0.0), Engine(heat=0.0, two_stroke=True), Engine(two_stroke=True)])
+def test_other_good_engines_are_not_accused(tmp_path: Path, engine: Engine) -> None:
+    angles = np.arange(0.0, 360.0 if engine.two_stroke else 720.0, 0.5)
+    file = written(tmp_path, angles, absolute(engine, angles))
+    cycle = "two-stroke" if engine.two_stroke else "four-stroke"
+    assert notes_of(machine_text(file, ", compression_ratio: 15", cycle=cycle)) == []
+
+
+def late(degrees: float) -> Any:
+    """The engine's pressures as a file shows them whose dead centre stands at these degrees."""
+    return absolute(ENGINE, FINE - degrees)
+
+
+def obeyed(note: str, keys: str, pressures: str, cycle: str) -> tuple[str, str, str]:
+    """The keys, `pressures` and cycle after doing what the note says first."""
+    key, value = re.findall(r"'([a-z_]+): ([^'…]+)'", note)[0]
+    if key == "pressures":
+        return keys, value, cycle
+    return (keys, pressures, value) if key == "cycle" else (f"{keys}, {key}: {value}", pressures, cycle)
+
+
+WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
+    "90 deg late": (FINE, late(90), "", "absolute", "the peak stands 103.6 deg after the firing dead centre"),
+    "180 deg late": (FINE, late(180), "", "absolute", "in the gas exchange: write 'angle_zero: 180 deg'"),
+    "90 deg early": (FINE, late(-90), "", "absolute", "the peak stands 76.4 deg before the firing dead centre"),
+    "one turn late": (FINE, late(360), "", "absolute", "write 'angle_zero: 360 deg'; p_i stays"),
+    "by no quarter": (FINE, late(61), "", "absolute", "the peak stands 74.6 deg after the firing dead centre"),
+    "gauge as absolute": (FINE, late(0) - AMBIENT, "", "absolute", "these look like gauge pressures"),
+    "absolute as gauge": (FINE, late(0), "", "gauge", "about the ambient: absolute?"),
+    "with clearance": (FINE, late(0), ", clearance: 1/14", "gauge", "about the ambient: absolute?"),
+    "ten times": (FINE, late(0) * 10, "", "absolute", "pressures 10 times too large? mend 'unit', or write"),
+    "hundred times": (FINE, late(0) * 100, ", clearance: 1/14", "absolute", "100 times too large"),
+    "a tenth": (FINE, late(0) / 10, "", "absolute", "10 times too small"),
+    "a tenth, gauge": (FINE, (late(0) - AMBIENT) / 10, "", "gauge", "10 times too small"),
+    "a hundredth, gauge": (FINE, (late(0) - AMBIENT) / 100, ", clearance: 1/14", "gauge", "100 times too small"),
+    "kPa as bar": (FINE, (late(0) - AMBIENT) * 100, "", "gauge", "100 times too large"),
+    "backward": (FINE, absolute(ENGINE, -FINE), "", "absolute", "does its angle count against the rotation?"),
+    "drift": (FINE, late(0) + 3 * FINE / 720, "", "absolute", "the pressure jumps by -2.9"),
+    "drift in noise": (
+        FINE,
+        cycles(ENGINE, 1, 0.2, noise=0.1)[1][0] + 3 * FINE / 720,
+        ", clearance: 1/14",
+        "absolute",
+        "does the sensor drift?",
+    ),
+    "half degrees on whole ones": (
+        np.floor(np.arange(0.0, 720.0, 0.5)),
+        absolute(ENGINE, np.arange(0.0, 720.0, 0.5)),
+        "",
+        "absolute",
+        "samples stand at the angle of the one before: rounded angles? write 'angle_step: 0.5 deg'",
+    ),
+    "dead centre": (FINE, late(-6), ", clearance: 1/14", "absolute", "its compression goes by p V^1."),
+    "level": (FINE, late(0) - 0.5, ", clearance: 1/14", "absolute", "its compression goes by p V^1.5"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_what_is_wrong_is_seen_and_its_way_out_is_one(tmp_path: Path, name: str) -> None:
+    angles, samples, keys, pressures, said = WRONG[name]
+    file = written(tmp_path, angles, samples)
+    (note,) = notes_of(machine_text(file, keys, pressures))
+    assert said in note
+    assert "p_i" in note
+    keys, pressures, cycle = obeyed(note, keys, pressures, "four-stroke")
+    assert notes_of(machine_text(file, keys, pressures, cycle)) == []
+
+
+def test_what_it_would_change_is_the_true_figure(tmp_path: Path) -> None:
+    """p_i as found and as it is, against the trapezoid rule by hand."""
+    true = indicated(FINE, late(0))
+    (note,) = notes_of(machine_text(written(tmp_path, FINE, late(90))))
+    found = indicated(FINE, late(90))
+    assert f"p_i is then {true:.4g} bar instead of {found:.4g} bar" in note
+    (note,) = notes_of(machine_text(written(tmp_path, FINE, late(0) * 10)))
+    assert f"p_i is then {true:.4g} bar instead of {10 * true:.4g} bar" in note
+    (note,) = notes_of(machine_text(written(tmp_path, FINE, absolute(ENGINE, -FINE))))
+    assert f"p_i is then {true:.4g} bar instead of {-true:.4g} bar" in note
+
+
+def test_four_strokes_told_as_two(tmp_path: Path) -> None:
+    """The angle begins anew in every turn and 'cycle: four-stroke' is forgotten: the turns differ by twos."""
+    _, each = cycles(ENGINE, 3, 0.5, noise=0.05)
+    file = written(tmp_path, np.tile(np.arange(0.0, 360.0, 0.5), 6), each.ravel())
+    (note,) = notes_of(machine_text(file, cycle="two-stroke"))
+    assert "its turns differ by twos" in note
+    assert notes_of(machine_text(file, cycle=obeyed(note, "", "", "")[2])) == []
+
+
+def test_the_brake_of_an_engine_of_four(tmp_path: Path) -> None:
+    """One cylinder is given: said, and asked for; with four of them all is well."""
+    power = 0.8 * 4 * indicated(FINE, late(0)) * 1e5 * np.pi / 4 * 0.09**2 * 0.1 * 25 / 2
+    file = written(tmp_path, FINE, late(0))
+    brake = f"brake_power: {power / 1e3:.5g} kW\n"
+    (note,) = notes_of(brake + machine_text(file))
+    assert "is below the brake power" in note
+    assert "'cylinders: {count: 4, each: …}'" in note
+    head, body = machine_text(file).split("stroke: 100 mm")
+    each = "  " + f"stroke: 100 mm{body}".replace("\n", "\n    ")
+    four = f"{brake}{head}cylinders:\n  count: 4\n  firing_order: 1-3-4-2\n  each:\n  {each}"
+    assert notes_of(four) == []
+
+
+@pytest.mark.parametrize("command", ["check", "forces", "flywheel", "stress"])
+def test_every_command_shows_the_same_notes_once(tmp_path: Path, command: str) -> None:
+    shaft = (
+        "crankshaft: {a: 80 mm, b: 80 mm, web_distance: 50 mm, web_thickness: 20 mm, web_width: 70 mm, "
+        "pin_diameter: 50 mm, pin_length: 40 mm, journal_diameter: 55 mm, journal_length: 40 mm}\n"
+        "flywheel: {inertia: 1 kg m2}\n"
+    )
+    (tmp_path / "m.yaml").write_text(shaft + machine_text(written(tmp_path, FINE, late(90))))
+    (note,) = [one for one in notes_of((tmp_path / "m.yaml").read_text()) if "the peak stands" in one]
+    ran = CliRunner().invoke(kurbel, [command, str(tmp_path / "m.yaml"), "-f", "json"])
+    assert ran.exit_code == 0, ran.output
+    found = json.loads(ran.stdout)
+    if command == "check":
+        said = [one["message"] for one in found["findings"] if one["severity"] == "warning"]
+    else:
+        parts = found.get("cylinders", []) if command == "forces" else []
+        said = [text for part in parts for text in part["warnings"]] or found.get("machine_warnings", [])
+    assert sum(note in text for text in said) == 1
+
+
+def test_cycles_told_by_a_wrong_speed(tmp_path: Path) -> None:
+    """At 1500 rpm, told as 1515: the cycles wander; with the speed that the note asks for nothing is left to say."""
+    _, each = cycles(ENGINE, 12, 0.5, noise=0.05)
+    file = written(tmp_path, np.arange(12 * 1440) * 0.5 / 9000, each.ravel())
+    keys = ", angle_unit: s, recorded_speed: {:.7g} rpm"
+    (note,) = [one for one in notes_of(machine_text(file, keys.format(1515))) if "left out" not in one]
+    assert "the cycles wander" in note
+    change = float(re.findall(r"A 'recorded_speed' about ([0-9.]+)% lower", note)[0])
+    assert change == pytest.approx(100 * (1 - 1500 / 1515), rel=0.1)
+    assert notes_of(machine_text(file, keys.format(1515 * (1 - change / 100)))) == []
+
+
+STIRLING = Path(__file__).resolve().parents[2] / "shared" / "data" / "stirling_mpxv7002_gauge_kPa_cm3.csv"
+
+
+@pytest.mark.skipif(not STIRLING.is_file(), reason="the measured Stirling engine is not here")
+def test_a_measured_stirling_engine(tmp_path: Path) -> None:
+    """clnbtlr/StirlingEngine (MIT): gauge kPa over time, with the volume; the speed falls from 151 to 143 rpm.
+
+    Of eight turns at an even speed p_i is the loop of p over the measured V; of all the note tells that they wander.
+    """
+    rows = STIRLING.read_text().splitlines()
+    t, p, v = np.loadtxt(rows[1:302], delimiter=",").T
+    up = np.flatnonzero((v[:-1] < 0) & (v[1:] >= 0))
+    upward = t[up] - v[up] * (t[up + 1] - t[up]) / (v[up + 1] - v[up])
+    period = float(upward[-1] - upward[0]) / (len(upward) - 1)
+    stroke = float(np.ptp(v))
+    whole = slice(up[0], up[-1] + 1)
+    loop = float(np.sum(((p[1:] + p[:-1]) / 2 * np.diff(v))[whole])) / (len(up) - 1) / stroke
+    (tmp_path / "s.csv").write_text("\n".join(rows[:302]))
+    wave = np.exp(-2j * np.pi * t[whole] / period) @ v[whole]
+    zero = float((180 - np.degrees(np.angle(wave))) % 360)  # where the first harmonic of V is smallest
+    text = (
+        f"speed: {60 / period!r} rpm\nstroke: 10 mm\nrod_ratio: inf\nbore: 14.3 mm\nindicator: {{head_end: {{trace: "
+        "{file: '%s', unit: kPa, skip_rows: 1, angle_unit: s, recorded_speed: %r rpm, angle_zero: %r deg}}}\n"
+    )
+    text = text.replace("rod_ratio: inf", "rod: 1 m")
+    machine = loads(text % (tmp_path / "s.csv", 60 / period, zero))
+    found = Case(machine).cylinders[0]
+    assert found["mean_pressure"].value / 1e3 == pytest.approx(loop, rel=0.05)
+    assert [note.text for note in machine_notes(machine) if "left out" not in note.text] == []
+    notes = [note.text for note in machine_notes(loads(text % (STIRLING, 60 / period, zero)))]
+    assert any("the cycles wander" in note for note in notes)
