@@ -19,7 +19,7 @@ from kurbel.machine import Machine
 from kurbel.machine_file.source import Source
 from kurbel.numerics.extreme import Extreme
 
-CHUNK = 2000
+CHUNK = 1000
 """Rows that are computed together: what memory holds at once."""
 _FIRST = 20
 """Rows of the first chunk, so that a reader sees something at once."""

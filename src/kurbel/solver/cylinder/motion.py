@@ -192,8 +192,8 @@ class Motion:
             return None
         closed = self.mechanism.velocity_extremes()
         if closed:
-            angles = np.sort(np.stack([extreme.degrees for extreme in closed], axis=-1)).tolist()
-            return tuple(angles if self._count is None else map(tuple, angles))
+            angles = np.sort(np.stack([extreme.degrees for extreme in closed], axis=-1))
+            return tuple(angles.tolist() if angles.ndim == 1 else map(tuple, angles.tolist()))
         evaluate = _Evaluated(self.mechanism, _curvature)
         found = zeros(self._turn, evaluate.on(self._turn), evaluate)["it"]
         return tuple(found.tolist()) if self._count is None else found.of_each(self._count)
