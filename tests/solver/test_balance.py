@@ -14,6 +14,8 @@ from kurbel import loads
 from kurbel.errors import UsageError
 from kurbel.numerics.enclosing import smallest_circle
 from kurbel.numerics.fourier import coefficients
+from kurbel.solver.balance.best import least
+from kurbel.solver.balance.circles import Circles, unit_vectors
 from kurbel.solver.balance.machine_balance import MachineBalance
 from kurbel.solver.case import Case
 
@@ -425,6 +427,32 @@ def test_the_carriers_alone_have_the_same_smallest_circle(seed: int) -> None:
     circle = smallest_circle(points)
     assert max(abs(one - circle.centre) for one in points) == pytest.approx(circle.radius, rel=1e-12)
     assert smallest_circle(list(circle.carriers)).radius == pytest.approx(circle.radius, rel=1e-12)
+
+
+def random_circles(seed: int) -> Circles:
+    random = np.random.default_rng(seed)
+    forward, backward = ((random.normal(size=(5, 2)) @ [1, 1j]) * 0.3 ** np.arange(5) for _ in range(2))
+    return Circles(forward, backward)
+
+
+@pytest.mark.parametrize(
+    "products",
+    [balance_of(TWO_CRANKS).bare.force, balance_of(single(1.2)).bare.force, *map(random_circles, range(6))],
+)
+def test_no_weight_beside_the_best_one_leaves_less(products: Circles, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two cranks at 90° two points carry the circle and the third all but does: to exchange points alone took 17
+    rounds, each through the whole turn."""
+    turned: list[complex] = []
+    plainly = Circles.turned_by
+    monkeypatch.setattr(Circles, "turned_by", lambda self, weight: turned.append(weight) or plainly(self, weight))
+    found = least(products)
+    assert len(turned) <= 5
+    top = found.left.summits[0].value
+    assert np.abs(found.left.at(np.linspace(0, 360, 2001))).max() <= top * (1 + 1e-12)
+    for degrees in np.linspace(3, 318, 8):
+        for way in (1e-3, 1e-6):
+            aside = plainly(products, found.weight + way * top * complex(unit_vectors(degrees)))
+            assert aside.summits[0].value >= top * (1 - 1e-12)
 
 
 def test_wheels_need_to_know_where_the_cylinders_stand() -> None:
