@@ -115,15 +115,19 @@ class CylinderForces(Results):
         """Return the grid cut where the guide force changes sides, and where a force on a pin all but vanishes."""
         pins = self.drive.pin_friction
         if self.drive.crosshead_friction:
-            turns = zeros(grid, self._sides(grid.degrees, grid.within), self._sides)
-            grid = grid.split_at(np.concatenate(tuple(turns.values())))
+            # what makes pins rub bends where N changes sides without them; only beside that are the true turns exact
+            for rubs in (False, True) if pins else (True,):
+                grid = grid.split_at(self._turns(grid, rubs))
         return grid.split_at(pins.bends(grid)) if pins and self.drive.has_force else grid
 
-    def _sides(self, degrees: Array, within: Array) -> dict[str, Sampled]:
-        """Return what tells the sides of the guide force; what makes pins rub has it where they do not yet."""
-        state = self.drive.jets_at(degrees, within)
-        every = (state, state.unrubbed) if self.drive.pin_friction else (state,)
-        return {str(number): _sampled(one, ("guide_sense",))["guide_sense"] for number, one in enumerate(every)}
+    def _turns(self, grid: Grid, rubs: bool) -> Array:
+        """Return where the guide force changes sides; rubs: with the friction of the pins."""
+
+        def sides(degrees: Array, within: Array) -> dict[str, Sampled]:
+            state = self.drive.jets_at(degrees, within)
+            return _sampled(state if rubs else state.unrubbed, ("guide_sense",))
+
+        return zeros(grid, sides(grid.degrees, grid.within), sides)["guide_sense"]
 
     def _quantities(self, *names: str) -> Evaluate:
         return lambda degrees, within: _sampled(self.drive.jets_at(degrees, within), names)
