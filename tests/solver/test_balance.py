@@ -343,6 +343,23 @@ def test_a_locomotive() -> None:
     assert loco.train_speed == pytest.approx(10 * math.pi * 1.7)
 
 
+@pytest.mark.parametrize("speed", ["", "speed: 0 1/s"])
+def test_the_speed_at_which_a_wheel_lifts_does_not_hang_on_that_of_the_machine(speed: str) -> None:
+    """u ω² = Q: at 10 rev/s the hammer blow of u kg m is u (20π)² N."""
+    wheels = (
+        "locomotive={wheel_distance: 1.6 m, wheel_load: 80 kN, wheel_diameter: 1.7 m}",
+        "counterweights={share: 0.6}",
+    )
+    still = balance_of(TWO_CRANKS.replace("speed: 600 rpm", speed), *wheels).locomotive
+    turning = balance_of(TWO_CRANKS, *wheels).locomotive
+    assert still is not None
+    assert turning is not None
+    assert turning.hammer_blow is not None
+    assert still.hammer_speed == pytest.approx(10 * math.sqrt(80e3 / turning.hammer_blow), rel=1e-14)
+    assert still.hammer_train_speed == pytest.approx(still.hammer_speed * math.pi * 1.7, rel=1e-14)
+    assert (still.train_speed, still.hammer_blow, still.share_allowed) == (None, None, None)
+
+
 def test_the_book_beside_the_exact() -> None:
     found = balance_of(FOUR)
     assert found.book is not None

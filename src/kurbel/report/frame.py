@@ -31,7 +31,8 @@ class Subject(NamedTuple):
 
     results: what answers its key values, the first that knows one; at: takes crank angles (n,) in degrees and returns
     what answers its columns; lists: the quantities that it may have. left_out, warnings, place_tables: are made
-    when they are read; source: where its columns are told of, `angles_where`, None for what has no rows.
+    when they are read; source: where its columns are told of, `angles_where`, None for what has no rows; of: the
+    cylinder that a pin belongs to.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Subject(NamedTuple):
     warnings: Callable[[], Iterable[str]] = tuple
     place_tables: tuple[PlaceTable, ...] = ()
     source: Any = None
+    of: str = ""
 
     def says(self, quantity: Quantity) -> bool:
         """Whether a quantity says something new here."""
@@ -143,6 +145,7 @@ class Frame(NamedTuple):
             self._later(subject.warnings),
             subject.place_tables,
             nowhere,
+            subject.of,
         )
 
     def _later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:
