@@ -135,7 +135,7 @@ def counterweights(random: Random) -> Keys:
     if random.random() < 0.4:
         return {"counterweights": [counterweight(random) for _ in range(int(random.integers(0, 4)))]}
     planes = {"planes": [f"{number(random, -2, 0)} m", f"{number(random, 0, 2)} m"]}
-    return {"counterweights": {"share": number(random, 0, 1)} | maybe(random, 0.4, planes)}
+    return {"counterweights": {"share": number(random, 0, 1)} | maybe(random, 0.2, planes)}
 
 
 def balancing(random: Random) -> Keys:
@@ -162,7 +162,7 @@ def cylinder(random: Random, four: bool) -> Keys:
         ends = {"head_end": pressure(random, four)} | maybe(random, 0.4, {"crank_end": "mirrored"})
         keys |= {"indicator": {"pressures": str(random.choice(["gauge", "absolute"]))} | ends}
         keys |= maybe(random, 0.2, {"crank_end_rod": "20 mm"})
-    if slides and random.random() < 0.7:
+    if slides and random.random() < 0.85:
         masses: Keys = {str(random.choice(["piston", "reciprocating"])): size(random, 100, "kg")}
         if rod and "piston" in masses and random.random() < 0.6:
             exact = {
