@@ -19,20 +19,23 @@ from click.testing import CliRunner
 from kurbel.cli import kurbel
 
 FOLDER = Path(__file__).parent
-TABLE: dict[str, list[dict[str, Any]]] = yaml.safe_load((FOLDER / "answers.yaml").read_text(encoding="utf-8"))
+TABLE: dict[str, list[dict[str, Any]]] = yaml.load(
+    (FOLDER / "answers.yaml").read_text(encoding="utf-8"), getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+)
 ROWS = [{"file": example, **row} for example, rows in TABLE.items() for row in rows]
 ASKED = [row for row in ROWS if "ask" in row]
 FILES = sorted(path.stem for path in FOLDER.glob("*.yaml") if path.stem != "answers")
 POUND, POUND_FORCE, FOOT = 0.45359237, 4.4482216152605, 0.3048
 SI = {
-    **dict.fromkeys(("", "deg", "m", "m/s", "m/s2", "rad/s", "rad/s2", "kg", "kg m2", "N", "N m", "Pa"), 1.0),
+    **dict.fromkeys(("", "deg", "m", "m/s", "m/s2", "rad/s", "rad/s2", "kg", "kg m2", "N", "N m", "Pa", "Hz"), 1.0),
+    **dict.fromkeys(("rpm", "per min"), 1 / 60),
     **{"mm": 1e-3, "cm": 1e-2, "in/s": FOOT / 12, "kN": 1e3, "kW": 1e3, "percent": 1e-2, "cm3": 1e-6},
     **{"lb": POUND, "lbf": POUND_FORCE, "lb ft2": POUND * FOOT**2, "ton": 2240 * POUND},
     **{"hp": 550 * FOOT * POUND_FORCE, "PS": 735.49875},
 }
 QUESTION = re.compile(
-    r"(?P<command>\w+) (?:(?P<table>\w+)\.)?"
-    r"(?P<id>\w+)(?:\[(?P<nth>\d)\])?(?:(?P<at>@)(?P<angle>\d*))?(?: where (?P<where>.+))?"
+    r"(?P<command>\w+) (?:(?P<table>\w+)\.)?(?P<id>\w+)(?:\[(?P<nth>\d)\])?(?:\[(?P<rows>\w+=.+)\])?"
+    r"(?:(?P<at>@)(?P<angle>\d*))?(?: where (?P<where>.+))?"
 )
 
 
@@ -50,18 +53,37 @@ def answer(file: str, command: str, where: str | None) -> dict[str, Any]:
     angles = sorted({one["angle"] for one in asked if one["angle"]}, key=int) or ["0"]
     columns = {one["id"]: "" for one in asked if one["angle"] or where}
     arguments = [command, str(FOLDER / f"{file}.yaml"), "-f", "json"]
+    if any(one["rows"] for one in asked):
+        return answered(arguments)
     arguments += ["--where", where] if where else ["--angles", ",".join(angles)]
     arguments += ["--columns", ",".join(("phi", *columns))] if columns else []
+    return answered(arguments)
+
+
+def answered(arguments: list[str]) -> dict[str, Any]:
     result = CliRunner().invoke(kurbel, arguments)
     assert result.exit_code == 0, result.output
     parsed: dict[str, Any] = json.loads(result.stdout)
     return parsed
 
 
+def of_table(parsed: dict[str, Any], asked: dict[str, str | None]) -> list[float]:
+    """Return the values of a column in the rows of a table of the whole machine where others have these values."""
+    table = next(one for one in parsed["machine_place_tables"] if one["id"] == asked["table"])
+    columns = {one["id"]: one["values"] for one in table["columns"]}
+    rows = list(range(len(columns[str(asked["id"])])))
+    for condition in str(asked["rows"]).split("; "):
+        name, _, values = condition.partition("=")
+        rows = [row for value in values.split(",") for row in rows if columns[name][row] == float(value)]
+    return [columns[str(asked["id"])][row] for row in rows]
+
+
 def told(row: dict[str, Any]) -> Any:
     """Return what kurbel answers, in SI units: a number or a list of them."""
     asked = question(row)
     parsed = answer(row["file"], asked["command"] or "", asked["where"])
+    if asked["rows"]:
+        return of_table(parsed, asked)
     parts = [{key.removeprefix("machine_"): what for key, what in parsed.items()}, *parsed.get("cylinders", ())]
     if asked["table"]:
         table = next(one for part in parts for one in part.get("place_tables", ()) if one["id"] == asked["table"])

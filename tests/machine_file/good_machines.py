@@ -128,6 +128,21 @@ cylinders:
   - {name: A, crank: 100 mm, rod_ratio: 4, axial_position: 0 mm}
   - {like: A, axial_position: 90 mm, bank_angle: 90 deg}
 """
+SHAFT_LINE = """\
+crank: 100 mm
+rod_ratio: 4
+flywheel: {inertia: 3 kg m2}
+shaft:
+  - {cylinder: [cylinder 1], inertia: 1 kg m2, damping: 2 N m s/rad}
+  - {stiffness: 200 kN m/rad, diameter: 60 mm, loss_factor: 1 %}
+  - flywheel
+  - {diameter: 60 mm, bore: 20 mm, length: 400 mm, shear_modulus: 80 GPa, damping: 3 N m s/rad}
+  - {name: pinion, inertia: 0.1 kg m2}
+  - {gear: 1/2}
+  - {name: wheel, inertia: 0.4 kg m2, load: true}
+  - {diameter: 60 mm, length: 400 mm}
+  - ground
+"""
 BALANCED = """\
 speed: 250 rpm
 counterweights: {share: 1/3, planes: [-750 mm, 750 mm]}
@@ -148,5 +163,6 @@ ALL = {
     "effort": EFFORT,
     "equal cylinders": EQUAL,
     "like one": LIKE_ONE,
+    "shaft line": SHAFT_LINE,
     "balanced": BALANCED,
 }

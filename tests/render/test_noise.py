@@ -59,4 +59,5 @@ def test_only_residuals_are_taken_for_rounding() -> None:
     assert [name for name, quantity in KEY_VALUES.items() if quantity.residual] == [
         "energy_residual",
         "equilibrium_residual",
+        "holzer_residual",
     ]

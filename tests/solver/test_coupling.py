@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from scipy.integrate import solve_ivp, trapezoid
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.turning import Coupling, Effort, Load
-from kurbel.numerics.linear_collocation import around
-from kurbel.solver.turning.coupling import natural_frequency
+from kurbel.numerics.cyclic import around
+from kurbel.solver.shaft_line.modes import Modes
+from kurbel.solver.turning.coupling import coupled as chain_of
 from kurbel.solver.turning.flywheel import MachineTurning
 from turning_machines import of_points
 
@@ -37,7 +38,8 @@ def load_of(points: Points) -> Load:
 
 def test_natural_order() -> None:
     assert coupled(2.5).natural_order == pytest.approx(2.5, rel=1e-14)
-    assert natural_frequency(Coupling(stiffness=200.0, inertia=1e12), 8.0) == pytest.approx(5.0, rel=1e-9)
+    soft = chain_of(Coupling(stiffness=200.0, inertia=1e12), 8.0)
+    assert Modes(soft).omegas[1] == pytest.approx(5.0, rel=1e-9)
 
 
 def in_time(machine: MachineTurning, torque: Points, load: Points, own: float) -> np.ndarray:
@@ -73,7 +75,7 @@ def in_time(machine: MachineTurning, torque: Points, load: Points, own: float) -
     start = np.linalg.lstsq(np.eye(3) - state[:, 1:], state[:, 0], rcond=1e-9)[0]
     angles, states = np.concatenate(after), np.concatenate(rows) @ np.append(1.0, start)
     passed = states[:, 0] * scale + d * (states[:, 1] - states[:, 2])
-    mean = np.trapezoid(states[:, 1], angles) / cycle
+    mean = trapezoid(states[:, 1], angles) / cycle
     return np.stack((angles, passed, states[:, 1] - mean))
 
 
@@ -198,20 +200,70 @@ def test_no_inertia_before_the_coupling_is_refused() -> None:
     assert (uniform.J, uniform.delta) == (0, 0)
 
 
-@pytest.mark.parametrize("power", [-3.0, -1.0, 1.0, 2.0])
-def test_what_is_left_of_a_disturbance_after_a_turn(power: float) -> None:
-    """scipy marches the two linearised masses, J₁ ω̇₁ = −T, J₂ ω̇₂ = T − c ω₂, for a turn from three states."""
-    machine = coupled(2.5, damping=60.0, load=Load(power=power))
-    coupling, slope = machine.machine.coupling, power * machine.M_mean / OMEGA
+def under_a_law(machine: MachineTurning, torque: Points, law: Any, own: float) -> tuple[np.ndarray, np.ndarray]:
+    """Angles, torque in the coupling and ω₁ of the motion that repeats, and what a turn makes of small disturbances.
 
-    def rates(_: float, state: np.ndarray) -> list[float]:
-        twist, one, two = state
-        torque = coupling.stiffness * twist + coupling.damping * (one - two)
-        return [one - two, -torque / 60.0, (torque - slope * two) / coupling.inertia]
+    J₁ ω̇₁ = M − T and J₂ ω̇₂ = T − L(ω₂) with their variations, by scipy and Newton's method for the start.
+    law: L and its slope at ω₂.
+    """
+    coupling, omega = machine.machine.coupling, machine.omega
+    k, d, driven = coupling.stiffness, coupling.damping, coupling.inertia
+    corners = sorted({angle for angle, _ in torque})
 
-    after = [solve_ivp(rates, (0, 1), start, method="DOP853", rtol=1e-11, atol=1e-13).y[:, -1] for start in np.eye(3)]
-    assert machine.multiplier == pytest.approx(np.abs(np.linalg.eigvals(np.array(after))).max(), rel=1e-8)
-    assert (machine.multiplier > 1) == (power < 0)
+    def turn(start: np.ndarray, dense: bool = False) -> tuple[np.ndarray, list[np.ndarray]]:
+        state, rows = np.concatenate((start, np.eye(3).ravel())), []
+        for low, high in pairwise(corners):
+            first, last = np.interp([low + 1e-9, high - 1e-9], *zip(*torque))
+
+            def rates(
+                phi: float, flat: np.ndarray, low: float = low, high: float = high, ends: Any = (first, last)
+            ) -> np.ndarray:
+                (twist, one, two), varied = flat[:3], flat[3:].reshape(3, 3)
+                load, slope = law(two)
+                passed = k * twist + d * (one - two)
+                of_passed = np.array([k, d, -d])
+                driving = ends[0] + (phi - low) / (high - low) * (ends[1] - ends[0])
+                jacobian = np.array([[0, 1, -1], -of_passed / own, (of_passed - [0, 0, slope]) / driven])
+                here = np.array([one - two, (driving - passed) / own, (passed - load) / driven])
+                return np.concatenate((here, (jacobian @ varied).ravel())) * (math.pi / 180 / omega)
+
+            at = np.linspace(low, high, 20) if dense else None
+            solved = solve_ivp(rates, (low, high), state, method="DOP853", rtol=1e-13, atol=1e-14, t_eval=at)
+            state = solved.y[:, -1]
+            rows.append(np.vstack((solved.t, solved.y[:3])))
+        return state, rows
+
+    start = np.array([machine.M_mean / k, omega, omega])
+    for _ in range(8):
+        state, _ = turn(start)
+        start = start - np.linalg.solve(state[3:].reshape(3, 3) - np.eye(3), state[:3] - start)
+    state, rows = turn(start, dense=True)
+    angles, twist, one, two = np.hstack(rows)
+    return np.stack((angles, k * twist + d * (one - two), one)), state[3:].reshape(3, 3)
+
+
+LAWS = [Load(power=2.0), Load(power=-3.0), Load(power=0.5), Load(slip=0.05)]
+
+
+@pytest.mark.parametrize("load", LAWS, ids=lambda load: str(load.power or load.slip))
+@pytest.mark.parametrize("order", [0.8, 2.5])
+def test_two_masses_under_a_load_over_the_speed(load: Load, order: float) -> None:
+    """Where the effort jumps and the load is no straight line: nothing is taken as linear about the mean speed."""
+    machine = coupled(order, damping=60.0, load=load)
+    mean = machine.M_mean
+
+    def law(speed: float) -> tuple[float, float]:
+        if load.slip:
+            return mean * (1 + (speed / OMEGA - 1) / load.slip), mean / (load.slip * OMEGA)
+        return mean * (speed / OMEGA) ** load.power, load.power * mean * speed ** (load.power - 1) / OMEGA**load.power
+
+    (angles, torque, speed), after = under_a_law(machine, POINTS, law, 60.0)
+    inside = np.abs(angles[:, None] - np.array([a for a, _ in POINTS])).min(axis=1) > 1e-6
+    found = machine.at(angles[inside])
+    assert found.M_coupling == pytest.approx(torque[inside], abs=1e-9 * np.ptp(torque))
+    assert found.omega == pytest.approx(speed[inside], abs=1e-9 * np.ptp(speed))
+    assert machine.multiplier == pytest.approx(np.abs(np.linalg.eigvals(after)).max(), rel=1e-9)
+    assert (machine.multiplier > 1) == (load.power == -3.0)
 
 
 def test_a_load_without_a_speed_of_its_own_has_no_multiplier() -> None:

@@ -11,6 +11,7 @@ from mpmath import cos, findroot, mp, mpf, pi, sin, sqrt
 
 from kurbel.cli import kurbel
 from kurbel.machine_file import loads
+from kurbel.report.warnings import cylinder_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
@@ -125,3 +126,40 @@ def test_a_sum_of_masses_is_taken_whole_and_that_is_said() -> None:
 def test_api_618_is_quoted_where_either_half_of_its_rule_is_broken() -> None:
     assert "API 618 asks for 15 deg and 3 %" in " ".join(run("check", "-", file=RLO5).stdout.split())
     assert "asks for 15 deg" not in run("check", "-", file=RLO1).stdout
+
+
+ALWAYS_PRESSED = """
+speed: 300 rpm
+stroke: 200 mm
+rod_ratio: 5
+bore: 150 mm
+indicator:
+  pressures: absolute
+  head_end:
+    compressor: {suction: 3 bar, delivery: 8 bar, clearance: 0.1, exponent: 1.3}
+"""
+MOTORED = """
+cycle: four-stroke
+speed: 750 rpm
+stroke: 180 mm
+rod_ratio: 4
+bore: 150 mm
+indicator:
+  pressures: absolute
+  head_end:
+    unit: bar
+    clearance: 0.08
+    interpolate: polytropic
+    intake: [[0, 0.95], [1, 0.95]]
+    compression: [[1, 0.95], [0, 28]]
+    expansion: [[0, 26], [1, 0.9]]
+    exhaust: [[1, 1.05], [0, 1.05]]
+"""
+
+
+def test_a_motored_engine_is_no_compressor() -> None:
+    """Its gas work is negative, as a compressor's, but nobody judges it by the rod load of compressors."""
+    forces = Case(loads(f"{MOTORED}masses: {{piston: 3 kg}}\n")).cylinders[0]
+    assert forces.work < 0
+    assert [one for one in cylinder_warnings(forces) if "rod load" in one] == []
+    assert [one for one in cylinder_warnings(Case(loads(ALWAYS_PRESSED)).cylinders[0]) if "rod load" in one]

@@ -109,7 +109,9 @@ class Output(NamedTuple):
         write_report(report, self.look, self.file_name)
 
 
-def _stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    """Return what gives a command these options, in this order of its help."""
+
     def decorate(command: Command) -> Command:
         for option in reversed(options):
             command = option(command)
@@ -126,10 +128,10 @@ set_option = click.option(
     shell_complete=complete_override,
     help="This value instead of that of FILE, such as cylinders.0.bore='450 mm'; may be repeated.",
 )
-machine_file = _stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_option)
+machine_file = stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_option)
 """The machine file, or - for standard input, and values over those in it."""
 
-angle_options = _stacked(
+angle_options = stacked(
     click.option(
         "--step", type=Number(), default=10.0, metavar="DEGREES", help="Step of the crank angle; 10 if not given."
     ),
@@ -146,7 +148,7 @@ columns_option = click.option(
     help="Only these columns, by id or symbol, in this order.",
     shell_complete=complete_columns,
 )
-_part_options = _stacked(
+_part_options = stacked(
     click.option(
         "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
     ),
@@ -161,7 +163,7 @@ units_option = click.option(
 width_option = click.option(
     "--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill; a terminal's own if not given."
 )
-_look_options = _stacked(
+_look_options = stacked(
     click.option(
         "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
     ),
@@ -186,7 +188,14 @@ _look_options = _stacked(
 )
 
 
-_SUFFIXES = {".csv": "csv", ".json": "json", ".md": "markdown", ".markdown": "markdown"}
+_SUFFIXES = {
+    ".csv": "csv",
+    ".json": "json",
+    ".md": "markdown",
+    ".markdown": "markdown",
+    ".html": "html",
+    ".tex": "latex",
+}
 
 
 def format_of(asked: str | None, file_name: str | None) -> str:
@@ -277,20 +286,31 @@ class Asked(NamedTuple):
         self.output.write(report.key_values_alone() if self.key_values_only else report)
 
 
+def machine_places(command: Callable[..., None]) -> Callable[..., Any]:
+    """Give a command FILE and the options of one that tells nothing over the crank angle; see `machine_table`."""
+    return stacked(machine_file, _part_options, units_option)(output_options(_with_asked(command)))
+
+
 def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
     """Give a command FILE and all options of a table, which reach it as one `asked: Asked`."""
+    return stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
+        output_options(_with_asked(command))
+    )
+
+
+def _with_asked(command: Callable[..., None]) -> Callable[..., Any]:
 
     @wraps(command)
     def with_asked(
         file: str,
         overrides: tuple[str, ...],
-        step: float,
-        angles: tuple[float, ...] | None,
-        columns: tuple[str, ...] | None,
         units: str | None,
         cylinder: str | None,
         key_values_only: bool,
         output: Output,
+        step: float = 10.0,
+        angles: tuple[float, ...] | None = None,
+        columns: tuple[str, ...] | None = None,
         **others: Any,
     ) -> None:
         system = units or ("si" if output.look.format in ("csv", "json") else "metric")
@@ -300,6 +320,4 @@ def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
         with told_in(units or "metric"):
             command(asked=asked, **others)
 
-    return _stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
-        output_options(with_asked)
-    )
+    return with_asked

@@ -29,6 +29,7 @@ SIZES: dict[str, tuple[float, float]] = {
     "time": (1e-12, 1e12),
     "angle": (0, 1e6),
     "speed": (1e-9, 1e6),
+    "frequency": (1e-9, 1e9),
     "angular_velocity": (0, 1e9),
     "angular_acceleration": (0, 1e18),
     "velocity": (0, 1e15),

@@ -12,6 +12,7 @@ from kurbel.declared.indicated import INDICATED_COLUMNS, INDICATED_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.rod_load import ROD_COLUMNS, ROD_VALUES
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
+from kurbel.declared.torsion import HARMONIC_VALUES, TORSION_COLUMNS, TORSION_VALUES
 
 _FORCES, _FLYWHEEL, _STRESS = ("forces",), ("flywheel",), ("stress",)
 _motion = partial(Quantity, commands=("motion", "forces"))
@@ -27,7 +28,7 @@ _COLUMNS = (
         "angle",
         "Crank angle from the inner dead centre, in the sense of rotation",
         "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "bearings", "balance"),
+        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "bearings", "balance", "torsion"),
     ),
     _motion(
         "z",
@@ -156,6 +157,7 @@ _COLUMNS = (
     *STRENGTH_COLUMNS,
     *BEARING_COLUMNS,
     *BALANCE_COLUMNS,
+    *TORSION_COLUMNS,
 )
 
 
@@ -263,7 +265,13 @@ _WORK_VALUES = (
         "dA/A",
         residual=True,
     ),
-    _flywheel("M_mean", "M_m", "torque", "Mean torque of the turning effort: the resistance"),
+    Quantity(
+        "M_mean",
+        "M_m",
+        "torque",
+        "Mean torque of the turning effort: the resistance",
+        commands=(*_FLYWHEEL, "harmonics"),
+    ),
     _flywheel("work_shaft", "A", "energy", "Work of the turning effort per cycle"),
     _flywheel("power_shaft", "N_e", "power", "Power at the shaft, mean torque times nominal angular velocity"),
 )
@@ -331,6 +339,8 @@ class Lists(NamedTuple):
             *STRENGTH_VALUES,
             *BEARING_VALUES,
             *BALANCE_VALUES,
+            *HARMONIC_VALUES,
+            *TORSION_VALUES,
         )
         return cls(found, placed((*common, *key_values)))
 

@@ -19,6 +19,7 @@ SI = {
     "time": "s",
     "angle": "deg",
     "speed": "1/s",
+    "frequency": "Hz",
     "angular_velocity": "rad/s",
     "angular_acceleration": "rad/s^2",
     "velocity": "m/s",

@@ -108,6 +108,7 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
         "Hz": (1, 1),
         "rad/s": (1, 2 * math.pi),
     },
+    "frequency": lambda: {"Hz": (1, 1), "1/s": (1, 1), "kHz": (1e3, 1), "1/min": (1, 60)},
     "angular_velocity": lambda: {"rad/s": (1, 1)},
     "angular_acceleration": lambda: {"rad/s2": (1, 1)},
     "velocity": lambda: _product(_LENGTH, _TIME, "/"),

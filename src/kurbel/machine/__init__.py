@@ -27,17 +27,20 @@ from kurbel.declared.forms import (
     Text,
 )
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.errors import Fault, refuse
+from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder, crowded
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from kurbel.declared.forms.figures import Expected
     from kurbel.declared.quantity import Quantity
     from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.equal import EqualCylinders
     from kurbel.machine.origin import Origin
+    from kurbel.machine.shaft_line import ShaftLine, ShaftPart
     from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
@@ -68,6 +71,15 @@ def _standing(
     return cylinders.standing(order, degrees)
 
 
+def _shaft_line(parts: tuple[ShaftPart | str, ...], cylinders: list[str]) -> ShaftLine:
+    from kurbel.machine.shaft_line import ShaftLine
+
+    try:
+        return ShaftLine.of_parts(parts, cylinders)
+    except RuleError as error:
+        raise RuleError(*(fault.below(("shaft",)) for fault in error.faults)) from None
+
+
 @dataclass(frozen=True, eq=False)
 class Machine(Described):
     """A whole machine.
@@ -95,6 +107,7 @@ class Machine(Described):
     balance_shafts: tuple[BalanceShaft, ...] = ()
     moment_reference: float | None = None
     locomotive: Locomotive | None = None
+    shaft: ShaftLine | None = None
     limits: tuple[tuple[str, float], ...] = ()
     expect: tuple[tuple[str, Expected], ...] = ()
     rotation: str | None = None
@@ -186,6 +199,13 @@ class Machine(Described):
             "Driven wheels, for hammer blow and swaying couple",
             absent="no locomotive",
         ),
+        "shaft": Key(
+            Listing(OneOf(Choice(("ground", "flywheel")), Record("kurbel.machine.shaft_line:ShaftPart"))),
+            "Shaft line for torsional vibration, read along the shaft: masses, pieces between them, one pair of gears, "
+            "and the words `flywheel`, that of the machine, and `ground`, a fixed end",
+            absent="no torsional vibration",
+            also=("shaft_line", "torsion"),
+        ),
         "limits": Key(Limits(_key_values), "Bounds for key values, checked by `kurbel check`", absent="none"),
         "expect": Key(
             Expectations(_key_values), "Figures that key values are to meet, compared by `kurbel check`", absent="none"
@@ -201,6 +221,7 @@ class Machine(Described):
         load: Load | str | None = None,
         kurbel: int = FORMAT,
         brake_torque: float | None = None,
+        shaft: tuple[ShaftPart | str, ...] | None = None,
         **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
@@ -212,10 +233,12 @@ class Machine(Described):
         if firing_order or not isinstance(given, tuple):
             given = _standing(given, firing_order, keys.get("cycle", "two-stroke"))
         named = tuple(c if c.name else replace(c, name=f"cylinder {i}") for i, c in enumerate(given, 1))
+        if shaft is not None:
+            keys["shaft"] = _shaft_line(shaft, [cylinder.name for cylinder in named])
         return cls(named, load=None if isinstance(load, str) else load, **keys)
 
     def __post_init__(self) -> None:
-        if not self.cylinders and self.effort is None:
+        if not self.cylinders and self.effort is None and self.shaft is None:
             message = "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"
             refuse(Fault((), f"{message}, or 'effort', a turning-moment diagram known from elsewhere"))
         if self.cylinders and self.effort is not None:
@@ -232,7 +255,16 @@ class Machine(Described):
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
                 faults.append(Fault((key, getattr(diagram, "key", "points")), message))
-        refuse(*faults)
+        refuse(*faults, *self._shaft_faults())
+
+    def _shaft_faults(self) -> Iterator[Fault]:
+        if self.shaft is None:
+            return
+        if self.coupling is not None:
+            message = "'coupling' is a shaft line of two masses, and 'shaft' another one; leave one of them out"
+            yield Fault(("coupling",), message)
+        if any(mass.flywheel for mass in self.shaft.masses) and not (self.flywheel and self.flywheel.inertia):
+            yield Fault(("shaft",), "the shaft line has a 'flywheel'; give the machine one with its 'inertia'")
 
     def _cycle_faults(self, index: int) -> list[Fault]:
         """A four-stroke cycle needs four-line cards, a two-stroke one two-line cards; some need absolute pressures."""

@@ -20,6 +20,7 @@ from kurbel.numerics.extreme import Extreme
 if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle
     from kurbel.mechanisms.coupler import Coupler
+    from kurbel.mechanisms.sketch import Sketch
 
 MECHANISMS = {
     "slider-crank": Record("kurbel.mechanisms.slider_crank:SliderCrank"),
@@ -85,8 +86,9 @@ class Mechanism(Described):
 
     A class without one of these is refused. All else has an answer here that a mechanism may better: `crank_angles_at`,
     the inverse of `coordinate`; `landmarks`, where its functions bend sharply; the connecting rod, the radial force;
-    closed extremes; `lacks` and `notes`. What only some mechanisms have (a swinging lever, a sliding block, a coupler)
-    they hand out as columns in OFFERS and key values in KEY_OFFERS. Nobody asks for the class of a mechanism.
+    closed extremes; `sketch`, what is drawn of it; `lacks` and `notes`. What only some mechanisms have (a swinging
+    lever, a sliding block, a coupler) they hand out as columns in OFFERS and key values in KEY_OFFERS. Nobody asks for
+    the class of a mechanism.
     """
 
     KEYS: ClassVar[Keys]
@@ -170,9 +172,11 @@ class Mechanism(Described):
         inner, outer = (np.full_like(way, degrees) for degrees in self.dead_centres())
         ends = ((inner, -way), (outer, self.stroke - way))
         (low, f_low), (high, f_high) = ends if outstroke else (ends[1], (inner + 360.0, -way))
-        return bracketed_roots(
+        found = bracketed_roots(
             lambda degrees: self.coordinate(CrankAngle.of(degrees)) - self.start - way, low, high, f_low, f_high
         )
+        # beside a dead centre the rounding of the coordinate leaves 1e-6 degrees open
+        return np.where(f_low == 0, low, np.where(f_high == 0, high, found))
 
     def landmarks(self) -> tuple[float, ...]:
         """Return the crank angles in degrees, besides the dead centres, at which searches should split."""
@@ -209,6 +213,10 @@ class Mechanism(Described):
 
     def coupler_at(self, angle: CrankAngle) -> Coupler | None:
         """Return how the connecting rod or coupler on the crank pin lies and turns, or None where there is none."""
+        return None
+
+    def sketch(self, angle: CrankAngle) -> Sketch | None:
+        """Return what is drawn of the mechanism at the crank angle, or None where that cannot be drawn."""
         return None
 
     @property

@@ -15,6 +15,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
 from kurbel.mechanisms import crank_formulas as formulas
+from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.numerics.arithmetic import sqrt, where
 from kurbel.numerics.extreme import Extreme
 
@@ -102,12 +103,13 @@ class SliderCrank(Mechanism):
         rod: float | None = None,
         rod_ratio: float | None = None,
         offset: float = 0.0,
+        **others: float,
     ) -> SliderCrank:
         """Return the slider-crank that these keys of a machine file describe; raises RuleError."""
         if crank is None:
             assert stroke is not None
             crank = _crank_of_stroke(stroke, rod, rod_ratio, offset)
-        return cls(crank, rod if rod is not None else crank * (rod_ratio or math.inf), offset)
+        return cls(crank, rod if rod is not None else crank * (rod_ratio or math.inf), offset, **others)
 
     def __post_init__(self) -> None:
         if not (0 < self.crank < math.inf and self.rod > 0 and math.isfinite(self.offset)):
@@ -197,6 +199,22 @@ class SliderCrank(Mechanism):
         slope = formulas.rod_slope(angle.cos, cos_psi, self.lam)
         return Coupler(-sin_psi, cos_psi, -slope, -formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.lam))
 
+    def sketch(self, angle: CrankAngle) -> Sketch | None:
+        """Return crank, rod and crosshead, whose line runs e beside the shaft; of an infinite rod, None."""
+        if math.isinf(self.rod):
+            return None
+        pin, far = on_circle(self.crank, angle.cos, angle.sin), self.rod * self._reaches[0]
+        guide = ((far - self.stroke, self.offset), (far, self.offset))
+        return Sketch(
+            {SHAFT: (0.0, 0.0), PIN: pin, "crosshead": (far - self.coordinate(angle), self.offset)},
+            ((SHAFT, PIN), (PIN, "crosshead")),
+            (SHAFT,),
+            guides=(guide,),
+            output="crosshead",
+            toward=(-1.0, 0.0),
+            across=(0.0, -1.0),
+        )
+
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0."""
         if self._straight:
@@ -241,6 +259,7 @@ class SliderCrank(Mechanism):
         """Return the crank angles in degrees at which x (n,) in m is passed on the outstroke or the return stroke.
 
         From the triangle shaft, pin, crosshead by half angles, so that no digit is lost beside the dead centres.
+        Cards over the stroke ask it for every point, of every design of a sweep: a search takes fifty times as long.
         """
         import numpy as np
 

@@ -1,4 +1,4 @@
-"""Periodic solutions of z′ = f(φ, z) by collocation: Radau IIA of 11 stages on elements that refine themselves.
+"""Periodic solutions of y′ = f(φ, y) by collocation: Radau IIA of 11 stages on elements that refine themselves.
 
 Radau IIA is L-stable: what relaxes within a hair of a turn is damped out, where Gauss or trapezium rules would ring.
 The whole cycle is solved at once, so that it does not matter how many turns a marching method would need to settle.
@@ -11,42 +11,45 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from kurbel.numerics.cyclic import around
 from kurbel.numerics.elements import STAGES, Elements, Prepared, rule
 from kurbel.numerics.legendre import legendre
-from kurbel.numerics.linear_collocation import around
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Flags
 
 _TOLERANCE = 1e-13
-"""What the last two Legendre coefficients of an element may be, over the swing of z."""
+"""What the last two Legendre coefficients of an element may be, over the swing of the unknown."""
 _ROUNDS = 60
 _MOST_ELEMENTS = 20_000
 
 
 class Equation(Prepared, Protocol):
-    """z′ = f(φ, z), smooth between its breaks. z may not fall to `floor(φ)`; `noise` in z is not looked into."""
+    """y′ = f(φ, y) with m unknowns y of about one size, smooth between its breaks.
+
+    y may not fall to `floor(φ)`; `noise` in y is not looked into.
+    """
 
     noise: float
 
-    def rate(self, prepared: Array, z: Array) -> tuple[Array, Array]:
-        """Return f and ∂f/∂z, per radian."""
+    def rate(self, prepared: Array, y: Array) -> tuple[Array, Array]:
+        """Return f and ∂f/∂y, per radian, at y (k, n, m): (k, n, m) and (k, n, m, m)."""
         ...
 
     def floor(self, prepared: Array) -> Array:
-        """Return what z must stay above."""
+        """Return what y must stay above, (k, n, m), −∞ where nothing bounds it."""
         ...
 
     def eased(self, by: float) -> Equation:
-        """Return the equation made tamer, from 0 on without end: its floor is lower by so much, and z moves it less."""
+        """Return the equation made tamer, from 0 on without end: its floor is lower by so much, and y moves it less."""
         ...
 
 
 class Periodic(NamedTuple):
-    """A periodic solution: Legendre coefficients (k, s + 1) on elements.
+    """A periodic solution: Legendre coefficients (k, m, s + 1) on elements.
 
-    start, values: z at the starts (k,) and at the nodes (k, s) of the elements; growth: ∮ ∂f/∂z dφ, the logarithm of
-    what is left of a small disturbance after the cycle (Floquet).
+    start, values: y at the starts (k, m) and at the nodes (k, s, m) of the elements; growth: the logarithm of what is
+    left of a small disturbance after the cycle (Floquet).
     """
 
     elements: Elements
@@ -56,19 +59,19 @@ class Periodic(NamedTuple):
     growth: float
 
     def at(self, degrees: Array, within: Array) -> Array:
-        """Return z at angles (n,) in degrees, from the elements that hold `within`."""
-        return self.elements.at(self.coefficients[:, None], degrees, within)[..., 0]
+        """Return y at angles (n,) in degrees, from the elements that hold `within`, (n, m)."""
+        return self.elements.at(self.coefficients, degrees, within)
 
 
-def periodic(equation: Equation, breaks: Array) -> Periodic:
-    """Return the solution of z′ = f(φ, z) with the period of the breaks (n + 1,) in degrees.
+def periodic(equation: Equation, elements: Elements, unknowns: int = 1) -> Periodic:
+    """Return the solution of y′ = f(φ, y) with the period of these elements.
 
-    Newton's method starts from z = 0; where that leads nowhere, from a solution of an eased equation, which is followed
-    back to the given one.
-    Raises Standstill where z falls to its floor on that way, and Unsettled where the way ends before it does.
+    Newton's method starts from y = 0; where that leads nowhere, from a solution of an eased equation, which is followed
+    back to the given one. What a linear equation leaves open is as small as can be.
+    Raises Standstill where y falls to its floor on that way, and Unsettled where the way ends before it does.
     """
-    elements = Elements.over(breaks)
-    guess = _Guess(elements, np.zeros_like(elements.low), np.zeros_like(elements.degrees))
+    start, values = np.zeros((len(elements.low), unknowns)), np.zeros((*elements.degrees.shape, unknowns))
+    guess = _Guess(elements, start, values)
     with np.errstate(all="ignore"):  # a step too far may overflow; it is taken back
         try:
             return _settled(equation, guess)
@@ -77,7 +80,7 @@ def periodic(equation: Equation, breaks: Array) -> Periodic:
 
 
 class Unsettled(Exception):
-    """No solution is found; enough: how far to ease the equation for one, in the unit of z, or None if not known."""
+    """No solution is found; enough: how far to ease the equation for one, in the unit of y, or None if not known."""
 
     def __init__(self, enough: float | None = None) -> None:
         super().__init__("no periodic solution found")
@@ -85,7 +88,7 @@ class Unsettled(Exception):
 
 
 class Standstill(Unsettled):
-    """z falls to its floor near an angle in degrees; enough: see `Unsettled`."""
+    """y falls to its floor near an angle in degrees; enough: see `Unsettled`."""
 
     def __init__(self, degrees: float, enough: float | None = None) -> None:
         super().__init__(enough)
@@ -93,7 +96,7 @@ class Standstill(Unsettled):
 
 
 class _Guess(NamedTuple):
-    """Elements, with z at their starts (k,) and at their nodes (k, s)."""
+    """Elements, with y at their starts (k, m) and at their nodes (k, s, m)."""
 
     elements: Elements
     start: Array
@@ -107,12 +110,14 @@ _SHORTEST = 0.998
 """Largest and smallest cut of that depth, on the way back."""
 _MOST_STEPS = 60
 _STANDING = 0.05
-"""z − floor, over that of z = 0, that is taken for standing still where the way back ends."""
+"""y − floor, over that of y = 0, that is taken for standing still where the way back ends."""
 
 
 def _followed(equation: Equation, guess: _Guess) -> Periodic:
     """Follow the solution from a deep floor up to that of the equation."""
     own = -float(equation.floor(guess.elements.prepared(equation)).max())
+    if not math.isfinite(own):
+        raise Unsettled
     found, depth = _tame(equation, guess, own)
     factor = _STEP
     for _ in range(_MOST_STEPS):
@@ -145,7 +150,7 @@ def _end_of(equation: Equation, found: Periodic, enough: float) -> Unsettled:
     share = 1 - found.values / floor
     if share.min() > _STANDING:
         return Unsettled(enough)
-    return Standstill(float(found.elements.degrees.ravel()[np.argmin(share)]), enough)
+    return Standstill(float(found.elements.degrees.ravel()[np.argmin(share.min(axis=2))]), enough)
 
 
 def _settled(equation: Equation, guess: _Guess) -> Periodic:
@@ -155,24 +160,53 @@ def _settled(equation: Equation, guess: _Guess) -> Periodic:
     for _ in range(_ROUNDS):
         start, values = _newton(equation, elements, prepared, start, values)
         whole = np.concatenate((start[:, None], values), axis=1)
-        coefficients = whole @ rule().to_legendre.T
-        rough = np.abs(coefficients[:, -2:]).sum(axis=1) > _tolerance(whole) + equation.noise
+        coefficients = np.asarray(np.einsum("ns,ksm->kmn", rule().to_legendre, whole))
+        least = _tolerance(whole) + equation.noise
+        rough = (np.abs(coefficients[..., -2:]).sum(axis=2) > least).any(axis=1)
         rough &= elements.width > 1e-16 * float(elements.low[-1] + elements.width[-1])
         if not rough.any():
-            growth = np.radians(elements.width)[:, None] * equation.rate(prepared, values)[1]
-            return Periodic(elements, coefficients, start, values, float((growth @ rule().matrix[-1]).sum()))
+            growth = _growth(np.radians(elements.width), equation.rate(prepared, values)[1])
+            return Periodic(elements, coefficients, start, values, growth)
         elements, start, values, prepared = _refined(equation, elements, prepared, coefficients, rough)
         if len(elements.width) > _MOST_ELEMENTS:
             break
     raise Unsettled
 
 
-def _tolerance(values: Array) -> float:
-    return float(_TOLERANCE * np.ptp(values) + 4e-15 * np.abs(values).max())
+def _tolerance(values: Array) -> Array:
+    return np.asarray(_TOLERANCE * np.ptp(values, axis=(0, 1)) + 4e-15 * np.abs(values).max())
+
+
+def _growth(width: Array, slope: Array) -> float:
+    """Return the logarithm of the largest Floquet multiplier; slope: ∂f/∂y at the nodes (k, s, m, m)."""
+    if slope.shape[-1] == 1:  # ∮ ∂f/∂z dφ, which holds however fast a disturbance dies
+        return float((width[:, None] * slope[..., 0, 0] @ rule().matrix[-1]).sum())
+    whole, size = np.eye(slope.shape[-1]), 0.0
+    for gain in _gains(width[:, None, None, None] * slope):
+        whole = gain[-1] @ whole
+        largest = float(np.abs(whole).max()) or 1.0
+        whole, size = whole / largest, size + math.log(largest)
+    return size + math.log(float(np.abs(np.linalg.eigvals(whole)).max()) or 5e-324)
+
+
+def _gains(stiffness: Array) -> Array:
+    """Return what unit changes at the start of each element make of the nodes, (k, s, m, m)."""
+    return _answers(stiffness, np.zeros(stiffness.shape[:-1]))[1]
+
+
+def _answers(stiffness: Array, residual: Array) -> tuple[Array, Array]:
+    """Return the changes at the nodes that answer a residual (k, s, m), and to unit changes at the start."""
+    count, stages, size = residual.shape
+    coupled = rule().matrix[None, :, None, :, None] * np.moveaxis(stiffness, 2, 1)[:, None]
+    systems = np.eye(stages * size) - coupled.reshape(count, stages * size, stages * size)
+    starts = np.broadcast_to(np.eye(size), (count, stages, size, size))
+    sides = np.concatenate((residual[..., None], starts), axis=3).reshape(count, stages * size, size + 1)
+    found: Array = np.asarray(np.linalg.solve(systems, sides), dtype=float).reshape(count, stages, size, size + 1)
+    return found[..., 0], found[..., 1:]
 
 
 class _State(NamedTuple):
-    """Where Newton's method stands: z, its slope of the rate times the width, and what the equations still lack."""
+    """Where Newton's method stands: y, the slope of its rate times the width, and what the equations still lack."""
 
     start: Array
     values: Array
@@ -190,14 +224,15 @@ def _newton(
     equation: Equation, elements: Elements, prepared: Array, start: Array, values: Array
 ) -> tuple[Array, Array]:
     """Solve the collocation equations of all elements by Newton's method, with steps that make what is lacking less."""
-    height = np.radians(elements.width)[:, None]
+    height = np.radians(elements.width)[:, None, None]
     floor = equation.floor(prepared)
-    least = -floor.max()
+    height_above = -floor.max(axis=(0, 1))
+    least = float(height_above[np.isfinite(height_above)].max(initial=0.0))
 
     def state(start: Array, values: Array) -> _State:
         rate, slope = equation.rate(prepared, values)
-        residual = start[:, None] + height * (rate @ rule().matrix.T) - values
-        return _State(start, values, height * slope, residual, np.roll(values[:, -1], 1) - start)
+        residual = start[:, None] + height * (rule().matrix @ rate) - values
+        return _State(start, values, height[..., None] * slope, residual, np.roll(values[:, -1], 1, axis=0) - start)
 
     at, previous = state(start, values), np.inf
     for _ in range(100):
@@ -205,8 +240,8 @@ def _newton(
             break
         step_start, step = _linear_step(at)
         size = float(np.abs(step).max())
-        # high above its floor z is moved as a whole by rounding, though by nothing beside that height
-        near = max(1e-9 * np.ptp(at.values + step), 1e-14 * least)
+        # high above its floor y is moved as a whole by rounding, though by nothing beside that height
+        near = max(1e-9 * float(np.ptp(at.values + step, axis=(0, 1)).max()), 1e-14 * least)
         share = _allowed(at.values - floor, step)
         after = state(at.start + share * step_start, at.values + share * step)
         while size > near and not after.lack <= (1 - share / 8) * at.lack and share > 1e-6:
@@ -226,16 +261,15 @@ def _linear_step(at: _State) -> tuple[Array, Array]:
 
     In one element δ = response + gain δ_start; its last node is the start of the next one.
     """
-    systems = np.eye(STAGES) - rule().matrix * at.stiffness[:, None, :]
-    sides = np.stack((at.residual, np.ones_like(at.residual)), axis=-1)
     try:
-        response, gain = np.moveaxis(np.linalg.solve(systems, sides), -1, 0)
+        response, gain = _answers(at.stiffness, at.residual)
         # δ_start of element k + 1 is more[k] + gain[k] δ_start(k)
-        more = response[:, -1:] + np.roll(at.jump, -1)[:, None]
-        step_start = around(-gain[:, -1:, None], np.ones((len(more), 1, 1)), more)[:, 0]
+        more = response[:, -1] + np.roll(at.jump, -1, axis=0)
+        ends = gain[:, -1]
+        step_start = around(-ends, np.broadcast_to(np.eye(ends.shape[-1]), ends.shape), more)
     except np.linalg.LinAlgError:  # singular, or beyond the range of floats
         raise Unsettled from None
-    return step_start, response + gain * step_start[:, None]
+    return step_start, response + np.einsum("ksij,kj->ksi", gain, step_start)
 
 
 def _allowed(room: Array, step: Array) -> float:
@@ -249,9 +283,9 @@ def _refined(
 ) -> tuple[Elements, Array, Array, Array]:
     """Cut the rough elements; values on the new ones come from the polynomials of the old."""
     finer, old, places = elements.cut(rough)
-    whole = np.einsum("kin,kn->ki", legendre(places, STAGES), coefficients[old])
+    whole = np.einsum("kin,kmn->kim", legendre(places, STAGES), coefficients[old])
     new = rough[old]
     prepared = prepared[:, old]
     prepared[:, new] = Elements(*(of[new] for of in finer)).prepared(equation)
-    values = np.where(new[:, None], np.maximum(whole[:, 1:], 0.99 * equation.floor(prepared)), whole[:, 1:])
+    values = np.where(new[:, None, None], np.maximum(whole[:, 1:], 0.99 * equation.floor(prepared)), whole[:, 1:])
     return finer, whole[:, 0], values, prepared

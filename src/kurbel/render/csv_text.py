@@ -81,8 +81,9 @@ def _place_rows(report: Report, look: Look) -> Iterator[list[str]]:
     tables = [(part, table) for part in report.all_parts for table in part.place_tables]
     heads = list(dict.fromkeys(name for _, table in tables for name in table.heads))
     columns = list(dict.fromkeys(head(column) for _, table in tables for column in table.columns))
-    named = report.group == "scenes"
-    yield [*(["scene"] if named else []), "table", *heads, *columns]
+    scenes = report.group == "scenes"
+    named = scenes or any(part is not tables[0][0] for part, _ in tables)
+    yield [*(["scene" if scenes else "cylinder"] if named else []), "table", *heads, *columns]
     for part, table in tables:
         texts = {head(column): [_number(v, look.digits, look) for v in column.values] for column in table.columns}
         texts |= {

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import Line, Piece, line
-from kurbel.render.numbers import alone, angle, cell, scale_of
+from kurbel.render.numbers import Scale, alone, angle, cell, scale_of
 from kurbel.render.prose import folded
 
 if TYPE_CHECKING:
@@ -63,26 +63,33 @@ def cells_of(table: PlaceTable, look: Look) -> Cells:
     """
     blank = "_" if table.headed else " "
     names = tuple(tuple(look.charset.text(name.replace("_", blank)) for name in row) for row in table.names)
+    sharing = [column for column in table.columns if not _own_scale(column)]
     scales = {
-        unit: scale_of((v for c in table.columns if c.unit == unit for v in c.values), look.digits)
-        for unit in {column.unit for column in table.columns if not column.alone}
+        unit: scale_of((v for column in sharing if column.unit == unit for v in column.values), look.digits)
+        for unit in {column.unit for column in sharing}
     }
 
     def text(value: Value, column: Column) -> str:
         if value is None:
             return look.charset.no_value
+        if column.decimals is not None:
+            return cell(value, Scale(column.decimals), look.comma)
         if column.alone:
             number, power = alone(value, look.digits or column.alone, look.comma)
             return number + (look.charset.times_power(power) if power else "")
         return angle(value, look.comma) if column.unit == "deg" else cell(value, scales[column.unit], look.comma)
 
     def unit_of(column: Column) -> str:
-        own = column.alone or column.unit == "deg"
+        own = _own_scale(column) or column.unit == "deg"
         return look.charset.unit(column.unit, 0 if own else scales[column.unit].exponent)
 
     heads = tuple((look.charset.symbol(c.symbol, c.ascii_symbol), unit_of(c)) for c in table.columns)
     columns = [[text(value, column) for value in column.values] for column in table.columns]
     return Cells(names, heads, tuple(zip(*columns)))
+
+
+def _own_scale(column: Column) -> bool:
+    return bool(column.alone) or column.decimals is not None
 
 
 def place_tables(report: Report, look: Look) -> Iterator[list[Line]]:

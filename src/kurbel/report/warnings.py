@@ -62,7 +62,7 @@ def _as_far_as_solved(found: Callable[[], Iterable[str]], command: str) -> tuple
 _BEYOND = 1e308
 """Floquet multiplier that is as large as a float can be."""
 _LINEAR = 0.1
-"""δ up to which a harmonic balance about the mean speed may be trusted."""
+"""δ up to which the cranks stand near enough where uniform rotation would have them."""
 _CLOSED = 1e-9
 """An energy residual beyond this is no rounding."""
 _COARSE = 0.01
@@ -160,7 +160,7 @@ def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
             f"amplified {near.amplification:.3g} times"
         )
     if turning.elastic.delta > _LINEAR:
-        yield "the speed varies so much that the harmonic balance of the coupling is only a rough guide"
+        yield "the speed varies so much that the coupling, computed at nearly uniform rotation, is only a rough guide"
 
 
 _SHELLS = (

@@ -11,20 +11,23 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import quantities_of
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Figure, Results
+from kurbel.solver.figures import Figure, Results, Shown
 
 if TYPE_CHECKING:
+    from kurbel.arrays import Array
     from kurbel.solver.balance.machine_balance import MachineBalance
     from kurbel.solver.bearings.shaft_bearings import ShaftBearings
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
+    from kurbel.solver.torsion.vibration import ShaftVibration
     from kurbel.solver.turning.flywheel import MachineTurning
+    from kurbel.solver.turning.harmonics import MachineOrders
 
 
-_WHOLE = {"stress": "strength", "flywheel": "flywheel", "balance": "balance"}
+_WHOLE = {"stress": "strength", "flywheel": "flywheel", "balance": "balance", "torsion": "torsion"}
 """Command of the whole machine -> the results of a case that answer it."""
 
 
-class Case:
+class Case(Shown):
     """A machine with its results.
 
     >>> from kurbel.machine import Cylinder, Machine
@@ -56,16 +59,6 @@ class Case:
 
     def __repr__(self) -> str:
         return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
-
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        machine = self.machine
-        parts: list[tuple[str, Results]] = [(one.drive.name, one) for one in self.cylinders]
-        if len(parts) != 1 or machine.flywheel:
-            parts.append(("whole machine", self.flywheel))
-        tables = (f"<h4>{escape(name)}</h4>{one._repr_html_()}" for name, one in parts)
-        return f"<h3>{escape(machine.name)}</h3>{''.join(tables)}"
 
     @cached_property
     def cylinders(self) -> tuple[CylinderForces, ...]:
@@ -104,3 +97,20 @@ class Case:
         from kurbel.solver.turning.flywheel import MachineTurning
 
         return MachineTurning(self.machine, self.cylinders)
+
+    def harmonics(self, orders: Array | None = None) -> MachineOrders:
+        """Return the orders (n,) of the turning effort, or the usual ones. Raises UsageError where nothing turns it."""
+        from kurbel.solver.turning.harmonics import MachineOrders
+
+        return MachineOrders(self.flywheel.turned, orders)
+
+    @cached_property
+    def torsion(self) -> ShaftVibration:
+        """Torsional vibration of the shaft line, by the usual orders. Raises UsageError where there is none."""
+        return self.torsion_of(None)
+
+    def torsion_of(self, orders: Array | None) -> ShaftVibration:
+        """Return the torsional vibration by these orders (k,)."""
+        from kurbel.solver.torsion.vibration import ShaftVibration
+
+        return ShaftVibration(self.machine, self.cylinders, orders)

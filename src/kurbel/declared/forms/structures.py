@@ -71,7 +71,8 @@ class OneOf(Form):
         shape = type(value) if isinstance(value, (dict, list)) else str
         words = [word for form in self.forms if isinstance(form, Choice) for word in form.words]
         if found := [name for name in value if name in words] if shape is dict else []:
-            return reading.fault((*path, found[0]), f"takes no value; write '{path[-1]}: {found[0]}'", at_key=True)
+            alone = f"- {found[0]}" if isinstance(path[-1], int) else f"{path[-1]}: {found[0]}"
+            return reading.fault((*path, found[0]), f"takes no value; write '{alone}'", at_key=True)
         alike = [form for form in self.forms if form.shape is shape]
         if alike:  # of a word and a number, the one that it looks like
             return next((form for form in alike if form.suits(value)), alike[0]).read(reading, value, path)

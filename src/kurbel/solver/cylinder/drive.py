@@ -185,9 +185,9 @@ class Drive:
         """Whether the machine names any friction."""
         return self.cylinder.friction is not None
 
-    def at(self, degrees: Array) -> State:
-        """Return the state at crank angles (n,) in degrees, just after a jump where there is one."""
-        return State(self, CrankAngle.of(degrees))
+    def at(self, degrees: Array, within: Array | None = None) -> State:
+        """Return the state at crank angles (n,) in degrees, on the sides of jumps that hold `within`, or just after."""
+        return State(self, CrankAngle.of(degrees), within)
 
     def jets_at(self, degrees: Array, within: Array, beyond: Array | float = 0.0) -> State:
         """Return the state with slopes by φ at crank angles (n,), on the sides of jumps that hold `within`."""

@@ -61,7 +61,14 @@ class CylinderForces(Results):
     @property
     def answering(self) -> tuple[Any, ...]:
         """What answers key values, the first that knows one."""
-        return (self, self.motion, self.rod_load, self.pin_works, self.indicated, self.brake)
+        gas, brake = self.drive.own_gas, self.drive.machine.brake_power
+        return (
+            self,
+            self.motion,
+            *((self.rod_load, self.pin_works) if self.drive.has_force else ()),
+            *((self.indicated,) if gas else ()),
+            *((self.brake,) if gas and brake is not None else ()),
+        )
 
     @cached_property
     def pin_works(self) -> PinWorks:
@@ -99,12 +106,17 @@ class CylinderForces(Results):
             raise AttributeError(f"no key value is called {id}")
         return answered(self.answering, quantity)
 
-    def at(self, degrees: Any) -> State:
+    def at(self, degrees: Any, within: Array | None = None) -> State:
         """Return every quantity at crank angles (n,) in degrees: `forces.at([0, 10]).T` in N, …
 
-        At a jump the value just after it is meant.
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
         """
-        return self.drive.at(crank_angles(degrees))
+        return self.drive.at(crank_angles(degrees), within)
+
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees between which every quantity is smooth."""
+        return self.grid.breaks
 
     @cached_property
     def grid(self) -> Grid:
@@ -399,9 +411,11 @@ class CylinderForces(Results):
     @cached_property
     def friction_work(self) -> float | None:
         """Work of all friction in J per cycle."""
+        if not self.drive.has_force:
+            return None
         every = (self.crosshead_work, self.ring_work, self.constant_work, *self.pin_works.all)
         given = [work for work in every if work is not None]
-        return math.fsum(given) if given and self.drive.has_force else None
+        return math.fsum(given) if given else None
 
     @cached_property
     def resistance_work(self) -> float | None:

@@ -37,7 +37,7 @@ class PistonGas:
         self._cycle = cycle
         self.head = None if head is None else pressure_in(head, at_head)
         self.crank = None if crank is None else pressure_in(crank, at_crank)
-        self._stroke = mechanism.stroke
+        self.stroke = mechanism.stroke
 
     @property
     def starts(self) -> Array:
@@ -64,7 +64,7 @@ class PistonGas:
     @cached_property
     def works(self) -> tuple[float, float]:
         """Indicated work in J per cycle of the cylinder of head end and crank end: A s ∮ p dz."""
-        way = self._stroke * self.repeats
+        way = self.stroke * self.repeats
         return (
             self.piston.head_area * way * self.head.area if self.head else 0.0,
             self.piston.crank_area * way * self.crank.area if self.crank else 0.0,
@@ -82,7 +82,7 @@ class PistonGas:
         found = [
             (area * end.area, area * end.area_by_angle) for end, area in ends if end and hasattr(end, "area_by_angle")
         ]
-        way = self._stroke * self.repeats
+        way = self.stroke * self.repeats
         return (way * sum(w for w, _ in found), way * sum(d for _, d in found)) if found else None
 
     @property
@@ -97,10 +97,10 @@ class PistonGas:
         indicator = self.piston.indicator
         chambers = (indicator.head_end, indicator.crank_end) if indicator else (None, None)
         shares = [getattr(chamber, "clearance", None) or 0.0 for chamber in chambers]
-        return shares[0] * self.piston.head_area * self._stroke, shares[1] * self.piston.crank_area * self._stroke
+        return shares[0] * self.piston.head_area * self.stroke, shares[1] * self.piston.crank_area * self.stroke
 
     @property
     def swept_volume(self) -> float:
         """Volume in m³ swept in the chambers that have pressures."""
         head = self.piston.head_area if self.head else 0.0
-        return float((head + (self.piston.crank_area if self.crank else 0.0)) * self._stroke)
+        return float((head + (self.piston.crank_area if self.crank else 0.0)) * self.stroke)

@@ -43,9 +43,9 @@ class RodLoad:
 
     @property
     def no_compressor(self) -> bool:
-        """Whether the gas drives the shaft, or nothing has a connecting rod, so that nobody asks for the rod load."""
-        work = self._forces.work
-        return work is None or work >= 0 or not self._forces.drive.mechanism.has_rod
+        """Whether nobody asks for the rod load: an engine, also a motored one of four strokes, or no connecting rod."""
+        work, drive = self._forces.work, self._forces.drive
+        return work is None or work >= 0 or drive.revolutions > 1 or not drive.mechanism.has_rod
 
     @cached_property
     def _curves(self) -> dict[str, Curve]:

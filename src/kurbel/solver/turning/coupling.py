@@ -1,8 +1,6 @@
-"""An elastic coupling between the crank shaft and a driven inertia, both moving nearly uniformly.
+"""An elastic coupling between the crank shaft and a driven inertia: a chain of two masses, moving nearly uniformly.
 
-About the nominal speed the equations are linear: J₁ ω̇₁ = M − T, J₂ ω̇₂ = T − L − c (ω₂ − ω_n), Ṡ = k (ω₁ − ω₂), with the
-torque T = S + d (ω₁ − ω₂) in the coupling, its stiffness k and damping d, the slope c of the load over the speed. Their
-periodic solution is found by collocation.
+The equations are those of `kurbel.solver.shaft_line.periodic`; the load on the driven mass may depend on its speed.
 """
 
 from __future__ import annotations
@@ -15,44 +13,53 @@ import numpy as np
 
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
-from kurbel.numerics.elements import Elements, rule
+from kurbel.numerics.collocation import Periodic, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
-from kurbel.numerics.linear_collocation import linear_periodic
 from kurbel.numerics.search import Extremes, Sampled, extremes
+from kurbel.solver.shaft_line.chain import Chain
+from kurbel.solver.shaft_line.modes import Modes
+from kurbel.solver.shaft_line.periodic import ChainEquation, Rise
+from kurbel.solver.shaft_line.response import responding, twisting
 from kurbel.solver.turning.excess import Excess
+from kurbel.solver.turning.harmonics import spectrum
+from kurbel.solver.turning.speed import SpeedLaw
 from kurbel.solver.turning.torques import Sum
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
+    from kurbel.arrays import Array
 
-_SWING = 120.0
-"""Degrees of a natural oscillation that one element may hold at first, …"""
-_MOST_PARTS = 8000
-"""… though a piece is cut into no more parts than these."""
 _NEAR = 0.1
 """A harmonic whose order lies so near the natural one, relatively, is worth a warning."""
 _WORTH = 1e-3
 """… if its amplitude is at least so much of one that swings as the whole torque does in the mean, …"""
 _AMPLIFIED = 1.5
 """… and it is amplified at least so many times: one that is damped is no resonance."""
+_ENDLESS = 1e9
+"""Amplification beyond which nothing but rounding keeps a resonance from being endless."""
 
 
-def natural_frequency(coupling: Coupling, inertia: float) -> float:
-    """Return √(k (J₁ + J₂)/(J₁ J₂)) in rad/s; J₁: moment of inertia in kg m² on the side of the cranks.
+def coupled(coupling: Coupling, inertia: float) -> Chain:
+    """Return the chain of two masses; inertia: J₁ in kg m² on the side of the cranks.
 
-    >>> round(natural_frequency(Coupling(stiffness=100.0, inertia=2.0), 2.0), 12)
-    10.0
+    >>> [round(float(one), 12) for one in Modes(coupled(Coupling(stiffness=100.0, inertia=2.0), 2.0)).omegas]
+    [0.0, 10.0]
     """
-    return math.sqrt(coupling.stiffness) * math.hypot(1 / math.sqrt(inertia), 1 / math.sqrt(coupling.inertia))
+    stiffness, damping = (np.array([one]) for one in (coupling.stiffness, coupling.damping))
+    return Chain(np.array([inertia, coupling.inertia]), stiffness, damping, np.zeros(2), np.zeros(1))
 
 
 class Shaft(NamedTuple):
-    """What the coupling stands between: J₁ in kg m², ω_n in rad/s, slope of the load over the speed in N m s."""
+    """What the coupling stands between: J₁ in kg m², ω_n in rad/s, how the load rises with the speed or None."""
 
     inertia: float
     omega: float
-    load_slope: float
+    law: SpeedLaw | None
+
+    @property
+    def load_slope(self) -> float:
+        """Slope of the load over the speed at ω_n in N m s/rad."""
+        return 0.0 if self.law is None else 2 * float(self.law(np.zeros(1))[1][0]) / self.omega
 
 
 class Harmonic(NamedTuple):
@@ -65,11 +72,10 @@ class Harmonic(NamedTuple):
 
 
 class ElasticCoupling:
-    """The torque in the coupling and the speed of the crank shaft; see the head of the module.
+    """The torque in the coupling and the speed of the crank shaft.
 
-    The unknowns, (…, 3), are S − M_m over the natural order, and what J₁ and J₂ gain over ω_n times their momentum: all
-    in N m, of one size.
-    Raises NoSolutionError in a resonance that nothing damps, and where floats do not hold the figures.
+    Raises NoSolutionError in a resonance that nothing damps, and where floats do not hold the figures; Unsettled where
+    no motion repeats.
     """
 
     def __init__(self, coupling: Coupling, shaft: Shaft, excess: Excess) -> None:
@@ -77,59 +83,35 @@ class ElasticCoupling:
         self.shaft = shaft
         self._excess = excess
         self.cycle = excess.cycle
-        self.natural_frequency = natural_frequency(coupling, shaft.inertia)
-        self.natural_order = self.natural_frequency / shaft.omega
-        self._speeds = np.array([0.0, 1 / shaft.inertia, 1 / coupling.inertia]) / shaft.omega
-        twisting = self._speeds * np.array([0.0, 1.0, -1.0])
-        self._passing = coupling.damping * twisting + np.array([self.natural_order, 0.0, 0.0])
-        self.matrix = np.stack(
-            (
-                coupling.stiffness / self.natural_frequency * twisting,
-                -self._passing,
-                self._passing - np.array([0.0, 0.0, shaft.load_slope * self._speeds[2]]),
-            )
-        )
-        self._refuse_resonance(self._first_elements)
+        self.chain = coupled(coupling, shaft.inertia)
+        self.natural_order = float(Modes(self.chain).omegas[1]) / shaft.omega
+        self._refuse_resonance()
+        rise = Rise(1, shaft.law) if shaft.law else None
+        self._equation = ChainEquation(self.chain, shaft.omega, self.natural_order, self._driving, rise)
+        self._passing, self._speed = self._equation.passing[0], float(self._equation.speeds[0])
+        self.motion = self._solved()
+
+    def _solved(self) -> Periodic:
         try:
-            self.elements, self._coefficients = linear_periodic(self, self._first_elements)
-        except np.linalg.LinAlgError:
+            return self._equation.solved(self._excess.grid.breaks)
+        except Unsettled:
+            if self.shaft.law is not None:
+                raise
             raise NoSolutionError(
                 "stiffness, damping and inertia of the coupling are too far apart to compute with; look at their units"
             ) from None
-        # a load that does not depend on the speed leaves the mean speed open: it is the nominal one
-        drift = np.radians(self.elements.width) @ self._coefficients[:, 1, 0] / math.radians(self.cycle)
-        self._coefficients[:, 1:, 0] -= drift * self._speeds[1] / self._speeds[1:]
-
-    @cached_property
-    def _first_elements(self) -> Elements:
-        """The smooth pieces, cut so that a natural oscillation has several elements."""
-        breaks = self._excess.grid.breaks
-        parts = np.ceil(np.diff(breaks) * (self.natural_order / _SWING)).astype(int).clip(1, _MOST_PARTS)
-        cuts = [low + step * np.arange(n) / n for low, step, n in zip(breaks[:-1], np.diff(breaks), parts)]
-        return Elements.over(np.append(np.concatenate(cuts), breaks[-1]))
 
     @property
     def mean(self) -> float:
         """Mean torque in N m."""
         return self._excess.mean
 
-    def prepared(self, degrees: Array, within: Array) -> Array:
-        """Return what drives the unknowns: nothing, the effort, and the load, less their mean in N m, as (3, …)."""
+    def _driving(self, degrees: Array, within: Array) -> Array:
+        """Return effort and load less their mean in N m, as they act on the two masses, (2, …)."""
         effort, load = (
             part.torque(degrees, within).value - self.mean for part in (self._excess.effort, self._excess.load)
         )
-        return np.stack((np.zeros_like(effort), effort, -load))
-
-    def _amplitudes(self, orders: Array, elements: Elements) -> tuple[ComplexArray, ComplexArray, float]:
-        """Return amplitudes in N m of effort and load at orders (n,), M = mean + Re Σ M̂ e^{inφ}, and the size of both.
-
-        The size is the amplitude of a single harmonic with the same mean square.
-        """
-        torques = elements.prepared(self)[1:] * np.array([1.0, -1.0])[:, None, None]
-        weights = np.radians(elements.width)[:, None] * rule().matrix[-1] * (2 / math.radians(self.cycle))
-        waves = np.exp(-1j * orders[:, None] * np.radians(elements.degrees.ravel()))
-        effort, load = (np.asarray(waves @ (weights * part).ravel(), dtype=complex) for part in torques)
-        return effort, load, float(np.sqrt((weights * torques**2).sum(axis=(1, 2))).sum())
+        return np.stack((effort, -load))
 
     @cached_property
     def _orders(self) -> Array:
@@ -138,25 +120,31 @@ class ElasticCoupling:
         low, high = (self.natural_order * (1 + side * _NEAR) / step for side in (-1, 1))
         return step * np.arange(max(math.ceil(low), 1), math.floor(high) + 1, dtype=float)
 
-    def _denominators(self, orders: Array) -> tuple[ComplexArray, ComplexArray]:
-        """Return c + iνJ₂ and 1 + iνJ₁ (1/(k/(iν) + d) + 1/(c + iνJ₂)) at orders (n,), ν = n ω_n.
+    def _of_orders(self, damping: float) -> tuple[Array, Array, Array]:
+        """Return amplitudes in N m of effort and load near the natural order, and of the torque in the coupling.
 
-        The second one is by what the harmonics of the torque in the coupling are less than M̂ + L̂ iνJ₁/(c + iνJ₂).
+        damping: of the driven mass, in N m s/rad.
         """
-        nu = 1j * orders * self.shaft.omega
-        driven = nu * self.coupling.inertia + self.shaft.load_slope
-        spring = self.coupling.stiffness / nu + self.coupling.damping
-        return np.asarray(driven), np.asarray(1 + nu * self.shaft.inertia * (1 / spring + 1 / driven), dtype=complex)
+        effort, load = (spectrum(part, self._orders).amplitudes for part in (self._excess.effort, self._excess.load))
+        frequencies, torques = self._orders * self.shaft.omega, np.stack((effort, -load))
+        held = np.multiply.outer([0.0, damping], np.ones(len(frequencies)))
+        with np.errstate(all="ignore"):
+            angles = responding(self.chain, frequencies, torques, held)
+            return np.abs(effort), np.abs(load), np.abs(twisting(self.chain, frequencies, angles)[0])
 
-    def _refuse_resonance(self, elements: Elements) -> None:
-        driven, below = self._denominators(self._orders)
-        nu = 1j * self._orders * self.shaft.omega
-        spring = self.coupling.stiffness / nu + self.coupling.damping
-        free = np.abs(below) < 1e-9 * np.abs(nu * self.shaft.inertia / spring)
-        if not free.any():
+    @cached_property
+    def _size(self) -> float:
+        """Amplitude in N m of a single harmonic of the mean square that effort and load swing by."""
+        grid = self._excess.grid
+        squares = self._driving(grid.degrees, grid.within) ** 2
+        return sum(math.sqrt(2 * grid.integral(one) / math.radians(self.cycle)) for one in squares)
+
+    def _refuse_resonance(self) -> None:
+        """Raise NoSolutionError where a harmonic that is there meets the natural order and nothing damps it."""
+        if self.coupling.damping or self.shaft.load_slope:
             return
-        effort, load, size = self._amplitudes(self._orders, elements)
-        stuck = free & (np.abs(effort + load * (nu * self.shaft.inertia / driven)) > 1e-9 * size)
+        effort, load, passed = self._of_orders(0.0)
+        stuck = ~(passed < _ENDLESS * self._size) & (np.maximum(effort, load) > 1e-9 * self._size)
         if stuck.any():
             order = self._orders[np.argmax(stuck)]
             raise NoSolutionError(
@@ -166,22 +154,22 @@ class ElasticCoupling:
 
     def _sampled(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return the torque less its mean, and ω₁ − ω_n, with their slopes by φ, at crank angles of the cycle."""
-        state = self.elements.at(self._coefficients, degrees, within)
-        rate = self._rate(state, degrees, within)
+        state = self.motion.at(degrees, within)
+        rate = self._rate(degrees, within)
         return {
             "torque": Sampled(state @ self._passing, rate @ self._passing),
-            "omega": Sampled(state[..., 1] * self._speeds[1], rate[..., 1] * self._speeds[1]),
+            "omega": Sampled(state[..., 1] * self._speed, rate[..., 1] * self._speed),
         }
 
-    def _rate(self, state: Array, degrees: Array, within: Array) -> Array:
-        return np.asarray(state @ self.matrix.T + np.moveaxis(self.prepared(degrees, within), 0, -1))
+    def _rate(self, degrees: Array, within: Array) -> Array:
+        return self._equation.rate(self._equation.prepared(degrees, within), self.motion.at(degrees, within))[0]
 
     def _alpha(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return dω₁/dt = ω_n dω₁/dφ in rad/s², about the mean speed, with its slope by φ."""
-        rate = self._rate(self.elements.at(self._coefficients, degrees, within), degrees, within)
+        rate = self._rate(degrees, within)
         driving = self._excess.effort.torque(degrees, within).slope
-        scale = self._speeds[1] * self.shaft.omega
-        return {"alpha": Sampled(rate[..., 1] * scale, (rate @ self.matrix[1] + driving) * scale)}
+        scale = self._speed * self.shaft.omega
+        return {"alpha": Sampled(rate[..., 1] * scale, (rate @ self._equation.matrix[1] + driving) * scale)}
 
     def alpha(self, degrees: Array) -> Array:
         """Return the angular acceleration of the crank shaft in rad/s², just after a jump."""
@@ -200,7 +188,7 @@ class ElasticCoupling:
     @cached_property
     def grid(self) -> Grid:
         """The cycle in the elements of the solution."""
-        return Grid(np.append(self.elements.low, self.cycle))
+        return Grid(np.append(self.motion.elements.low, self.cycle))
 
     @cached_property
     def alpha_extremes(self) -> Extremes:
@@ -245,24 +233,23 @@ class ElasticCoupling:
         """Smallest angular velocity of the crank shaft in rad/s."""
         return self._shifted("omega", False, self.shaft.omega)
 
-    @property
+    @cached_property
     def omega_mean(self) -> float:
-        """ω_n: the equations are drawn up about it."""
-        return self.shaft.omega
+        """Mean angular velocity in rad/s, the same before and behind the coupling: ω_n under a constant load."""
+        width = np.radians(self.motion.elements.width)
+        gained = float(width @ self.motion.coefficients[:, 1, 0]) * self._speed
+        return self.shaft.omega + gained / math.radians(self.cycle)
 
     @property
     def delta(self) -> float:
-        """(ω_max − ω_min)/ω_n of the crank shaft."""
+        """(ω_max − ω_min)/ω_mean of the crank shaft."""
         swing = self._extremes["omega"]
-        return (swing.largest.value - swing.smallest.value) / self.shaft.omega
+        return (swing.largest.value - swing.smallest.value) / self.omega_mean
 
-    @cached_property
+    @property
     def growth(self) -> float:
-        """Logarithm of what is left of a small disturbance after a cycle: its length times the largest real part.
-
-        Of the eigenvalues of the equations at the head of the module.
-        """
-        return float(np.linalg.eigvals(self.matrix).real.max()) * math.radians(self.cycle)
+        """Logarithm of what is left of a small disturbance after a cycle."""
+        return self.motion.growth
 
     @cached_property
     def amplification(self) -> float | None:
@@ -283,12 +270,12 @@ class ElasticCoupling:
     def resonances(self) -> tuple[Harmonic, ...]:
         """Harmonics that are present in the torque and lie near the natural order."""
         orders = self._orders
-        effort, load, size = self._amplitudes(orders, self.elements)
-        amplitudes = np.abs(effort) + np.abs(load)
-        distance = orders / self.natural_order - 1
+        effort, load, passed = self._of_orders(self.shaft.load_slope)
+        amplitudes, distance = effort + load, orders / self.natural_order - 1
         own, driven = self.shaft.inertia, self.coupling.inertia
-        gain = np.abs(1 / self._denominators(orders)[1]) * (own + driven) / driven
-        near = (amplitudes > _WORTH * size) & (gain >= _AMPLIFIED)
+        rigid = (effort * driven + load * own) / (own + driven)
+        gain = passed / np.where(rigid > 0, rigid, np.inf)
+        near = (amplitudes > _WORTH * self._size) & (gain >= _AMPLIFIED)
         return tuple(
             Harmonic(*(float(of[i]) for of in (orders, distance, amplitudes, gain))) for i in np.nonzero(near)[0]
         )

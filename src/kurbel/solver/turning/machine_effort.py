@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -25,6 +25,14 @@ if TYPE_CHECKING:
 
 _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
+
+
+class Driving(NamedTuple):
+    """A cylinder in which a force acts, its torque over the angle of crank 1, and that of its masses, if they move."""
+
+    forces: CylinderForces
+    effort: CylinderEffort
+    inertia: CylinderEffort | None
 
 
 class MachineEffort:
@@ -50,7 +58,20 @@ class MachineEffort:
         """The torque without the losses of the machine."""
         if self.machine.effort:
             return Sum((1.0, known_torque(self.machine.effort, self.cycle)))
-        return Sum(*((1.0, CylinderEffort(forces, self.cycle, lambda state: state.M)) for forces in self._driving))
+        return Sum(*((1.0, one.effort) for one in self.of_cylinders))
+
+    @cached_property
+    def of_cylinders(self) -> tuple[Driving, ...]:
+        """The torques of the cylinders, each by itself."""
+        moving = set(map(id, self._moving))
+        return tuple(
+            Driving(
+                forces,
+                CylinderEffort(forces, self.cycle, lambda state: state.M),
+                CylinderEffort(forces, self.cycle, inertia_torque) if id(forces) in moving else None,
+            )
+            for forces in self._driving
+        )
 
     @cached_property
     def efficiency(self) -> float:
@@ -72,7 +93,7 @@ class MachineEffort:
     @cached_property
     def masses(self) -> tuple[CylinderEffort, ...]:
         """The torques of the moving masses of the cylinders."""
-        return tuple(CylinderEffort(forces, self.cycle, inertia_torque) for forces in self._moving)
+        return tuple(one.inertia for one in self.of_cylinders if one.inertia)
 
     @cached_property
     def excess(self) -> Excess:

@@ -16,6 +16,7 @@ import numpy as np
 
 from kurbel.errors import UsageError
 from kurbel.numerics.collocation import Periodic, Standstill, periodic
+from kurbel.numerics.elements import Elements
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
@@ -264,12 +265,12 @@ class SpeedEquation:
     def rate(self, prepared: Array, z: Array) -> tuple[Array, Array]:
         """See `collocation.Equation`."""
         excess, energy = prepared
-        rise, slope = self.law(z / energy)
-        return excess - rise, -slope / energy
+        rise, slope = self.law(z[..., 0] / energy)
+        return (excess - rise)[..., None], (-slope / energy)[..., None, None]
 
     def floor(self, prepared: Array) -> Array:
         """See `collocation.Equation`."""
-        return np.asarray(-prepared[1])
+        return np.asarray(-prepared[1])[..., None]
 
 
 class SpeedDependentLoad(SpeedLine):
@@ -281,12 +282,14 @@ class SpeedDependentLoad(SpeedLine):
         energy = inertia.energy(excess.grid.degrees, excess.grid.within).value.min()
         noise = 1e-16 * min(torque, float(energy))
         self._law = law
-        self.solution: Periodic = periodic(SpeedEquation(excess, law, inertia, noise), excess.grid.breaks)
+        self.solution: Periodic = periodic(
+            SpeedEquation(excess, law, inertia, noise), Elements.over(excess.grid.breaks)
+        )
         super().__init__(excess, inertia, Grid(np.append(self.solution.elements.low, excess.cycle)))
 
     def z(self, degrees: Array, within: Array) -> Array:
         """Return z in J; see `SpeedLine`."""
-        return self.solution.at(degrees, within)
+        return np.asarray(self.solution.at(degrees, within)[..., 0])
 
     def _rise(self, ratio: Array) -> Array:
         return self._law(ratio)[0]

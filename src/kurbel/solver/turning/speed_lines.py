@@ -55,9 +55,10 @@ class SpeedLines:
         own = self._turned.inertia.mean + flywheel
         if self._coupling is None or not own:
             return None
-        from kurbel.solver.turning.coupling import natural_frequency
+        from kurbel.solver.shaft_line.modes import Modes
+        from kurbel.solver.turning.coupling import coupled
 
-        return natural_frequency(self._coupling, own) / self.omega
+        return float(Modes(coupled(self._coupling, own)).omegas[1]) / self.omega
 
     def elastic(self, flywheel: float) -> ElasticCoupling | None:
         """Return the line on an elastic coupling; None where there is none, or one as good as rigid."""
@@ -68,8 +69,7 @@ class SpeedLines:
         own = flywheel + self._turned.inertia.mean
         if not own:
             raise UsageError("nothing before the coupling has any inertia: give 'flywheel' an inertia")
-        slope = 0.0 if self.law is None else 2 * float(self.law(np.zeros(1))[1][0]) / self.omega
-        return ElasticCoupling(self._coupling, Shaft(own, self.omega, slope), self._turned.true_excess)
+        return ElasticCoupling(self._coupling, Shaft(own, self.omega, self.law), self._turned.true_excess)
 
     def rigid(self, flywheel: float) -> SpeedLine:
         """Return the line without a coupling, or with a rigid one."""

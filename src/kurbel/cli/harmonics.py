@@ -1,0 +1,25 @@
+"""`kurbel harmonics`: the orders of the turning effort."""
+
+from __future__ import annotations
+
+import click
+
+from kurbel.cli.exit_status import exit_statuses
+from kurbel.cli.order_options import orders_option, speeds_option
+from kurbel.cli.output_options import Asked, machine_places
+
+
+@click.command(short_help="Orders of the turning effort, gas and inertia apart.", epilog=exit_statuses())
+@machine_places
+@orders_option
+@speeds_option
+def harmonics(asked: Asked, orders: tuple[float, ...] | None, speeds: tuple[float, ...] | None) -> None:
+    """Print the orders of the torque of every cylinder, and of the turning effort of the whole machine.
+
+    Orders count periods per turn of the shaft, so that a four-stroke cycle has halves. They are integrated piece by
+    piece between the corners of the cards. t is the tangential pressure |M|/(R A). Major orders are those in which all
+    cranks pull together. FILE may be - for standard input.
+    """
+    from kurbel.report.harmonics import harmonics_report
+
+    asked.write(harmonics_report(asked.case(), orders, speeds, asked.units))

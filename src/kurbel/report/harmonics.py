@@ -1,0 +1,116 @@
+"""The report of `kurbel harmonics`: orders of the torque of every cylinder and of the whole machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kurbel.declared.torsion import TORQUE_ORDERS
+from kurbel.errors import UsageError
+from kurbel.report.frame import Frame, Subject
+from kurbel.report.left_out import flywheel_left_out, left_out
+from kurbel.report.notes import machine_notes, of_machine
+from kurbel.report.orders import counted, orders_of, phase_degrees
+from kurbel.report.shown import shown_column
+from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
+from kurbel.solver.case import Case
+from kurbel.solver.turning.harmonics import CylinderOrders, MachineOrders, Orders, Spectrum
+
+if TYPE_CHECKING:
+    from kurbel.machine import Machine
+
+
+def harmonics_report(case: Case, orders: Sequence[float] | None, speeds: Sequence[float] | None, system: str) -> Report:
+    """Return the orders of the turning effort; orders: those to tell, None for all up to 24; system: see `Frame`.
+
+    speeds: in revolutions per second, at which the orders of the whole machine are told besides. Raises UsageError
+    where nothing turns the shaft.
+    """
+    with np.errstate(all="ignore"):  # what overflows is refused, by name
+        found = case.harmonics(orders_of(case.machine, orders))
+        each = [_cylinder(case.machine, one, system) for one in found.cylinders]
+        whole = _whole(case, found, tuple(_speed_tables(case.machine, found, speeds, system)), system)
+    frame = Frame("harmonics", (), None, system)
+    report = frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
+    return report
+
+
+def _cylinder(machine: Machine, one: CylinderOrders, system: str) -> Subject:
+    cylinder = one.forces.drive.cylinder
+    title = f"Orders of the torque of {cylinder.name}, φ from its own inner dead centre"
+    table = _table("orders", title, one.own, one.area, [""] * len(one.own.gas.orders), system)
+    return Subject(cylinder.name, (), left_out=lambda: left_out(machine, cylinder), place_tables=(table,))
+
+
+def _whole(case: Case, found: MachineOrders, more: tuple[PlaceTable, ...], system: str) -> Subject:
+    major = found.major_orders or ()
+    marks = ["major" if order in major else "" for order in found.orders.tolist()]
+    title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
+    table = _table("orders", title, found.machine, None, marks, system)
+    return Subject(
+        "whole machine",
+        (found,),
+        left_out=lambda: (*flywheel_left_out(case.machine), *_no_cranks(found)),
+        warnings=lambda: of_machine(machine_notes(case.machine, case), case.machine),
+        place_tables=(table, *more),
+    )
+
+
+def subjects(case: Case) -> Iterable[Subject]:
+    """Yield the whole machine."""
+    yield _whole(case, case.harmonics(), (), "si")
+
+
+def _no_cranks(found: MachineOrders) -> Iterable[LeftOut]:
+    if found.machine.inertia is None:
+        why = "the effort is given as a torque" if not found.cylinders else "no masses, or no speed given"
+        yield LeftOut("gas and inertia apart", why)
+
+
+def _table(id: str, title: str, orders: Orders, area: float | None, marks: list[str], system: str) -> PlaceTable:
+    columns = (shown_column(TORQUE_ORDERS[name], values, system) for name, values in _columns(orders, area))
+    return PlaceTable(id, title, ("kind",), tuple((mark,) for mark in marks), counted(columns))
+
+
+def _columns(orders: Orders, area: float | None) -> Iterable[tuple[str, Sequence[Any]]]:
+    yield from _of_spectrum(orders.whole)
+    if orders.inertia is not None:
+        yield "M_gas", np.abs(orders.gas.amplitudes).tolist()
+        yield "M_inertia", np.abs(orders.inertia.amplitudes).tolist()
+    if area:
+        yield "t_order", (np.abs(orders.whole.amplitudes) / area).tolist()
+
+
+def _of_spectrum(found: Spectrum) -> Iterable[tuple[str, Sequence[Any]]]:
+    yield "order", found.orders.tolist()
+    yield "M_cos", found.amplitudes.real.tolist()
+    yield "M_sin", (-found.amplitudes.imag).tolist()
+    yield "M_amplitude", np.abs(found.amplitudes).tolist()
+    yield "M_phase", phase_degrees(found.amplitudes)
+
+
+def _speed_tables(
+    machine: Machine, found: MachineOrders, speeds: Sequence[float] | None, system: str
+) -> Iterable[PlaceTable]:
+    if speeds is None:
+        return
+    if not machine.speed:
+        raise UsageError("--speeds: the inertia forces are told from those at the 'speed' of the machine; give it one")
+    spectra = [found.machine.at_speed(speed / machine.speed) for speed in speeds]
+    columns: dict[str, list[Any]] = {"speed": [speed for speed in speeds for _ in found.orders]}
+    for one in spectra:
+        for name, values in _of_spectrum(one):
+            columns.setdefault(name, []).extend(values)
+    shown: tuple[Column, ...] = counted(
+        shown_column(TORQUE_ORDERS[name], values, system) for name, values in columns.items()
+    )
+    names = tuple(("",) for _ in columns["speed"])
+    yield PlaceTable("orders_by_speed", "Orders of the turning effort at other speeds", ("kind",), names, shown)
+
+
+def _notes(found: MachineOrders) -> Iterable[str]:
+    yield "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
+    if found.machine.inertia is not None:
+        yield "M_b goes with the square of the speed; M_g, of gas, weight and friction, counts the same at every speed."

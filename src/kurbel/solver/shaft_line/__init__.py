@@ -1,0 +1,1 @@
+"""Chains of masses on a shaft: their equations, natural vibrations, and what torques make of them."""

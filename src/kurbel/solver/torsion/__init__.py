@@ -1,0 +1,1 @@
+"""Torsional vibration of the shaft line of a machine."""

@@ -1,0 +1,257 @@
+"""What `kurbel torsion` answers: natural vibrations of the shaft line, critical speeds, and forced vibration."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kurbel.errors import UsageError
+from kurbel.machine import Machine
+from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.figures import Results
+from kurbel.solver.shaft_line.chain import Chain
+from kurbel.solver.shaft_line.modes import Holzer, Modes
+from kurbel.solver.torsion.forced import Excitation, Vibration, excitation, stress
+from kurbel.solver.turning.effort import CylinderEffort, reduced_inertia
+from kurbel.solver.turning.harmonics import MachineOrders, every_order, phases
+from kurbel.solver.turning.machine_effort import MachineEffort, MovingInertia
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
+NEAR = 0.1
+"""A critical speed so near the working speed, relatively, is worth a note."""
+_PRESENT = 1e-6
+"""An order whose phase-vector sum is smaller, over the sum of its vectors, meets no resistance and no work."""
+_RUN_UP = 1.2
+"""Over the working speed, up to which a machine meets its critical speeds at all."""
+
+
+def shaft_line_of(machine: Machine) -> ShaftLine:
+    """Return the shaft line of a machine: the given one, or the two masses of its coupling. Raises UsageError."""
+    if machine.shaft:
+        return machine.shaft
+    coupling, wheel = machine.coupling, machine.flywheel
+    if coupling is None:
+        what = "write its masses and the pieces between them below it, or give a 'coupling' behind a 'flywheel'"
+        raise UsageError(f"{machine.name}: no 'shaft' is given; {what}")
+    if wheel is None or wheel.inertia is None:
+        raise UsageError(f"{machine.name}: the mass before the coupling is not known; give 'flywheel' an 'inertia'")
+    names = tuple(cylinder.name for cylinder in machine.cylinders)
+    cranks = ShaftMass("cranks and flywheel", cylinders=names, flywheel=1.0)
+    piece = ShaftPiece(coupling.stiffness, coupling.damping)
+    return ShaftLine((cranks, ShaftMass("driven", coupling.inertia)), (piece,), load=1)
+
+
+class Critical(NamedTuple):
+    """A critical speed in revolutions per second: order, mode, and the sum of the phase vectors of the cranks.
+
+    distance: from the working speed, relatively; None without one.
+    """
+
+    order: float
+    mode: int
+    speed: float
+    phase_sum: float
+    distance: float | None
+
+    @property
+    def near(self) -> bool:
+        """Whether it lies beside the working speed."""
+        return self.distance is not None and abs(self.distance) <= NEAR and self.phase_sum > 0
+
+
+class ShaftVibration(Results):
+    """The vibrations of the shaft line of a machine; orders (k,) are those that are told. Raises UsageError."""
+
+    command = "torsion"
+
+    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], orders: Array | None = None) -> None:
+        self.machine = machine
+        self.line = shaft_line_of(machine)
+        self._forces = {forces.drive.name: forces for forces in cylinders}
+        self.cycle = 360.0 * machine.revolutions
+        self.orders = every_order(self.cycle) if orders is None else orders
+        self.chain = Chain.of(self.line, [self._inertia(mass) for mass in self.line.masses])
+        self.modes = Modes(self.chain)
+
+    def _inertia(self, mass: ShaftMass) -> float:
+        """Return J in kg m²: what is given, the flywheel, and the mean of what the parts of the cylinders reduce to."""
+        wheel = self.machine.flywheel.inertia if self.machine.flywheel else None
+        moving = [self._forces[name] for name in mass.cylinders if self._forces[name].drive.cylinder.masses]
+        reduced = (MovingInertia([CylinderEffort(one, self.cycle, reduced_inertia)], self.cycle).mean for one in moving)
+        inertia = math.fsum((mass.inertia, mass.flywheel * (wheel or 0.0), *reduced))
+        if not inertia > 0:
+            raise UsageError(f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'")
+        return inertia
+
+    # natural vibrations
+
+    @property
+    def first(self) -> int:
+        """Number of the first mode: 0 where the shaft turns freely."""
+        return 1 if self.chain.ground else 0
+
+    def holzer(self, mode: int) -> Holzer:
+        """Return Holzer's table of a mode by its number. Raises UsageError where there is none."""
+        last = self.first + len(self.modes.omegas) - 1
+        if not 1 <= mode <= last:
+            raise UsageError(f"--mode {mode}: the shaft line has the modes 1 to {last}")
+        return self.modes.holzer(mode - self.first)
+
+    @property
+    def natural_frequency(self) -> float:
+        """Lowest natural frequency in Hz but for the rotation of the whole."""
+        return float(self.modes.omegas[1 - self.first]) / (2 * math.pi)
+
+    @cached_property
+    def holzer_residual(self) -> float:
+        """Largest torque left behind the last mass, over the largest of its table, of all modes."""
+        return max(self.modes.holzer(index).residual for index in range(len(self.modes.omegas)))
+
+    # critical speeds
+
+    def critical_speeds(self, modes: int, highest: float = math.inf) -> tuple[Critical, ...]:
+        """Return the critical speeds of all orders up to the highest with the first modes."""
+        found = []
+        last = min(modes, self.first + len(self.modes.omegas) - 1)
+        for mode in range(1, last + 1):
+            omega = float(self.modes.omegas[mode - self.first])
+            sums = self._phase_sums(self.holzer(mode).angles)
+            for order, total in zip(self.orders[self.orders <= highest].tolist(), sums.tolist()):
+                speed = omega / (2 * math.pi * order)
+                distance = speed / self.machine.speed - 1 if self.machine.speed else None
+                found.append(Critical(order, mode, speed, total, distance))
+        return tuple(found)
+
+    def _phase_sums(self, angles: Array) -> Array:
+        """Return |Σ Θ e^{−iνβ}| over the cranks (k,); of an effort without cranks, the amplitude where it acts."""
+        at = {name: float(angles[i]) for i, mass in enumerate(self.line.masses) for name in mass.cylinders}
+        cranks = [(at[one.name], one.crank_position) for one in self.machine.cylinders]
+        amplitudes, positions = np.array(cranks or [(float(angles[0]), 0.0)]).T
+        sums = np.abs(phases(self.orders, positions) @ amplitudes)
+        return np.where(sums > _PRESENT * np.abs(amplitudes).sum(), sums, 0.0)
+
+    # forced vibration
+
+    @property
+    def obstacle(self) -> str:
+        """Why no forced vibration can be told, or an empty text."""
+        if not self.machine.speed:
+            return "no speed given" if self.machine.speed is None else "not defined at rest"
+        if not self.machine.effort and not any(forces.drive.has_force for forces in self._forces.values()):
+            return "no torque acts: no effort and no cylinder with a force is given"
+        return "" if self.chain.damped else "no damping given; at resonance nothing but damping bounds a vibration"
+
+    @cached_property
+    def acting(self) -> Excitation:
+        """The torques on the masses."""
+        turned = MachineEffort(self.machine, tuple(self._forces.values()))
+        return excitation(MachineOrders(turned, self.orders), self.line)
+
+    def forced(self, speeds: Sequence[float]) -> Vibration:
+        """Return the forced vibration at speeds in revolutions per second."""
+        return Vibration(self.chain, self.line, self.acting, 2 * np.pi * np.array(speeds))
+
+    @cached_property
+    def vibration(self) -> Vibration | None:
+        """The forced vibration at the working speed; None where none can be told."""
+        return None if self.obstacle or self.machine.speed is None else self.forced([self.machine.speed])
+
+    @property
+    def vibration_loss(self) -> float | None:
+        """Mean power in W that the damping takes."""
+        return None if self.vibration is None else float(self.vibration.loss[0])
+
+    @property
+    def M_vibratory(self) -> float | None:
+        """Largest vibratory torque in N m of any piece at the working speed."""
+        return max((piece.M_vibratory for piece in self.pieces), default=None)
+
+    @property
+    def tau_vibratory(self) -> float | None:
+        """Largest vibratory stress in Pa of any piece at the working speed."""
+        return max((piece.tau_vibratory for piece in self.pieces if piece.tau_vibratory is not None), default=None)
+
+    def met(self, critical: Critical) -> bool:
+        """Whether the machine meets a critical speed on its way to the working speed, or a little beyond."""
+        return (
+            not self.obstacle and bool(self.machine.speed) and critical.speed <= _RUN_UP * (self.machine.speed or 0.0)
+        )
+
+    @cached_property
+    def pieces(self) -> tuple[PieceTorque, ...]:
+        """The torque in every piece at the working speed; none where no forced vibration can be told."""
+        if self.vibration is None:
+            return ()
+        return tuple(
+            PieceTorque(self.vibration, piece, self.piece_name(piece)) for piece in range(len(self.line.pieces))
+        )
+
+    def piece_name(self, piece: int) -> str:
+        """Return what a piece lies between."""
+        names = [mass.name for mass in self.line.masses]
+        ends = [*(["ground"] if self.chain.ground == "before" else []), *names, "ground"]
+        return f"{ends[piece]} – {ends[piece + 1]}"
+
+
+class PieceTorque:
+    """The torque in one piece of the shaft line at the working speed, and the stress where its section is known."""
+
+    def __init__(self, vibration: Vibration, piece: int, name: str) -> None:
+        self._vibration, self._piece, self.name = vibration, piece, name
+        self._stress = stress(vibration.line, piece)
+
+    def _stressed(self, torque: float) -> float | None:
+        return None if self._stress is None else self._stress * torque
+
+    @property
+    def M_shaft_mean(self) -> float:
+        """Mean torque in N m."""
+        return float(self._vibration.means[self._piece])
+
+    @property
+    def M_shaft_max(self) -> float:
+        """Largest torque in N m."""
+        return self.M_shaft_mean + float(self._vibration.crests[0][self._piece, 0])
+
+    @property
+    def M_shaft_min(self) -> float:
+        """Smallest torque in N m."""
+        return self.M_shaft_mean + float(self._vibration.crests[1][self._piece, 0])
+
+    @property
+    def M_vibratory(self) -> float:
+        """Half of what the torque swings, in N m."""
+        return float(self._vibration.vibratory[self._piece, 0])
+
+    @property
+    def tau_mean(self) -> float | None:
+        """Stress of the mean torque in Pa."""
+        return self._stressed(self.M_shaft_mean)
+
+    @property
+    def tau_vibratory(self) -> float | None:
+        """Half of what the stress swings, in Pa."""
+        return self._stressed(self.M_vibratory)
+
+    def at(self, degrees: Array) -> WaveColumns:
+        """Return torque and stress at crank angles (n,) in degrees."""
+        return WaveColumns(self._vibration.over(self._piece, degrees), self._stress)
+
+
+class WaveColumns(NamedTuple):
+    """Torque in a piece in N m over the angle (n,), and by what it becomes a stress."""
+
+    M_shaft: Array
+    factor: float | None
+
+    @property
+    def tau(self) -> Array | None:
+        """Stress in Pa (n,)."""
+        return None if self.factor is None else self.M_shaft * self.factor

@@ -1,0 +1,213 @@
+"""Orders of the turning effort: M = M₀ + Σ Re(M_ν e^{iνφ}), ν periods per turn of the shaft.
+
+M has a corner or a jump wherever a card has one; samples at equal angles see them late. Every smooth piece is
+integrated by itself. What the inertia forces give is told apart: it goes with ω², the rest does not mind the speed.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kurbel.numerics.gauss import GAUSS
+from kurbel.numerics.grid import Pieces
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.turning.machine_effort import MachineEffort
+from kurbel.solver.turning.torques import Sum, Torque
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, ComplexArray
+
+HIGHEST = 24
+"""Order up to which they are told unless others are asked for."""
+_RESOLVED = 10.0
+"""Radians of the highest order that sixteen points of Gauss integrate to the last digit."""
+_ROUNDING = 1e-14
+"""What is smaller, over the torques that it is summed of, is rounding."""
+_ALIKE = 1e-9
+"""By what the sum of phase vectors of a major order may fall short of their number, relatively."""
+
+
+def every_order(cycle: float) -> Array:
+    """Return the orders up to the highest: halves of a cycle of 720 degrees, whole ones of 360."""
+    step = 360.0 / cycle
+    return np.asarray(step * np.arange(1, round(HIGHEST / step) + 1), dtype=float)
+
+
+class Spectrum(NamedTuple):
+    """The mean of a torque in N m, and its orders ν (n,) with their complex amplitudes M_ν (n,)."""
+
+    mean: float
+    orders: Array
+    amplitudes: ComplexArray
+
+    def times(self, factor: float) -> Spectrum:
+        """Return that of the torque times a factor."""
+        return self._replace(mean=factor * self.mean, amplitudes=factor * self.amplitudes)
+
+    def plus(self, other: Spectrum) -> Spectrum:
+        """Return that of the sum with a torque of the same orders."""
+        return self._replace(mean=self.mean + other.mean, amplitudes=self.amplitudes + other.amplitudes)
+
+    def cleared(self, size: float) -> Spectrum:
+        """Return it with 0 for what is rounding beside torques of this size in N m."""
+        return self._replace(amplitudes=np.where(np.abs(self.amplitudes) > _ROUNDING * size, self.amplitudes, 0.0))
+
+    @property
+    def size(self) -> float:
+        """The largest of its parts in N m."""
+        return max(abs(self.mean), float(np.abs(self.amplitudes).max(initial=0.0)))
+
+    def at(self, degrees: Array) -> Array:
+        """Return the sum of the mean and these orders in N m at crank angles (k,) in degrees."""
+        turned = np.radians(np.mod(np.multiply.outer(degrees, self.orders), 360.0))
+        return np.asarray(self.mean + np.cos(turned) @ self.amplitudes.real - np.sin(turned) @ self.amplitudes.imag)
+
+
+def spectrum(torque: Torque, orders: Array) -> Spectrum:
+    """Return mean and orders (n,) of a torque: M_ν = (2/Φ) ∫ M e^{−iνφ} dφ over its cycle Φ, piece by piece.
+
+    >>> from kurbel.solver.turning.torques import Uniform
+    >>> float(abs(spectrum(Uniform(5.0, 360.0), np.array([1.0])).amplitudes[0])) < 1e-14
+    True
+    """
+    pieces = _resolving(torque.cuts.grid().breaks, float(orders.max(initial=1.0)))
+    weights = pieces.half_widths[:, None] * pieces.weights / math.radians(float(pieces.high[-1]))
+    shares = torque.torque(pieces.degrees, pieces.within).value * weights
+    waves = (np.exp(-1j * np.radians(np.mod(order * pieces.degrees, 360.0))) for order in orders)
+    amplitudes = np.array([2 * (shares * wave).sum() for wave in waves], dtype=complex)
+    return Spectrum(float(shares.sum()), orders, amplitudes)
+
+
+def _resolving(breaks: Array, highest: float) -> Pieces:
+    """Return the pieces between the breaks, cut until they resolve the highest order."""
+    width = np.diff(breaks)
+    parts = np.ceil(np.radians(width) * (highest / _RESOLVED)).astype(int).clip(1)
+    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    low = np.repeat(breaks[:-1], parts) + np.repeat(width / parts, parts) * number
+    return Pieces(low, np.append(low[1:], breaks[-1]), GAUSS)
+
+
+class Orders(NamedTuple):
+    """What does not depend on the speed, and what the inertia forces give at the nominal speed, None without them."""
+
+    gas: Spectrum
+    inertia: Spectrum | None
+
+    @property
+    def whole(self) -> Spectrum:
+        """Both together."""
+        return self.gas if self.inertia is None else self.gas.plus(self.inertia)
+
+    @property
+    def size(self) -> float:
+        """The largest of the parts of both in N m."""
+        return max(one.size for one in self if one)
+
+    def cleared(self, size: float) -> Orders:
+        """Return both with 0 for what is rounding beside torques of this size in N m."""
+        return Orders(*(one and one.cleared(size) for one in self))  # type: ignore[arg-type]
+
+    def at_speed(self, ratio: float) -> Spectrum:
+        """Return both together at a speed, over the nominal one."""
+        return self.gas if self.inertia is None else self.gas.plus(self.inertia.times(ratio**2))
+
+    def times(self, gas: float, inertia: float) -> Orders:
+        """Return both, each times a factor."""
+        return Orders(self.gas.times(gas), None if self.inertia is None else self.inertia.times(inertia))
+
+    def plus(self, other: Orders) -> Orders:
+        """Return the orders of two torques together."""
+        one, two = self.inertia, other.inertia
+        return Orders(self.gas.plus(other.gas), one.plus(two) if one and two else one or two)
+
+    def turned(self, degrees: float) -> Orders:
+        """Return those of the torque put earlier by an angle."""
+        turn = np.exp(1j * np.radians(np.mod(self.gas.orders * degrees, 360.0)))
+        each = (one and one._replace(amplitudes=one.amplitudes * turn) for one in self)
+        return Orders(*each)  # type: ignore[arg-type]
+
+
+class CylinderOrders:
+    """The orders of the torque of one cylinder, without the losses of the machine.
+
+    in_machine: over the angle of crank 1; own: over that of its own crank.
+    """
+
+    def __init__(self, forces: CylinderForces, in_machine: Orders, own: Orders) -> None:
+        self.forces = forces
+        self.in_machine = in_machine
+        self.own = own
+
+    @cached_property
+    def area(self) -> float | None:
+        """R A in m³ of crank radius and head-end area, by which torques become tangential pressures."""
+        pistons, crank = self.forces.drive.cylinder.pistons, self.forces.drive.mechanism.crank
+        return math.pi / 4 * pistons[0].bore ** 2 * crank if pistons else None
+
+
+class MachineOrders:
+    """The orders (n,) of the turning effort of a whole machine and of its cylinders."""
+
+    def __init__(self, turned: MachineEffort, orders: Array | None = None) -> None:
+        self.turned = turned
+        self.orders = every_order(turned.cycle) if orders is None else orders
+
+    @cached_property
+    def cylinders(self) -> tuple[CylinderOrders, ...]:
+        """Those of every cylinder in which a force acts."""
+        return tuple(self._of(part.forces, part.effort, part.inertia) for part in self.turned.of_cylinders)
+
+    def _of(self, forces: CylinderForces, effort: Torque, inertia: Torque | None) -> CylinderOrders:
+        rest = effort if inertia is None else Sum((1.0, effort), (-1.0, inertia))
+        of_masses = None if inertia is None else spectrum(inertia, self.orders)
+        found = Orders(spectrum(rest, self.orders), of_masses)
+        found = found.cleared(found.size)
+        return CylinderOrders(forces, found, found.turned(forces.drive.cylinder.crank_position))
+
+    @cached_property
+    def machine(self) -> Orders:
+        """Those of the turning effort, with the losses of the machine."""
+        if not self.turned.of_cylinders:
+            known = spectrum(self.turned.effort, self.orders)
+            return Orders(known.cleared(known.size), None)
+        total, *others = each = [one.in_machine for one in self.cylinders]
+        for other in others:
+            total = total.plus(other)
+        size = math.fsum(one.size for one in each)
+        return total.cleared(size).times(self.turned.efficiency, self.turned.efficiency)
+
+    @property
+    def M_mean(self) -> float:
+        """Mean torque in N m."""
+        return self.machine.whole.mean
+
+    @cached_property
+    def swing(self) -> float:
+        """Mean square in N² m² of the torque less its mean."""
+        excess = self.turned.excess
+        torque = excess.effort.torque(excess.grid.degrees, excess.grid.within).value - excess.mean
+        return excess.grid.integral(torque * torque) / math.radians(self.turned.cycle)
+
+    @property
+    def orders_share(self) -> float | None:
+        """Share of that which these orders carry, Σ |M_ν|²/2 over it (Parseval); None where the torque is uniform."""
+        carried = float((np.abs(self.machine.whole.amplitudes) ** 2).sum() / 2)
+        return carried / self.swing if self.swing > 1e-28 * self.M_mean**2 else None
+
+    @property
+    def major_orders(self) -> tuple[float, ...] | None:
+        """The orders to which all cranks contribute in phase; None with fewer than two cylinders."""
+        positions = np.array([one.forces.drive.cylinder.crank_position for one in self.cylinders])
+        if len(positions) < 2:
+            return None
+        together = np.abs(phases(self.orders, positions).sum(axis=1)) >= (1 - _ALIKE) * len(positions)
+        return tuple(self.orders[together].tolist())
+
+
+def phases(orders: Array, positions: Array) -> ComplexArray:
+    """Return e^{−iνβ} for orders (n,) and crank positions β (k,) in degrees, (n, k)."""
+    return np.asarray(np.exp(-1j * np.radians(np.mod(np.multiply.outer(orders, positions), 360.0))))

@@ -1,0 +1,246 @@
+"""Forced torsional vibration: order by order, over the angle, by its energy, and with the coupling of the flywheel."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from kurbel.machine import Machine
+from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPart, ShaftPiece
+from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
+from kurbel.machine_file import load
+from kurbel.numerics.grid import Cuts
+from kurbel.numerics.jet import Jet
+from kurbel.numerics.waves import crests
+from kurbel.solver.case import Case
+from kurbel.solver.shaft_line.chain import Chain
+from kurbel.solver.shaft_line.periodic import ChainEquation
+from kurbel.solver.shaft_line.response import responding, twisting
+from kurbel.solver.torsion.vibration import ShaftVibration
+from kurbel.solver.turning.flywheel import MachineTurning
+from kurbel.solver.turning.harmonics import spectrum
+from turning_machines import of_points
+
+CONFIGS = Path(__file__).parent.parent.parent / "configs"
+POINTS = [(0, 100), (60, 900), (60, 500), (180, 100), (240, 700), (360, 100)]
+
+
+def damped(count: int, ground: str, seed: int, loss: float = 0.03) -> Chain:
+    draw = np.random.default_rng(seed)
+    pieces = count if ground else count - 1
+    return Chain(
+        10 ** draw.uniform(-1, 1, count),
+        10 ** draw.uniform(3, 5, pieces),
+        draw.uniform(0, 5, pieces),
+        draw.uniform(0, 5, count),
+        draw.uniform(0, loss, pieces) if loss else np.zeros(pieces),
+        ground,
+    )
+
+
+@pytest.mark.parametrize("ground", ["", "before", "after"])
+@pytest.mark.parametrize("count", [1, 2, 5, 12])
+def test_every_order_solves_its_equations(count: int, ground: str) -> None:
+    """(K (1 + iη) + iνω C − (νω)² J) θ = M, with 40 digits by mpmath."""
+    if count == 1 and not ground:
+        return
+    chain = damped(count, ground, 3)
+    frequencies = np.array([[0.7, 20.0], [150.0, 900.0]])
+    draw = np.random.default_rng(4)
+    torques = draw.normal(size=(count, 2, 2)) + 1j * draw.normal(size=(count, 2, 2))
+    found = responding(chain, frequencies, torques)
+    for place, w in np.ndenumerate(frequencies):
+        springs = chain.stiffnesses * (1 + 1j * chain.loss) + 1j * w * chain.piece_damping
+        whole = chain.twists.T @ np.diag(springs) @ chain.twists
+        whole = whole + np.diag(1j * w * chain.mass_damping - w * w * chain.inertias)
+        with mpmath.workdps(40):
+            sides = mpmath.matrix([complex(one) for one in torques[(slice(None), *place)]])
+            exact = mpmath.lu_solve(mpmath.matrix(whole.tolist()), sides)
+        wanted = np.array([complex(one) for one in exact])
+        assert found[(slice(None), *place)] == pytest.approx(wanted, abs=1e-12 * np.abs(wanted).max())
+
+
+def test_a_piece_of_the_chain_in_resonance_by_itself_is_no_harm() -> None:
+    """The first two masses alone, the third held, swing at √(k/J) (√5 − 1)/2: their pivot vanishes there."""
+    chain = Chain(np.ones(4), np.ones(3), np.zeros(3), np.array([0.0, 0, 0, 0.1]), np.zeros(3))
+    frequencies = np.array([(math.sqrt(5) - 1) / 2, 1.0])
+    torques = np.zeros((4, 2), dtype=complex)
+    torques[0] = 1.0
+    found = responding(chain, frequencies, torques)
+    for column, w in enumerate(frequencies):
+        whole = chain.twists.T @ chain.twists + np.diag(1j * w * chain.mass_damping - w * w)
+        assert whole @ found[:, column] == pytest.approx(torques[:, column], abs=1e-14)
+
+
+def machine_of(load: Load | None = None, effort: Any = None, damping: float = 60.0, order: float = 2.4) -> Machine:
+    """Masses of 60 and 40 kg m² on a coupling, whose natural order at 60 rpm is `order`."""
+    stiffness = (order * 2 * math.pi) ** 2 / (1 / 60.0 + 1 / 40.0)
+    if effort is None:
+        effort = Effort(*(tuple(map(float, one)) for one in zip(*POINTS)))
+    coupling = Coupling(stiffness, 40.0, damping)
+    return Machine((), effort=effort, speed=1.0, flywheel=Flywheel(60.0), coupling=coupling, load=load)
+
+
+class Passed:
+    """The torque in the coupling, as a torque of which orders can be taken."""
+
+    def __init__(self, turning: MachineTurning) -> None:
+        self._elastic = turning.elastic
+        self.cuts = Cuts(np.append(self._elastic.motion.elements.low, self._elastic.cycle))
+
+    def torque(self, degrees: np.ndarray, within: np.ndarray) -> Jet:
+        return Jet(self._elastic._sampled(degrees, within)["torque"].value, np.zeros_like(degrees))
+
+
+@pytest.mark.parametrize("order", [0.4, 2.4, 7.5])
+@pytest.mark.parametrize("load", [None, Load(slip=0.05)], ids=["constant", "slip"])
+def test_the_coupling_of_the_flywheel_order_by_order(load: Load | None, order: float) -> None:
+    """Linear loads, an effort that jumps: what `flywheel` finds over the angle has the orders of `torsion`."""
+    case = Case(machine_of(load, order=order))
+    orders = case.torsion.orders
+    over_the_angle = spectrum(Passed(case.flywheel), orders).amplitudes
+    in_orders = case.torsion.vibration.torques[0, 0]
+    assert over_the_angle == pytest.approx(in_orders, abs=1e-12 * np.abs(in_orders).max())
+
+
+@pytest.mark.parametrize("load", [None, Load(slip=0.05)], ids=["constant", "slip"])
+def test_the_coupling_of_the_flywheel_with_all_its_orders(load: Load | None) -> None:
+    """An effort that has three orders: the same torque over the angle, and the same extremes."""
+    case = Case(machine_of(load, Harmonics(400.0, ((1.0, 30.0, -50.0), (2.0, 80.0, 20.0), (5.0, 0.0, 60.0)))))
+    (piece,) = case.torsion.pieces
+    angles = np.linspace(0, 360, 73)
+    assert piece.at(angles).M_shaft == pytest.approx(case.flywheel.at(angles).M_coupling, rel=1e-12)
+    assert piece.M_shaft_max == pytest.approx(case.flywheel.elastic.M_coupling_max.value, rel=1e-12)
+    assert piece.M_shaft_min == pytest.approx(case.flywheel.elastic.M_coupling_min.value, rel=1e-12)
+
+
+@pytest.mark.parametrize("ground", ["", "after"])
+def test_longer_chains_over_the_angle_have_the_same_orders(ground: str) -> None:
+    """Collocation in 2n − 1 or 2n unknowns, driven at two masses by torques that jump."""
+    chain, omega, cycle = damped(3, ground, 11, loss=0.0), 30.0, 360.0
+    efforts = [of_points(points).excess for points in (POINTS, [(0, 50), (100, 50), (100, 300), (360, 300)])]
+
+    def driving(degrees: np.ndarray, within: np.ndarray) -> np.ndarray:
+        first, last = (one.effort.torque(degrees, within).value - one.mean for one in efforts)
+        return np.stack((first, np.zeros_like(first), last))
+
+    equation = ChainEquation(chain, omega, 4.0, driving)
+    motion = equation.solved(Cuts.joined([one.effort.cuts for one in efforts]).grid().breaks)
+
+    class InPiece:
+        cuts = Cuts(np.append(motion.elements.low, cycle))
+
+        def __init__(self, piece: int) -> None:
+            self._passing = equation.passing[piece]
+
+        def torque(self, degrees: np.ndarray, within: np.ndarray) -> Jet:
+            return Jet(motion.at(degrees, within) @ self._passing, np.zeros_like(degrees))
+
+    orders = np.arange(1.0, 13.0)
+    torques = np.zeros((3, 12), dtype=complex)
+    torques[0], torques[2] = (spectrum(one.effort, orders).amplitudes for one in efforts)
+    wanted = twisting(chain, orders * omega, responding(chain, orders * omega, torques))
+    for piece, amplitudes in enumerate(wanted):
+        assert spectrum(InPiece(piece), orders).amplitudes == pytest.approx(
+            amplitudes, abs=1e-12 * np.abs(wanted).max()
+        )
+
+
+def test_the_damping_takes_what_the_torques_give() -> None:
+    for name in ("generator-coupling", "marine-diesel", "torsional-damper", "coupled-blower"):
+        vibration = Case(load(CONFIGS / f"{name}.yaml")).torsion.vibration
+        assert vibration.loss[0] > 0
+        assert vibration.power == pytest.approx(vibration.loss, rel=1e-12)
+
+
+def shaft(effort: Any, speed: float, *parts: Any, **more: Any) -> ShaftVibration:
+    return Case(Machine((), effort=effort, speed=speed, shaft=ShaftLine.of_parts(parts), **more)).torsion
+
+
+def test_two_masses_in_closed_form() -> None:
+    """T = k (1 + iη) M/J₁ /(ω_e² (1 + iη) − ω²), ω_e² = k (J₁ + J₂)/(J₁J₂); at resonance with the magnifier 1/η."""
+    first, second, stiffness, loss = 3.0, 7.0, 2000.0, 0.02
+    resonance = math.sqrt(stiffness * (1 / first + 1 / second)) / (2 * math.pi)
+    parts = (ShaftPart(inertia=first), ShaftPart(stiffness=stiffness, loss_factor=loss), ShaftPart(inertia=second))
+    for speed in (0.4 * resonance, resonance / 2, resonance, 3.0 * resonance):
+        found = shaft(Harmonics(10.0, ((2.0, 6.0, 8.0),)), speed, *parts)
+        square, spring = (4 * math.pi * speed) ** 2, 1 + 1j * loss
+        exact = stiffness * spring * (6 - 8j) / first / ((2 * math.pi * resonance) ** 2 * spring - square)
+        assert found.vibration.torques[0, 0, 1] == pytest.approx(exact, rel=1e-12)
+        assert found.vibration_loss == pytest.approx(
+            loss * stiffness * 4 * math.pi * speed * abs(exact / (stiffness * spring)) ** 2 / 2, rel=1e-12
+        )
+    at_resonance = shaft(Harmonics(10.0, ((2.0, 6.0, 8.0),)), resonance / 2, *parts).pieces[0]
+    static = 10.0 * second / (first + second)
+    assert at_resonance.M_vibratory == pytest.approx(static * abs(1 + 1j * loss) / loss, rel=1e-12)
+
+
+def test_a_gear_is_the_chain_referred_to_one_shaft() -> None:
+    """The torque behind the gear is that of the referred chain over u, its stress that of its own section."""
+    effort = Harmonics(10.0, ((1.0, 3.0, 2.0), (3.0, 1.0, -2.0)))
+    behind = (ShaftPart(diameter=0.03, length=0.5, loss_factor=0.05), ShaftPart(inertia=0.4))
+    before = (ShaftPart(inertia=2.0), ShaftPart(stiffness=5e4, loss_factor=0.01), ShaftPart(inertia=0.3))
+    geared = shaft(effort, 10.0, *before, ShaftPart(gear=2.5), ShaftPart(inertia=0.1), *behind)
+    stiffness = 82e9 * math.pi * 0.03**4 / 32 / 0.5 * 2.5**2
+    plain = shaft(
+        effort,
+        10.0,
+        *before[:2],
+        ShaftPart(inertia=0.3 + 0.1 * 2.5**2),
+        ShaftPart(stiffness=stiffness, loss_factor=0.05),
+        ShaftPart(inertia=0.4 * 2.5**2),
+    )
+    assert geared.modes.omegas == pytest.approx(plain.modes.omegas, rel=1e-14)
+    one, other = geared.pieces[1], plain.pieces[1]
+    assert one.M_vibratory == pytest.approx(other.M_vibratory / 2.5, rel=1e-12)
+    assert one.M_shaft_mean == pytest.approx(4.0, rel=1e-14)
+    assert one.tau_vibratory == pytest.approx(16 * one.M_vibratory / (math.pi * 0.03**3), rel=1e-14)
+
+
+def test_the_mean_torque_goes_to_the_load() -> None:
+    effort, piece = Harmonics(10.0, ((1.0, 3.0, 2.0),)), ShaftPart(stiffness=1e4, damping=1.0)
+    masses = [ShaftPart(inertia=1.0), ShaftPart(inertia=2.0, load=True), ShaftPart(inertia=3.0)]
+    found = shaft(effort, 5.0, masses[0], piece, masses[1], piece, masses[2])
+    assert [one.M_shaft_mean for one in found.pieces] == pytest.approx([10.0, 0.0], abs=1e-14)
+    held = shaft(effort, 5.0, "ground", piece, masses[0], piece, masses[2])
+    assert [one.M_shaft_mean for one in held.pieces] == pytest.approx([-10.0, 0.0], abs=1e-14)
+
+
+def test_crests_against_many_samples() -> None:
+    draw = np.random.default_rng(2)
+    waves = [1, 2, 3, 7, 24]
+    amplitudes = draw.normal(size=(40, 5)) + 1j * draw.normal(size=(40, 5))
+    high, low = crests(waves, amplitudes)
+    angles = np.linspace(0, 2 * np.pi, 200_001)
+    for row, largest, smallest in zip(amplitudes[:6], high, low):
+        curve = (row * np.exp(1j * np.multiply.outer(angles, waves))).sum(axis=1).real
+        assert largest == pytest.approx(curve.max(), rel=1e-6)
+        assert largest >= curve.max()
+        assert smallest <= curve.min()
+
+
+def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
+    """J + m_pin R² + m mean(x′²), the mean of (1 + λ²/4 + …)/2 with mpmath."""
+    found = Case(load(CONFIGS / "coupled-blower.yaml")).torsion
+    lam, crank = mpmath.mpf(1) / 5, mpmath.mpf("0.2")
+
+    def slope(phi: Any) -> Any:
+        sin, cos = mpmath.sin(phi), mpmath.cos(phi)
+        return sin + lam * sin * cos / mpmath.sqrt(1 - (lam * sin) ** 2)
+
+    mean = mpmath.quad(lambda phi: slope(phi) ** 2, [0, mpmath.pi / 2, mpmath.pi, 2 * mpmath.pi]) / (2 * mpmath.pi)
+    each = (90 + 30 + 60 + 60) * crank**2 * mean + 60 * crank**2
+    assert found.chain.inertias[0] == pytest.approx(float(900 + 2 * each), rel=1e-13)
+
+
+def test_a_line_made_in_python() -> None:
+    line = ShaftLine((ShaftMass("a", 1.0), ShaftMass("b", 1.0)), (ShaftPiece(50.0),))
+    found = Case(Machine((), shaft=line)).torsion
+    assert found.natural_frequency == pytest.approx(10 / (2 * math.pi), rel=1e-15)
+    assert found.obstacle == "no speed given"
+    assert found.pieces == ()

@@ -1,0 +1,249 @@
+"""Orders of the turning effort: against integrals with 40 digits, by laws, and the same effort given by its orders."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from decimal import Decimal
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from kurbel.accuracy.decimals import precise
+from kurbel.accuracy.oracle import CylinderOracle
+from kurbel.errors import UsageError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.indicator import Indicator
+from kurbel.machine.masses import ConnectingRod, Masses
+from kurbel.machine.piston import Piston
+from kurbel.machine.turning import Harmonics
+from kurbel.machine_file import load, loads
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.case import Case
+from kurbel.solver.turning.harmonics import MachineOrders
+from machines import STEAM_CARD
+from turning_machines import of_points
+
+mp = mpmath.mp
+CONFIGS = Path(__file__).parent.parent.parent / "configs"
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+
+def steam(**more: Any) -> Cylinder:
+    card = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
+    return Cylinder(SliderCrank(0.4, 2.0), **{"pistons": (card,), "masses": Masses(826.0), **more})
+
+
+def orders_of(machine: Machine, orders: list[float] | None = None) -> MachineOrders:
+    return Case(machine).harmonics(None if orders is None else np.array(orders))
+
+
+def gauss(torque: Callable[[float], Any], edges: list[float], orders: list[float]) -> list[complex]:
+    """M_ν = (2/Φ) ∫ M e^{−iνφ} dφ of a torque over degrees, at 24 Gauss points of every piece."""
+    total = np.zeros(len(orders), dtype=complex)
+    for low, high in pairwise(edges):
+        for node, weight in zip(NODES, WEIGHTS) if high - low > 1e-9 else ():
+            angle = (low + high) / 2 + (high - low) / 2 * float(node)
+            share = float(torque(angle)) * weight * (high - low) / edges[-1]
+            total += share * np.exp(-1j * np.radians(np.array(orders) * angle))
+    return total.tolist()
+
+
+def by_integrals(machine: Machine, orders: list[float]) -> list[complex]:
+    """M_ν of one cylinder: its torque with 40 digits, written as the textbooks have it."""
+    cycle = 360.0 * machine.revolutions
+    with precise(40):
+        oracle = CylinderOracle(machine, machine.cylinders[0])
+        edges = sorted({*map(float, oracle.breaks), *np.arange(0.0, cycle + 1, 15.0).tolist()})
+        return gauss(lambda angle: oracle.torque(Decimal(angle), Decimal(angle)), edges, orders)
+
+
+@pytest.mark.parametrize(
+    ("name", "orders"),
+    [
+        ("steam", [1, 2, 7, 24]),
+        ("gas-engine", [0.5, 2.5, 24]),
+    ],
+)
+def test_against_torques_of_40_digits(name: str, orders: list[float]) -> None:
+    """Cards with corners and jumps: 1e-12 of the largest torque."""
+    machine = Machine((steam(),), speed=50 / 60) if name == "steam" else load(CONFIGS / f"{name}.yaml")
+    machine = replace(
+        machine, cylinders=(replace(machine.cylinders[0], friction=None, inclination=None),), efficiency=1.0
+    )
+    found = orders_of(machine, orders)
+    largest = Case(machine).flywheel.M_max.value
+    assert found.machine.whole.amplitudes == pytest.approx(by_integrals(machine, orders), abs=1e-12 * largest)
+
+
+def test_a_trace_against_straight_lines_between_its_samples() -> None:
+    """p A dx/dφ with p straight over the angle, 40 digits; the trace jumps at 360 degrees."""
+    points = [
+        (0, 40),
+        (10, 75),
+        (25, 50),
+        (90, 8),
+        (180, 2),
+        (360, 1),
+        (360, 1.5),
+        (540, 1),
+        (620, 3),
+        (700, 25),
+        (720, 40),
+    ]
+    listed = ", ".join(f"[{angle}, {pressure}]" for angle, pressure in points)
+    trace = f"{{head_end: {{trace: {{unit: bar, points: [{listed}]}}}}}}"
+    text = f"crank: 60 mm\nrod: 150 mm\nbore: 100 mm\ncycle: four-stroke\nindicator: {trace}"
+    orders = [0.5, 1.0, 3.5, 24.0]
+    found = orders_of(loads(text), orders).machine.whole.amplitudes
+
+    def torque(angle: float) -> Any:
+        (low, first), (high, last) = next(one for one in pairwise(points) if one[0][0] <= angle < one[1][0])
+        pressure = first + (mpmath.mpf(last) - mpmath.mpf(first)) * (angle - low) / (high - low)
+        sin, cos, lam = mp.sin(mp.radians(angle)), mp.cos(mp.radians(angle)), mpmath.mpf("0.4")
+        slope = mpmath.mpf("0.06") * (sin + lam * sin * cos / mp.sqrt(1 - (lam * sin) ** 2))
+        return pressure * 100000 * mp.pi / 4 * mpmath.mpf("0.01") * slope
+
+    with mpmath.workdps(40):
+        edges = sorted({*(float(angle) for angle, _ in points), *np.arange(0.0, 721.0, 15.0).tolist()})
+        exact = gauss(torque, edges, orders)
+    assert found == pytest.approx(exact, abs=1e-12 * 75e5 * 0.00785 * 0.06)
+
+
+def test_a_diagram_with_jumps_in_closed_form() -> None:
+    """Straight pieces by parts with mpmath: ∫ (a + bφ) e^{−iνφ} dφ."""
+    points = [(0, 100), (60, 900), (60, 500), (180, 100), (240, 700), (360, 100)]
+    orders = [1, 2, 5, 24, 200]
+    found = Case(of_points(points).machine).harmonics(np.array(orders, dtype=float)).machine.whole
+    with mpmath.workdps(40):
+        for order, amplitude in zip(orders, found.amplitudes):
+            exact = mpmath.mpc(0)
+            for (low, first), (high, last) in pairwise(points):
+                if low == high:
+                    continue
+                a, b = mp.radians(low), mp.radians(high)
+                rise, k = (mpmath.mpf(last) - first) / (b - a), mpmath.mpc(0, -order)
+
+                def primitive(x: Any, value: float, k: Any = k, rise: Any = rise) -> Any:
+                    return mp.exp(k * x) * (mpmath.mpf(value) / k - rise / k**2)
+
+                exact += (primitive(b, last) - primitive(a, first)) / mp.pi
+            assert complex(amplitude) == pytest.approx(complex(exact), abs=1e-12 * 900)
+
+
+@pytest.mark.parametrize("ratio", [1.02, 2.5, 5.0])
+def test_the_exact_rod_by_its_kinetic_energy(ratio: float) -> None:
+    """T_b = −½ ω² dJ/dφ with J of piston and rod from the velocities of their centres of gravity, by mpmath."""
+    crank, length, piston, mass, arm, own, omega = 0.1, 0.1 * ratio, 3.0, 2.0, 0.04, 0.011, 200.0
+    rod = ConnectingRod(mass, center_of_gravity=arm, inertia=own)
+    machine = Machine((Cylinder(SliderCrank(crank, length), masses=Masses(piston, rod)),), speed=omega / (2 * math.pi))
+    found = orders_of(machine, [1.0, 2.0, 3.0, 4.0, 12.0]).machine
+
+    def energy(phi: Any) -> Any:
+        sin, cos = mp.sin(phi), mp.cos(phi)
+        sin_psi = crank / mpmath.mpf(length) * sin
+        cos_psi = mp.sqrt(1 - sin_psi**2)
+        swing = crank * cos / (length * cos_psi)
+        slide = crank * sin + length * sin_psi * swing  # speed of the crosshead toward the shaft
+        along, across = slide - arm * sin_psi * swing, arm * cos_psi * swing
+        return piston * slide**2 + mass * (along**2 + across**2) + own * swing**2
+
+    with mpmath.workdps(40):
+        count = 400
+        angles = [2 * mp.pi * i / count for i in range(count)]
+        inertia = [energy(angle) for angle in angles]
+        for order, amplitude in zip(found.inertia.orders, found.inertia.amplitudes):
+            step = mp.expjpi(mpmath.mpf(-2 * int(order)) / count)
+            wave, total = mpmath.mpc(1), mpmath.mpc(0)
+            for value in inertia:
+                total += value * wave
+                wave *= step
+            exact = -(mpmath.mpf(omega) ** 2) / 2 * mpmath.mpc(0, int(order)) * 2 * total / count
+            assert complex(amplitude) == pytest.approx(complex(exact), abs=1e-12 * omega**2 * float(max(inertia)))
+
+
+def test_the_series_of_the_inertia_torque() -> None:
+    """Den Hartog's λ/4, −½, −3λ/4, −λ²/4 are its beginnings; λ = 1/4, with 12 digits."""
+    machine = Machine((Cylinder(SliderCrank(1.0, 4.0), masses=Masses(1.0)),), speed=1 / (2 * math.pi))
+    found = orders_of(machine).machine.inertia.amplitudes[:8]
+    known = [0.063506260577, -0.500130140561, -0.192055573420, -0.016129031165]
+    known += [0.002592310746, 0.000390320062, -4.3971084e-5, -8.396165e-6]
+    assert found.real == pytest.approx(0, abs=1e-15)
+    assert -found.imag == pytest.approx(known, abs=1e-12)
+
+
+def test_effort_by_harmonics_comes_back() -> None:
+    first = orders_of(load(CONFIGS / "waterworks-two-cranks.yaml")).machine.whole
+    terms = tuple((v, m.real, -m.imag) for v, m in zip(first.orders.tolist(), first.amplitudes.tolist()))
+    again = orders_of(Machine((), effort=Harmonics(first.mean, terms))).machine.whole
+    assert again.mean == pytest.approx(first.mean, rel=1e-14)
+    assert again.amplitudes == pytest.approx(first.amplitudes, abs=1e-13 * first.size)
+
+
+@pytest.mark.parametrize("name", ["waterworks-two-cranks", "four-cylinder-generator", "diesel-four-stroke"])
+def test_their_sum_is_the_torque(name: str) -> None:
+    """Bessel: the mean square of what 24 orders leave is what Parseval says."""
+    machine = load(CONFIGS / f"{name}.yaml")
+    found = orders_of(machine)
+    turning = Case(machine).flywheel
+    grid = turning.excess.grid.split_at(np.arange(0.0, 360.0 * machine.revolutions, 5.0))
+    left = turning.excess.effort.torque(grid.degrees, grid.within).value - found.machine.whole.at(grid.degrees)
+    square = grid.integral(left**2) / math.radians(360.0 * machine.revolutions)
+    assert square == pytest.approx((1 - found.orders_share) * found.swing, rel=1e-6)
+    assert 0.99 < found.orders_share < 1
+
+
+def test_the_inertia_goes_with_the_square_of_the_speed() -> None:
+    slow, fast = (Machine((steam(),), speed=rpm / 60) for rpm in (50.0, 85.0))
+    found = orders_of(slow).machine.at_speed(85 / 50)
+    assert found.amplitudes == pytest.approx(orders_of(fast).machine.whole.amplitudes, abs=1e-13 * found.size)
+
+
+def test_a_crank_that_follows_turns_its_orders() -> None:
+    """M_ν e^{−iνβ}; over its own angle every cylinder has the same ones."""
+    alone = orders_of(Machine((steam(),), speed=50 / 60)).machine.whole
+    two = orders_of(Machine((steam(), steam(name="b", crank_position=73.0)), speed=50 / 60))
+    turn = np.exp(-1j * np.radians(73.0 * alone.orders))
+    assert two.cylinders[1].in_machine.whole.amplitudes == pytest.approx(
+        alone.amplitudes * turn, abs=1e-12 * alone.size
+    )
+    assert two.cylinders[1].own.whole.amplitudes == pytest.approx(alone.amplitudes, abs=1e-12 * alone.size)
+
+
+@pytest.mark.parametrize(
+    ("positions", "cycle", "major"),
+    [
+        ((0, 90), "two-stroke", (4, 8)),
+        ((0, 120, 240), "two-stroke", (3, 6)),
+        ((0, 180, 360, 540), "four-stroke", (2, 4, 6, 8)),
+        ((0, 120, 240, 360, 480, 600), "four-stroke", (3, 6)),
+    ],
+)
+def test_major_orders(positions: tuple[float, ...], cycle: str, major: tuple[float, ...]) -> None:
+    """Den Hartog: multiples of half the number of cylinders in four strokes; the others of equal cylinders vanish."""
+    line = tuple(steam(name=str(p), crank_position=float(p), pistons=()) for p in positions)
+    found = orders_of(Machine(line, speed=1.0, cycle=cycle))
+    assert found.major_orders[: len(major)] == major
+    assert set(major) == {order for order in found.major_orders if order <= major[-1]}
+    others = ~np.isin(found.orders, found.major_orders)
+    if len(positions) != 2:
+        assert not found.machine.whole.amplitudes[others].any()
+    assert orders_of(Machine(line[:1], speed=1.0, cycle=cycle)).major_orders is None
+
+
+def test_the_efficiency_takes_its_share() -> None:
+    plain, lossy = (orders_of(Machine((steam(),), speed=1.0, efficiency=eta)).machine.whole for eta in (1.0, 0.8))
+    assert lossy.amplitudes == pytest.approx(0.8 * plain.amplitudes, rel=1e-14)
+
+
+def test_without_a_speed_there_is_no_inertia() -> None:
+    found = orders_of(Machine((steam(),)))
+    assert found.machine.inertia is None
+    assert found.machine.whole is found.machine.gas
+    with pytest.raises(UsageError, match="no force acts"):
+        orders_of(Machine((steam(pistons=(), masses=None),)))

@@ -1,0 +1,177 @@
+"""`kurbel harmonics` and `kurbel torsion` as their users call them: formats, options, and what they refuse."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+
+CONFIGS = Path(__file__).parent.parent / "configs"
+BLOWER, SHIP = (str(CONFIGS / f"{name}.yaml") for name in ("coupled-blower", "marine-diesel"))
+TWO = "shaft: [{inertia: 2 kg m2}, {stiffness: 50 N m/rad}, {inertia: 2 kg m2}]\n"
+
+
+def run(*arguments: str, text: str | None = None) -> Result:
+    return CliRunner().invoke(kurbel, list(arguments), input=text)
+
+
+def parsed(*arguments: str, text: str | None = None) -> dict[str, Any]:
+    result = run(*arguments, "-f", "json", text=text)
+    assert result.exit_code == 0, result.output
+    found: dict[str, Any] = json.loads(result.stdout)
+    return found
+
+
+def table(found: dict[str, Any], id: str) -> dict[str, list[Any]]:
+    one = next(one for one in found["machine_place_tables"] if one["id"] == id)
+    return {column["id"]: column["values"] for column in one["columns"]}
+
+
+def test_the_columns_that_scripts_rely_on() -> None:
+    orders = table(parsed("harmonics", BLOWER), "orders")
+    assert list(orders) == ["order", "M_cos", "M_sin", "M_amplitude", "M_phase", "M_gas", "M_inertia"]
+    assert orders["order"] == list(range(1, 25))
+    found = parsed("torsion", SHIP)
+    assert [one["id"] for one in found["machine_place_tables"]] == ["modes", "holzer", "critical_speeds", "pieces"]
+    modes, critical = table(found, "modes"), table(found, "critical_speeds")
+    assert list(modes)[:2] == ["mode", "frequency"]
+    assert list(critical)[:3] == ["order", "mode", "speed"]
+    assert (modes["mode"][:2], modes["frequency"][0]) == ([0, 1], 0)
+    assert critical["order"] == list(range(1, 13)) * 3
+    for order, mode, speed in zip(critical["order"], critical["mode"], critical["speed"]):
+        assert speed == pytest.approx(modes["frequency"][int(mode)] / order, rel=1e-15)
+    assert all(isinstance(one["unit"], str) for one in found["machine_place_tables"][0]["columns"])
+
+
+def test_half_orders_of_four_strokes() -> None:
+    found = parsed("harmonics", str(CONFIGS / "four-cylinder-generator.yaml"))
+    assert table(found, "orders")["order"] == [half / 2 for half in range(1, 49)]
+    marks = found["machine_place_tables"][0]["rows"]
+    assert [index / 2 + 0.5 for index, mark in enumerate(marks) if mark["kind"] == "major"] == list(range(2, 25, 2))
+    assert len(found["cylinders"]) == 4
+
+
+def test_orders_over_the_speed() -> None:
+    found = table(parsed("harmonics", BLOWER, "--speeds", "75, 150 rpm", "--orders", "1,3"), "orders_by_speed")
+    assert (found["speed"], found["order"]) == ([1.25, 1.25, 2.5, 2.5], [1, 3, 1, 3])
+    slow = table(parsed("harmonics", BLOWER, "--set", "speed=75 rpm", "--orders", "1,3"), "orders")
+    assert found["M_cos"][:2] == pytest.approx(slow["M_cos"], rel=1e-12)
+
+
+def test_csv_tells_whose_orders() -> None:
+    rows = list(csv.DictReader(run("harmonics", BLOWER, "-f", "csv", "--orders", "1,2").stdout.splitlines()))
+    assert [(row["cylinder"], row["order"]) for row in rows] == [
+        (name, order) for name in ("cylinder 1", "cylinder 2", "whole machine") for order in ("1.0", "2.0")
+    ]
+
+
+def test_every_piece_over_the_angle() -> None:
+    found = parsed("torsion", SHIP, "--columns", "M_shaft,tau", "--step", "1")
+    pieces = found["cylinders"]
+    assert len(pieces) == 7
+    shown = table(found, "pieces")
+    for number, piece in enumerate(pieces):
+        columns = {column["id"]: column["values"] for column in piece["columns"]}
+        assert max(columns["M_shaft"]) == pytest.approx(shown["M_shaft_max"][number], rel=1e-2)
+        assert max(columns["M_shaft"]) <= shown["M_shaft_max"][number]
+        stressed = [one / two for one, two in zip(columns["M_shaft"], columns["tau"])]
+        assert min(stressed) == pytest.approx(max(stressed), rel=1e-12)
+
+
+def test_over_the_speed_the_critical_one_is_the_worst() -> None:
+    found = parsed("torsion", BLOWER, "--speeds", "60:90:1 rpm", "--orders", "3")
+    speeds, critical = table(found, "speeds"), table(found, "critical_speeds")
+    worst = max(range(31), key=speeds["M_vibratory"].__getitem__)
+    assert speeds["speed"][worst] == pytest.approx(critical["speed"][0], abs=1.5 / 60)
+    assert len(speeds["speed"]) == 31
+
+
+def test_what_lies_beside_the_working_speed_is_told() -> None:
+    result = run("torsion", SHIP)
+    assert "mode 1: critical speed of order 3 (-1.78 %) within 10 % of the working speed 110 rpm" in result.stdout
+    assert any(line.split()[:4] == ["near", "3", "1", "108"] for line in result.stdout.splitlines())
+
+
+def test_without_damping_it_says_so() -> None:
+    result = run("torsion", BLOWER, "--set", "coupling.damping=0 N m s/rad")
+    assert "no damping given; at resonance nothing but damping bounds a vibration" in " ".join(result.stdout.split())
+    assert "M_w,a" not in result.stdout
+
+
+def test_the_book_s_look_in_ascii() -> None:
+    result = CliRunner(charset="ascii").invoke(kurbel, ["torsion", "-"], input=TWO.encode("ascii"))
+    assert result.exit_code == 0
+    assert result.stdout_bytes.isascii()
+    assert "Holzer's table of mode 1" in result.stdout
+
+
+def test_a_shaft_line_alone() -> None:
+    checked = run("check", "-", text=TWO)
+    assert "none, a shaft line alone" in checked.stdout
+    assert "natural frequencies, critical speeds" in checked.stdout
+    assert "turning effort" not in checked.stdout
+    assert table(parsed("torsion", "-", text=TWO), "modes")["frequency"][1] == pytest.approx(1.1253953951963827)
+    for command in ("motion", "forces", "flywheel", "stress", "harmonics"):
+        assert run(command, "-", text=TWO).exit_code == 2
+
+
+REFUSED = [
+    (
+        "harmonics",
+        BLOWER,
+        ("--orders", "0.5"),
+        "--orders 0.5: the cycle repeats after 360 degrees and has the orders",
+    ),
+    ("torsion", BLOWER, ("--orders", "0"), "--orders 0: an order is more than 0 and at most 1000"),
+    ("torsion", BLOWER, ("--orders", "1,x"), "expected a number, got 'x'"),
+    ("torsion", BLOWER, ("--mode", "2"), "--mode 2: the shaft line has the modes 1 to 1"),
+    ("torsion", BLOWER, ("--speeds", "100"), "100 has no unit; write it with one, such as '100 rpm'"),
+    ("torsion", BLOWER, ("--speeds", "x rpm"), "expected a number with its unit"),
+    ("torsion", BLOWER, ("--speeds", "0 rpm"), "a speed is more than 0"),
+    ("torsion", BLOWER, ("--speeds", "200:100:5 rpm"), "write from, to and step as '300:1500:10 rpm'"),
+    ("torsion", BLOWER, ("--speeds", "1:2:1e-9 rpm"), "more than 10000 speeds; take a larger step"),
+    ("torsion", BLOWER, ("--speeds", "1e200 rpm"), "is too large to compute with"),
+    ("torsion", BLOWER, ("--columns", "tau"), "'tau' is left out for this machine"),
+    ("torsion", str(CONFIGS / "waterworks.yaml"), (), "no 'shaft' is given; write its masses"),
+    ("torsion", BLOWER, ("--set", "flywheel.fluctuation=0.01", "--set", "flywheel.inertia=0 kg m2"), ""),
+    ("harmonics", BLOWER, ("--set", "speed=0 rpm", "--speeds", "5 rpm"), "--speeds: the inertia forces are told from"),
+]
+
+
+@pytest.mark.parametrize(("command", "file", "options", "message"), REFUSED)
+def test_what_is_refused(command: str, file: str, options: tuple[str, ...], message: str) -> None:
+    result = run(command, file, *options)
+    assert message in " ".join(result.stderr.split())
+    assert "Traceback" not in result.output
+    if message:
+        assert (result.exit_code, result.stdout) == (2, "")
+
+
+def test_a_cylinder_without_any_inertia_is_refused() -> None:
+    text = "crank: 100 mm\nrod: 400 mm\n" + TWO.replace("inertia: 2 kg m2", "cylinder: cylinder 1", 1)
+    result = run("torsion", "-", text=text)
+    assert result.exit_code == 2
+    assert "cylinder 1 has no inertia in the shaft line; give its item 'inertia', or it 'masses'" in result.stderr
+    assert "torsional vibration: cylinder 1 has no inertia" in run("check", "-", text=text).stdout
+
+
+def test_an_undamped_resonance_beside_a_damper_elsewhere_has_no_solution() -> None:
+    """The damper stands in the node of the mode: three equal masses, of which the middle one is at rest."""
+    text = (
+        "speed: 5 rad/s\neffort: {unit: N m, mean: 5, harmonics: [[1, 3, 0]]}\n"
+        "shaft: [{inertia: 2 kg m2}, {stiffness: 50 N m/rad}, {inertia: 2 kg m2, damping: 1 N m s/rad},\n"
+        " {stiffness: 50 N m/rad}, {inertia: 2 kg m2}]\n"
+    )
+    result = run("torsion", "-", text=text)
+    assert (result.exit_code, result.stdout) == (3, "")
+    assert "an order of the torque meets a natural vibration that nothing damps: give it 'damping'" in result.stderr
+    beside = parsed("torsion", "-", "--set", "speed=5.5 rad/s", text=text)
+    torques = table(beside, "critical_speeds")["M_vibratory"]
+    assert torques[0] is None  # order 1 with mode 1
+    assert torques[13] is not None  # order 2 with mode 2, which the damper reaches
