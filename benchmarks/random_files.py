@@ -33,6 +33,12 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("forces", "-f", "json", "--set", "rotation=under"),
     ("flywheel",),
     ("stress",),
+    ("balance",),
+    ("balance", "--orders", "--compare", "-f", "json"),
+    ("balance", "--units", "technical", "-f", "md"),
+    ("bearings",),
+    ("bearings", "-f", "csv", "--units", "imperial"),
+    ("bearings", "-f", "json", "--set", "rotation=under"),
 )
 
 

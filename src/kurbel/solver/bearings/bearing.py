@@ -54,13 +54,15 @@ class Bearing(Results):
     """A pin or a main bearing at the angles of crank 1. Attributes are named by the ids of the key values, in SI.
 
     name: as it is printed; followed: the cylinders that load it; size; journal, shell: the frames in which its two
-    surfaces stand still; contact: degrees from the direction of the load to where they touch.
+    surfaces stand still; contact: degrees from the direction of the load to where they touch; of_rod: whether a rod
+    of a cylinder turns on it.
     """
 
     command = "bearings"
     journal: str
     shell: str
     contact = 180.0
+    of_rod = False
 
     def __init__(self, name: str, followed: Sequence[Following], size: Size, speed: float | None) -> None:
         self.name = name

@@ -91,11 +91,14 @@ class Searched:
         grid, pins = samples.grid, self.drive.pin_friction
         if self.drive.rubs:
             sense = self.quantities("guide_sense")
-            grid = grid.split_at(zeros(grid, sense.of_state(samples), sense)["guide_sense"])
-            if pins:  # what makes pins rub has the guide force where they do not yet
-                sense = Quantities(self.drive, ("guide_sense",), rubs=False)
-                sampled = sense(samples.grid.degrees, samples.grid.within)
-                grid = grid.split_at(zeros(samples.grid, sampled, sense)["guide_sense"])
+            sampled = sense.of_state(samples)
+            if pins:
+                # what makes pins rub bends where N changes sides without them; only beside that true turns are exact
+                without = Quantities(self.drive, ("guide_sense",), rubs=False)
+                found = zeros(grid, without(grid.degrees, grid.within), without)["guide_sense"]
+                grid = grid.split_at(found)
+                sampled = sense(grid.degrees, grid.within)
+            grid = grid.split_at(zeros(grid, sampled, sense)["guide_sense"])
         return grid.split_at(pins.bends(grid)) if pins and self.drive.has_force else grid
 
     def quantities(self, *names: str) -> Quantities:
