@@ -130,6 +130,38 @@ def test_the_advice_reads_the_file(tmp_path: Path, content: str | bytes, keys: s
     meant(machine(tmp_path, content, "".join(f", {one}" for one in advice) + keys))
 
 
+PLAIN = "figures are plain numbers, such as 1013.25 or 1.01325e3: export them so"
+UNREADABLE: dict[str, tuple[str, str, str]] = {
+    "times of day": (rows(ANGLES, form="12:00:%s"), "", f"line 1: '12:00:0' is no number; {PLAIN}"),
+    "thousands": (
+        "".join(f"{a:.10g};{p * 1000:,.1f}\n" for a, p in zip(ANGLES, PRESSURES)),
+        ", delimiter: semicolon",
+        f"is no number; {PLAIN}",
+    ),
+    "units in cells": (rows(form="%s u"), "", f"line 1: column 1 holds no number; {PLAIN}"),
+    "exponents of Fortran": (rows(form="%sD0"), "", f"line 1: column 1 holds no number; {PLAIN}"),
+    "another file": ("cycle: four-stroke\nspeed: 1500 rpm\n", "", "line 1 has no column 2; is it a file of figures?"),
+    "too few columns": (rows(), ", pressure_columns: 2-61", "line 1 has no column 61: 0,37.661; it has 2 only"),
+    "no angles": (
+        "".join(f"{p:.3f}\n" for p in PRESSURES),
+        "",
+        "if it has no angles, write 'pressure_column: 1' and 'angle_step: 0.5 deg', say",
+    ),
+    "a last line": (rows() + "\nEnd\n", "", "line 362 has no column 2; leave such lines out, or mend them"),
+    "an empty cell": (rows().replace("\n20,", "\n20,#"), "", "holds no number; leave such lines out, or mend them"),
+}
+
+
+@pytest.mark.parametrize("name", UNREADABLE)
+def test_no_advice_leads_in_a_circle(tmp_path: Path, name: str) -> None:
+    """No heading is seen where the lines below are no better; what stands in the way is named instead."""
+    content, keys, said = UNREADABLE[name]
+    with pytest.raises(MachineFileError) as caught:
+        machine(tmp_path, content, keys)
+    assert said in caught.value.faults[0].message
+    assert "skip_rows" not in caught.value.faults[0].message
+
+
 @pytest.mark.parametrize(
     ("begin", "said"),
     [

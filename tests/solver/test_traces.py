@@ -359,7 +359,7 @@ def test_lines_are_counted_as_they_are_read(tmp_path: Path, broken: str) -> None
 @pytest.mark.parametrize(
     ("text", "more", "advice"),
     [
-        ("0,x\n", "", "line 1: column 2 holds no number; write 'skip_rows: 1'"),
+        ("0,x\n", "", "line 1: column 2 holds no number; is it a file of figures?"),
         ("0 1\n1\n", ", delimiter: space", "line 2"),
     ],
 )
