@@ -99,6 +99,9 @@ WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
     "a hundredth, gauge": (FINE, (late(0) - AMBIENT) / 100, ", clearance: 1/14", "gauge", "100 times too small"),
     "kPa as bar": (FINE, (late(0) - AMBIENT) * 100, "", "gauge", "100 times too large"),
     "backward": (FINE, absolute(ENGINE, -FINE), "", "absolute", "does its angle count against the rotation?"),
+    "on its head": (FINE, AMBIENT - late(0), "", "gauge", "does it stand on its head? write 'scale: -1'"),
+    "no level": (FINE, late(0) - 7.3, "", "absolute", "the perfect vacuum being at 0 bar; write 'pegging: ambient'"),
+    "no level, gauge": (FINE, late(0) - 7.3, "", "gauge", "the perfect vacuum being at -1.013 bar; write 'pegging"),
     "drift": (FINE, late(0) + 3 * FINE / 720, "", "absolute", "the pressure jumps by -2.9"),
     "drift in noise": (
         FINE,
@@ -151,6 +154,25 @@ def test_four_strokes_told_as_two(tmp_path: Path) -> None:
     assert notes_of(machine_text(file, cycle=obeyed(note, "", "", "")[2])) == []
 
 
+def test_marks_of_one_turn_taken_for_degrees(tmp_path: Path) -> None:
+    """An encoder of 720 marks begins anew in every turn: its numbers, read as degrees, make a cycle of each turn."""
+    angles, each = cycles(ENGINE, 4, 0.5, noise=0.05)
+    file = written(tmp_path, np.tile(np.arange(720), 8), each.ravel())
+    (note,) = notes_of(machine_text(file))
+    true = float(np.mean([indicated(angles, one) for one in each]))
+    assert "does the angle number the samples of one turn? write 'angle_step: 0.5 deg'" in note
+    assert f"p_i is then {true:.4g} bar" in note
+    assert notes_of(machine_text(file, ", angle_step: 0.5 deg")) == []
+
+
+def test_pegging_at_a_wrong_place_is_to_be_mended(tmp_path: Path) -> None:
+    """Pegged near its peak the trace lies far below the vacuum: neither gauge nor more pegging is the way out."""
+    file = written(tmp_path, FINE, late(0))
+    (note,) = notes_of(machine_text(file, ", pegging: {angle: 10 deg, pressure: 0.95 bar}"))
+    assert "the perfect vacuum being at 0 bar; mend 'pegging'" in note
+    assert "gauge" not in note
+
+
 def test_the_brake_of_an_engine_of_four(tmp_path: Path) -> None:
     """One cylinder is given: said, and asked for; with four of them all is well."""
     power = 0.8 * 4 * indicated(FINE, late(0)) * 1e5 * np.pi / 4 * 0.09**2 * 0.1 * 25 / 2
@@ -192,7 +214,7 @@ def test_cycles_told_by_a_wrong_speed(tmp_path: Path) -> None:
     keys = ", angle_unit: s, recorded_speed: {:.7g} rpm"
     (note,) = [one for one in notes_of(machine_text(file, keys.format(1515))) if "left out" not in one]
     assert "the cycles wander" in note
-    change = float(re.findall(r"A 'recorded_speed' about ([0-9.]+)% lower", note)[0])
+    change = float(re.findall(r"a 'recorded_speed' about ([0-9.]+)% lower", note)[0])
     assert change == pytest.approx(100 * (1 - 1500 / 1515), rel=0.1)
     assert notes_of(machine_text(file, keys.format(1515 * (1 - change / 100)))) == []
 
