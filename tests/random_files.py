@@ -96,7 +96,9 @@ def trace(random: Random, four: bool, high: float, low: float) -> Keys:
     angles = np.linspace(0, period, int(random.integers(8, 400)))
     laps = int(random.choice([1, 1, 1, 2, 3]))
     wave = low + (high - low) * np.exp(-((np.minimum(angles, angles[-1] - angles) / number(random, 5, 60)) ** 2))
-    wave = np.tile(wave, laps) + maybe_one(random, 0.3) * random.standard_normal(laps * len(wave))
+    wave = np.tile(wave, laps) + maybe_other(random, 0.3, 0.0, [0.01, 0.1, 0.5]) * random.standard_normal(
+        laps * len(wave)
+    )
     counted = np.tile(angles, laps) * maybe_other(random, 0.05, 1.0, [math.pi / 180, 0.5, 2.0, -1.0, 1e-4])
     counted = counted + maybe_other(random, 0.2, 0.0, [-180.0, -360.0, 17.3])
     points = [[float(f"{a:.6g}"), float(f"{p:.6g}")] for a, p in zip(counted, wave)]
@@ -112,11 +114,6 @@ def trace(random: Random, four: bool, high: float, low: float) -> Keys:
     keys |= maybe(random, 0.3, {"compression_ratio": 1 + 10 ** number(random, -9, 6)})
     keys |= maybe(random, 0.1, {"clearance": 10 ** number(random, -7, 3)})
     return keys | maybe(random, 0.02, {"skip_rows": 1, "angle_step": "1 deg"})
-
-
-def maybe_one(random: Random, share: float) -> float:
-    """Return 0, or a small figure."""
-    return number(random, 0, 0.5) if random.random() < share else 0.0
 
 
 def maybe_other(random: Random, share: float, usual: Any, others: list[Any]) -> Any:

@@ -9,8 +9,10 @@ import numpy as np
 from kurbel.report.trace_readings import Reading, in_bar
 from kurbel.solver.pressure.corrected import LAST, drift_of
 
-_RANGE = 0.02
-"""Share of the range of a trace that the ends of its cycle may differ by."""
+_RANGE = 0.06
+"""Share of the pressure where the cycle closes, above the low level, that one cycle and the next may differ by."""
+_LEAST = 0.2
+"""Share of the ambient by which the ends of a cycle differ from one to the next in any gas exchange."""
 _WORK = 0.01
 """Share of p_i below which a drift is not worth a word."""
 _SURE = 6.0
@@ -100,7 +102,8 @@ def _of_drift(reading: Reading) -> Iterable[str]:
     pressure = reading.pressure
     trace, p = pressure.trace, pressure.pressures
     jump = float(drift_of(trace, p[np.newaxis])[0])
-    if abs(jump) <= max(_RANGE * float(np.ptp(p)), _doubt(reading)):
+    closes = abs(float(p[0]) - reading.low)
+    if abs(jump) <= max(_RANGE * closes, _LEAST * reading.pressure.setting.ambient, _doubt(reading)):
         return
     other = reading.otherwise(level=True)
     change = abs(other.pressure.area - pressure.area)
@@ -119,4 +122,6 @@ def _doubt(reading: Reading) -> float:
     p = pressure.pressures[:-1]
     bends = np.sort(np.abs(np.concatenate((np.diff(p[-4:], 2), np.diff(p[:4], 2)))))
     coarse = pressure.trace.angles[-1] - pressure.trace.angles[-4] > LAST
-    return max(_SURE * pressure.noise, 3.0 * float(bends[-1] if coarse else bends[len(bends) // 2]))
+    steps = np.abs(np.diff(pressure.pressures))
+    resolution = 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0
+    return max(_SURE * pressure.noise, resolution, 3.0 * float(bends[-1] if coarse else bends[len(bends) // 2]))
