@@ -103,6 +103,13 @@ def test_forms_of_files(tmp_path: Path, form: str) -> None:
         meant(one)
 
 
+def test_a_heading_of_figures(tmp_path: Path) -> None:
+    """Speed and power above the figures are no sample at 1500 deg."""
+    with pytest.raises(MachineFileError, match=r"line 2: the angle begins anew.* a heading\?"):
+        machine(tmp_path, "1500,12.5\n" + rows())
+    meant(machine(tmp_path, "1500,12.5\n" + rows(), ", skip_rows: 1"))
+
+
 def test_gauge_kilopascals(tmp_path: Path) -> None:
     one = machine(tmp_path, rows(pressures=PRESSURES * 100), unit="kPa")
     assert trace_of(one).pressures[:-1] == pytest.approx(PRESSURES * 1e5)
@@ -191,8 +198,13 @@ def test_what_is_no_text_is_named(tmp_path: Path, begin: bytes, said: str) -> No
         (", pressure_columns: 61-2", "runs backward or names a column twice"),
         (", pressure_columns: 1-3", "column 1 is that of the angles"),
         (", pressure_columns: 2-4", "line 1 has no column 4"),
+        (", pressure_columns: [2, 3]", "or in quotation marks '2, 5, 7-9', got a list"),
+        (", angle_unit: s, recorded_speed: 1 rpm", "are 'recorded_speed' and 'angle_unit' (s or ms) right?"),
         (", pressure_column: 2, pressure_columns: 2-4", "say the same thing"),
-        (", pressure_columns: two", "expected the numbers of columns, such as '2-61', got 'two'"),
+        (
+            ", pressure_columns: two",
+            "or in quotation marks '2, 5, 7-9', got 'two'",
+        ),
         (", angle_column: 1, angle_step: 2 deg", "say the same thing"),
         (", pegging: {angle: 5 deg}", "'pressure' is missing"),
         (", angle_zero: {motored: p.csv}", "'loss_angle' is missing"),
