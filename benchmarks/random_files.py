@@ -31,6 +31,8 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("forces", "--where", "P = 0"),
     ("forces", "--over", "x", "--units", "imperial", "--layout", "rows"),
     ("forces", "-f", "json", "--set", "rotation=under"),
+    ("forces", "--each-cycle"),
+    ("forces", "--cycle", "2", "--key-values"),
     ("flywheel",),
     ("stress",),
     ("balance",),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -57,7 +58,7 @@ def mechanism(random: Random) -> tuple[str, Keys]:
 def pressure(random: Random, four: bool) -> Any:
     """Return what stands for one end of an indicator."""
     high, low = number(random, 1, 60), number(random, 0.2, 0.9)
-    kind = random.choice(["card", "constant", "trace", "ideal", "one", "drawn"])
+    kind = random.choice(["card", "constant", "trace", "trace", "ideal", "one", "drawn"])
     if kind == "one":
         return f"{high} bar"
     if kind == "drawn" and not four:
@@ -65,10 +66,7 @@ def pressure(random: Random, four: bool) -> Any:
     if kind == "constant" and not four:
         return {"constant": {"expansion": f"{high} bar", "compression": f"{low} bar"}}
     if kind == "trace":
-        angles = np.linspace(0, 720 if four else 360, int(random.integers(8, 400)))
-        wave = low + (high - low) * np.exp(-((np.minimum(angles, angles[-1] - angles) / number(random, 5, 60)) ** 2))
-        points = [[float(f"{a:.6g}"), float(f"{p:.6g}")] for a, p in zip(angles, wave)]
-        return {"trace": {"unit": "bar", "points": points}}
+        return {"trace": trace(random, four, high, low)}
     if kind == "ideal":
         if four:
             return {
@@ -90,6 +88,37 @@ def pressure(random: Random, four: bool) -> Any:
 
     card = {"unit": "bar", "expansion": line(high, low), "compression": line(high, low)[::-1]}
     return card | ({"intake": line(low, low), "exhaust": line(low, low)[::-1]} if four else {})
+
+
+def trace(random: Random, four: bool, high: float, low: float) -> Keys:
+    """Return a measured trace, one cycle or several turns, with keys of which some are odd, or do not go together."""
+    period = 720 if four else 360
+    angles = np.linspace(0, period, int(random.integers(8, 400)))
+    laps = int(random.choice([1, 1, 1, 2, 3]))
+    wave = low + (high - low) * np.exp(-((np.minimum(angles, angles[-1] - angles) / number(random, 5, 60)) ** 2))
+    wave = np.tile(wave, laps) + maybe_other(random, 0.3, 0.0, [0.01, 0.1, 0.5]) * random.standard_normal(
+        laps * len(wave)
+    )
+    counted = np.tile(angles, laps) * maybe_other(random, 0.05, 1.0, [math.pi / 180, 0.5, 2.0, -1.0, 1e-4])
+    counted = counted + maybe_other(random, 0.2, 0.0, [-180.0, -360.0, 17.3])
+    points = [[float(f"{a:.6g}"), float(f"{p:.6g}")] for a, p in zip(counted, wave)]
+    if random.random() < 0.1:
+        del points[int(random.integers(len(points))) :: int(random.integers(1, 60))]
+    keys: Keys = {"unit": str(maybe_other(random, 0.2, "bar", ["kPa", "psi", "Pa"])), "points": points}
+    keys |= maybe(random, 0.2, {"angle_zero": f"{number(random, -720, 720)} deg"})
+    keys |= maybe(random, 0.1, {"angle_sense": str(random.choice(["with", "against"]))})
+    keys |= maybe(random, 0.1, {"scale": float(random.choice([-1.0, 0.0, 1e-9, 20.0, 1e12]))})
+    keys |= maybe(random, 0.1, {"offset": f"{number(random, -60, 60)} bar"}) | maybe(random, 0.1, {"drift": "linear"})
+    known = {"angle": f"{number(random, -1000, 1000)} deg", "pressure": f"{number(random, -2, 9)} bar"}
+    keys |= maybe(random, 0.2, {"pegging": "ambient" if random.random() < 0.5 else known})
+    keys |= maybe(random, 0.3, {"compression_ratio": 1 + 10 ** number(random, -9, 6)})
+    keys |= maybe(random, 0.1, {"clearance": 10 ** number(random, -7, 3)})
+    return keys | maybe(random, 0.02, {"skip_rows": 1, "angle_step": "1 deg"})
+
+
+def maybe_other(random: Random, share: float, usual: Any, others: list[Any]) -> Any:
+    """Return what is usual, or one of the others."""
+    return others[int(random.integers(len(others)))] if random.random() < share else usual
 
 
 def drawn(random: Random, high: float, low: float) -> Keys:
