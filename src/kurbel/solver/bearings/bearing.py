@@ -177,7 +177,8 @@ class Bearing(Results):
     def _unloaded(self, frame: str) -> Unloaded | None:
         """Return the arc of the surface that stands still in a frame; None where it is loaded nowhere."""
         points = [self._curves[name] for name in (frame, "load")]
-        degrees, within = (np.concatenate([one[part] for one in points]) for part in (0, 1))
+        degrees = np.concatenate([one.degrees for one in points])
+        within = np.concatenate([one.within for one in points])
         order = np.lexsort((degrees, within))
         degrees, within = degrees[order], within[order]
         found = self._evaluate(degrees, within)
