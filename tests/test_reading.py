@@ -25,6 +25,7 @@ READERS = {
     "indicator.csv",
 }
 READERS |= {"forces.md", "FILE.svg", "kurbel.schema.json"}
+READERS |= {"k.csv", *(f"part-{number}.csv" for number in (1, 2, 3, 4))}
 READERS |= {"run8.csv", "motored.csv", "many.yaml", "diagram.csv", "p.csv", "before.yaml", "after.yaml", "effort.svg"}
 ELSEWHERE = READERS | {"examples/ICE_example.py", "kurbel.mechanisms.harmonic_cam", "docs/symbols.md"}
 """Files of the reader's own, one of opentorsion, the mechanism that the pages add as an example, and a page of old."""
