@@ -1,6 +1,6 @@
 """What a report is made of, whatever it will be rendered as."""
 
-from __future__ import annotations
+# annotations are taken as they stand: NamedTuple compiles each postponed one at every start
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cached_property
@@ -153,7 +153,7 @@ class Report(NamedTuple):
         """The parts, and the whole machine after them."""
         return self.parts if self.whole is None else (*self.parts, self.whole)
 
-    def of_cylinder(self, name: str) -> Report:
+    def of_cylinder(self, name: str) -> "Report":
         """Return the results of one part alone, or of all that belong to a cylinder, by its name or its number.
 
         Raises UsageError where there are none, and where one is called by the number of another; NoSolutionError where
@@ -171,7 +171,7 @@ class Report(NamedTuple):
         title = f"{self.title}: {name}" if len(self.all_parts) > 1 else self.title
         return self._replace(title=title, parts=found, whole=None)
 
-    def key_values_alone(self) -> Report:
+    def key_values_alone(self) -> "Report":
         """Return the report without its tables."""
         parts = [part._replace(columns=(), place_tables=()) for part in self.all_parts]
         return self._replace(whole=parts.pop() if self.whole else None, parts=tuple(parts))
