@@ -33,6 +33,11 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("forces", "-f", "json", "--set", "rotation=under"),
     ("flywheel",),
     ("stress",),
+    ("harmonics",),
+    ("harmonics", "--speeds", "100:500:100 rpm", "-f", "json"),
+    ("torsion",),
+    ("torsion", "--orders", "0.5,1,3", "--columns", "M_shaft,tau", "-f", "json"),
+    ("torsion", "--speeds", "50:500:50 rpm", "--modes", "9"),
 )
 
 

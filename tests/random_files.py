@@ -173,6 +173,31 @@ CRANKSHAFT = {
 }
 
 
+def shaft(random: Random, cylinders: int) -> list[Any]:
+    """Return a shaft line: masses and pieces of any size, gears, grounds, dampers, and now and then one too many."""
+    count = int(random.integers(1, 12)) if random.random() < 0.95 else 60
+    places = random.integers(0, count, cylinders)
+    parts: list[Any] = ["ground"] * bool(random.random() < 0.15)
+    for index in range(count):
+        here = [f"cylinder {number + 1}" for number in np.nonzero(places == index)[0]]
+        mass: Keys = {"cylinder": here} if here else {}
+        mass |= {"inertia": size(random, 3, "kg m2", 2)} if not here or random.random() < 0.7 else {}
+        mass |= maybe(random, 0.2, {"damping": size(random, 5, "N m s/rad", 2)}) | maybe(random, 0.1, {"load": True})
+        parts += [mass, *(["flywheel"] if random.random() < 0.1 else []), _piece(random)]
+        parts += [{"gear": number(random, 0.1, 4)}] * bool(random.random() < 0.05)
+    return parts[: None if random.random() < 0.1 else -1] + ["ground"] * bool(random.random() < 0.1)
+
+
+def _piece(random: Random) -> Keys:
+    """Return a piece of shaft, damped or not."""
+    thick = number(random, 20, 300)
+    plain = {"diameter": f"{thick} mm", "length": size(random, 0.5, "m")}
+    plain |= maybe(random, 0.2, {"bore": f"{thick / 2} mm"})
+    piece = plain if random.random() < 0.5 else {"stiffness": size(random, 1e6, "N m/rad", 3)}
+    piece |= maybe(random, 0.4, {"loss_factor": number(random, 0, 0.2)})
+    return piece | maybe(random, 0.2, {"damping": size(random, 50, "N m s/rad", 3)})
+
+
 def effort(random: Random) -> Keys:
     """Return a turning-moment diagram by its harmonics."""
     orders = [[order, number(random, -9, 9), number(random, -9, 9)] for order in range(1, int(random.integers(2, 9)))]
@@ -216,6 +241,9 @@ def machine_file(random: Random) -> str:
         keys |= cylinders(random, four) if random.random() < 0.3 else cylinder(random, four)
     overhung = {"overhung": True, "b": "900 mm", "flywheel_position": "-300 mm"} if random.random() < 0.5 else {}
     keys |= turning(random) | maybe(random, 0.2, {"crankshaft": CRANKSHAFT | overhung})
+    own = keys.get("cylinders", [])
+    count = 0 if "effort" in keys else own["count"] if isinstance(own, dict) else max(len(own), 1)
+    keys |= {"shaft": shaft(random, count)} if random.random() < 0.4 else {}
     keys |= maybe(random, 0.2, {"brake_torque": size(random, 2e3, "N m")})
     keys |= maybe(
         random,

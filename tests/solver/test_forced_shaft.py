@@ -119,6 +119,22 @@ def test_the_coupling_of_the_flywheel_with_all_its_orders(load: Load | None) -> 
     assert piece.M_shaft_min == pytest.approx(case.flywheel.elastic.M_coupling_min.value, rel=1e-12)
 
 
+@pytest.mark.parametrize("load", [None, Load(slip=0.05)], ids=["constant", "slip"])
+def test_a_linear_load_takes_one_step_of_newton(load: Load | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of each set of elements the equations are solved once: two looks at the rate; one more tells the growth."""
+    case = Case(machine_of(load))
+    rate, looks, sizes = ChainEquation.rate, [0], set()
+
+    def counted(self: ChainEquation, prepared: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        looks[0] += 1
+        sizes.add(y.shape)
+        return rate(self, prepared, y)
+
+    monkeypatch.setattr(ChainEquation, "rate", counted)
+    assert case.flywheel.elastic.growth < 0
+    assert looks[0] == 2 * len(sizes) + 1
+
+
 @pytest.mark.parametrize("ground", ["", "after"])
 def test_longer_chains_over_the_angle_have_the_same_orders(ground: str) -> None:
     """Collocation in 2n − 1 or 2n unknowns, driven at two masses by torques that jump."""
