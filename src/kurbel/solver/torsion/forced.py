@@ -161,7 +161,7 @@ class Vibration:
     def loss(self) -> Array:
         """Mean power in W lost in dampers, in the material, and in a load that rises with the speed, (s,)."""
         chain, speeds = self.chain, np.abs(self._frequencies * self.angles) ** 2
-        twists = np.abs(np.tensordot(chain.twists, self.angles, axes=1)) ** 2
+        twists = np.abs(chain.twisted(self.angles)) ** 2
         of_masses = ((chain.mass_damping[:, None, None] + self._held) * speeds).sum(axis=(0, 2))
         material = np.multiply.outer(chain.stiffnesses * chain.loss, self._frequencies)
         viscous = np.multiply.outer(chain.piece_damping, self._frequencies**2)
