@@ -173,19 +173,19 @@ CRANKSHAFT = {
 }
 
 
-def shaft(random: Random, cylinders: int) -> list[Any]:
+def shaft(random: Random, cylinders: list[str]) -> list[Any]:
     """Return a shaft line: masses and pieces of any size, gears, grounds, dampers, and now and then one too many."""
-    count = int(random.integers(1, 12)) if random.random() < 0.95 else 60
-    places = random.integers(0, count, cylinders)
+    count = int(random.integers(1, 12)) if random.random() < 0.95 else 50
+    places = random.integers(0, count, len(cylinders))
     parts: list[Any] = ["ground"] * bool(random.random() < 0.15)
     for index in range(count):
-        here = [f"cylinder {number + 1}" for number in np.nonzero(places == index)[0]]
+        here = [name for name, place in zip(cylinders, places) if place == index]
         mass: Keys = {"cylinder": here} if here else {}
         mass |= {"inertia": size(random, 3, "kg m2", 2)} if not here or random.random() < 0.7 else {}
-        mass |= maybe(random, 0.2, {"damping": size(random, 5, "N m s/rad", 2)}) | maybe(random, 0.1, {"load": True})
-        parts += [mass, *(["flywheel"] if random.random() < 0.1 else []), _piece(random)]
-        parts += [{"gear": number(random, 0.1, 4)}] * bool(random.random() < 0.05)
-    return parts[: None if random.random() < 0.1 else -1] + ["ground"] * bool(random.random() < 0.1)
+        mass |= maybe(random, 0.2, {"damping": size(random, 5, "N m s/rad", 2)}) | maybe(random, 0.03, {"load": True})
+        after: list[Any] = [{"gear": number(random, 0.1, 4)}] * bool(random.random() < 0.04)
+        parts += [_piece(random)] * bool(parts) + ["flywheel" if not here and random.random() < 0.1 else mass, *after]
+    return parts + [_piece(random), "ground"] * bool(random.random() < 0.1)
 
 
 def _piece(random: Random) -> Keys:
@@ -243,7 +243,9 @@ def machine_file(random: Random) -> str:
     keys |= turning(random) | maybe(random, 0.2, {"crankshaft": CRANKSHAFT | overhung})
     own = keys.get("cylinders", [])
     count = 0 if "effort" in keys else own["count"] if isinstance(own, dict) else max(len(own), 1)
-    keys |= {"shaft": shaft(random, count)} if random.random() < 0.4 else {}
+    named = isinstance(own, list) and bool(own)
+    names = ["first" if named and not number else f"cylinder {number + 1}" for number in range(count)]
+    keys |= {"shaft": shaft(random, names)} if random.random() < 0.4 and "coupling" not in keys else {}
     keys |= maybe(random, 0.2, {"brake_torque": size(random, 2e3, "N m")})
     keys |= maybe(
         random,

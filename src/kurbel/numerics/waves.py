@@ -66,7 +66,7 @@ def _crest(waves: Sequence[int], amplitudes: ComplexArray, at: Array, step: floa
         value, slope, bend = _at(waves, amplitudes, at)
         best = np.maximum(best, value)
         at = at + np.clip(slope / np.where(bend < 0, -bend, np.inf), -step / 2, step / 2)
-    return np.maximum(best, _at(waves, amplitudes, at)[0])
+    return np.asarray(np.maximum(best, _at(waves, amplitudes, at)[0]))
 
 
 def _at(waves: Sequence[int], amplitudes: ComplexArray, at: Array) -> tuple[Array, Array, Array]:

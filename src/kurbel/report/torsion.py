@@ -119,5 +119,8 @@ def _notes(found: ShaftVibration, wanted: Wanted) -> Iterable[str]:
     if found.pieces:
         first, last = (f"{order:g}" for order in (found.orders[0], found.orders[-1]))
         orders = f"order {first}" if first == last else f"orders {first} to {last} together"
+        orders = "all orders together" if found.steady else orders
+        if found.remainder is not None:
+            orders += f" (higher ones add about {show(found.remainder, 'torque')} or less)"
         taker = "what holds it" if found.chain.ground else found.line.masses[found.line.load].name
         yield f"Forced vibration: {orders}, about uniform rotation; the mean torque goes to {taker}."

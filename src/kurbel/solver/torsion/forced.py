@@ -138,6 +138,16 @@ class Vibration:
         high, low = crests(self.waves, flat)
         return high.reshape(self.torques.shape[:2]), low.reshape(self.torques.shape[:2])
 
+    @cached_property
+    def remainder(self) -> Array:
+        """About what higher orders add to the torque in any piece in N m, (s,).
+
+        What falls off as 1/ν², as behind a jump through a damper, or faster, is in all of them together no more than in
+        the upper half of these.
+        """
+        upper = self.acting.orders > self.acting.orders[-1] / 2
+        return np.asarray(np.abs(self.torques[..., upper]).sum(axis=2).max(axis=0))
+
     @property
     def vibratory(self) -> Array:
         """Half of what the torques in the pieces swing in N m, (pieces, s)."""
