@@ -13,8 +13,9 @@ from pathlib import Path
 from kurbel.machine_file import loads
 from kurbel.render import Look, render
 from kurbel.render.output import write_file
-from kurbel.render.plot import draw
+from kurbel.render.pictures.drawing import draw_file
 from kurbel.report.accuracy import accuracy_report, extremes_report
+from kurbel.report.pictures.accuracy import accuracy_picture
 from kurbel.report.tables import Report
 
 FOLDER = Path(__file__).parent
@@ -93,7 +94,7 @@ def main() -> None:
     """Write both files."""
     report = accuracy_report(None, False, loads)
     extremes, passed = extremes_report(loads)
-    draw(report, str(FOLDER / PICTURE))
+    draw_file([accuracy_picture(report)], Look(), str(FOLDER / PICTURE))
     look = Look(format="markdown")
     text = "\n\n".join(
         (

@@ -29,15 +29,18 @@ __all__ = [
     "Mechanism",
     "Piston",
     "SliderCrank",
+    "draw",
     "load",
     "loads",
     "solve",
+    "sweep",
 ]
 
 TYPE_CHECKING = False  # as in typing, whose import an interrupt could hit before anything guards it
 if TYPE_CHECKING:
     from typing import Any
 
+    from kurbel.designs.asked import sweep as sweep
     from kurbel.errors import KurbelError as KurbelError
     from kurbel.machine import Cylinder as Cylinder
     from kurbel.machine import Machine as Machine
@@ -46,18 +49,21 @@ if TYPE_CHECKING:
     from kurbel.machine_file import loads as loads
     from kurbel.mechanisms import Mechanism as Mechanism
     from kurbel.mechanisms.slider_crank import SliderCrank as SliderCrank
+    from kurbel.notebook import draw as draw
     from kurbel.solver.case import Case as Case
 
 _HOMES = {
-    "Case": "kurbel.solver.case",
+    "Case": "kurbel.notebook",
     "Cylinder": "kurbel.machine",
     "KurbelError": "kurbel.errors",
     "Machine": "kurbel.machine",
     "Mechanism": "kurbel.mechanisms",
     "Piston": "kurbel.machine.piston",
     "SliderCrank": "kurbel.mechanisms.slider_crank",
+    "draw": "kurbel.notebook",
     "load": "kurbel.machine_file",
     "loads": "kurbel.machine_file",
+    "sweep": "kurbel.designs.asked",
 }
 """Public name -> module; nothing is imported before it is used, so that the command line starts quickly."""
 
@@ -68,7 +74,7 @@ def solve(machine: Machine) -> Case:
     machine: from `load`, `loads`, or built in Python. Raises NoSolutionError, when a result is asked for that does not
     exist, because a crosshead locks itself for instance.
     """
-    from kurbel.solver.case import Case
+    from kurbel.notebook import Case  # which shows itself there
 
     return Case(machine)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import math
 import re
 import sys
 from collections.abc import Callable
@@ -17,8 +16,10 @@ from click.testing import CliRunner, Result
 from kurbel import loads
 from kurbel.accuracy.inexact import data_errors, model_errors
 from kurbel.cli import kurbel
-from kurbel.render.plot import draw, panels
+from kurbel.render import Look
+from kurbel.render.pictures.drawing import draw_file
 from kurbel.report import accuracy
+from kurbel.report.pictures.accuracy import accuracy_picture, dots
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 
 MOTION = "{name: plain, speed: 50 rpm, crank: 400 mm, rod_ratio: 5}"
@@ -145,24 +146,24 @@ TWO_SCENES = Report(
 
 def test_a_panel_holds_all_scenes_of_a_quantity() -> None:
     """One line for each method, broken between the scenes."""
-    drawn = panels(TWO_SCENES)
+    drawn = dots(TWO_SCENES)
     assert list(drawn) == ["x", "c"]
-    own, book = drawn["x"]
-    assert (own.method, own.errors[0], own.times[0]) == ("kurbel", 1e-17, 2.0)  # what is exact can be drawn
-    assert (book.method, book.errors[:2], book.errors[3]) == ("book", (0.1, 0.01), 0.2)
-    assert math.isnan(book.errors[2])  # where the line is broken
-    assert [(dots.method, dots.times[0]) for dots in drawn["c"]] == [("kurbel", 5.0)]
+    assert drawn["x"]["kurbel"] == [[(1e-17, 2.0)]]  # what is exact can be drawn
+    assert drawn["x"]["book"] == [[(0.1, 1.0), (0.01, 3.0)], [(0.2, 4.0)]]  # the line is broken between the scenes
+    assert drawn["c"] == {"kurbel": [[(1e-16, 5.0)]]}
+    x, c = accuracy_picture(TWO_SCENES).panels
+    assert (x.title, c.title, x.x.falling) == ("x", "c", True)
+    assert [curve.name.symbol for curve in x.curves if curve.kind == "dots"] == ["kurbel", "book"]
 
 
 def test_picture_is_drawn_the_same_every_time(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     for name in ("a.svg", "b.svg", "c.png"):
-        draw(TWO_SCENES, str(tmp_path / name))
+        draw_file([accuracy_picture(TWO_SCENES)], Look(), str(tmp_path / name))
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
     assert (tmp_path / "c.png").read_bytes().startswith(b"\x89PNG")
     svg = (tmp_path / "a.svg").read_text(encoding="utf-8")
     assert ">book</text>" in svg
-    assert "<dc:date>" not in svg
 
 
 def test_the_picture_of_the_docs_is_small() -> None:
@@ -175,7 +176,7 @@ def test_the_picture_of_the_docs_is_small() -> None:
 def test_picture_needs_a_name_it_knows() -> None:
     result = run("-", "--plot", "picture.gif")
     assert result.exit_code == 2
-    assert "the name of a picture ends in .svg or .png" in result.stderr
+    assert "the name of a picture ends in .svg, .png or .pdf" in result.stderr
 
 
 def test_without_matplotlib_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -185,13 +186,12 @@ def test_without_matplotlib_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(
         importlib.util, "find_spec", lambda name, *more: None if name == "matplotlib" else real(name, *more)
     )
-    result = run("-", "--plot", "picture.svg")
+    result = run("-", "--plot", "picture.png")
     assert result.exit_code == 2
     assert "pip install 'kurbel[plot]'" in result.stderr
 
 
 def test_a_picture_that_cannot_be_written(tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
     result = run("-", "--quick", "--plot", str(tmp_path / "no folder" / "picture.svg"))
     assert result.exit_code == 2
     assert "cannot write" in result.stderr

@@ -37,7 +37,6 @@ SLIPS = [
     ("four_bar", "slope", "+ a * (self.near", "- a * (self.near"),
     ("four_bar", "turned", "lead - bearing", "lead + bearing"),
     ("four_bar", "turned", "self.near - self", "self.near + self"),
-    ("four_bar", "_turned_to", "theta + sweep", "theta - sweep"),
     ("four_bar", "coupler_force_factor", "1 / (", "-1 / ("),
     (
         "parallel_crank",

@@ -31,6 +31,9 @@ PAGES = {
     "forces-comma.md": (REPORT, Look("markdown", comma=True)),
     "forces.csv": (REPORT, Look("csv")),
     "forces.json": (REPORT, Look("json")),
+    "forces.html": (REPORT, Look("html")),
+    "forces-comma.tex": (REPORT, Look("latex", comma=True)),
+    "table.tex": (zusammenstellung((5.0,)), Look("latex")),
 }
 
 
@@ -67,7 +70,9 @@ def test_a_pipe_is_not_folded() -> None:
     assert len(render(ONE._replace(title="x" * 500)).splitlines()[0]) == 500
 
 
-@pytest.mark.parametrize("look", [Look(), Look(layout="rows"), Look("markdown"), Look("csv"), Look("json")])
+@pytest.mark.parametrize(
+    "look", [Look(), Look(layout="rows"), *map(Look, ("markdown", "csv", "json", "html", "latex"))]
+)
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "cp850", "latin-1", "utf-8"])
 def test_every_character_can_be_written(look: Look, encoding: str) -> None:
     for report in (

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 COMMANDS = (
-    *("table", "motion", "forces", "flywheel", "stress", "bearings", "balance", "harmonics", "torsion", "accuracy"),
+    *("table", "motion", "forces", "flywheel", "stress", "bearings", "balance", "harmonics", "torsion"),
+    *("plot", "report", "sweep", "accuracy"),
     *("friction", "check", "example", "keys", "units", "schema"),
 )
 """In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""
@@ -179,6 +180,8 @@ def kurbel() -> None:
       kurbel forces engine.yaml                 forces and key values
       kurbel flywheel engine.yaml               turning effort, flywheel, speed
       kurbel balance engine.yaml                free forces and moments, counterweights
+      kurbel plot engine.yaml                   a picture; --list says which there are
+      kurbel report engine.yaml -o report.html  everything on one page
 
     Results go to standard output, everything else to standard error.
     """

@@ -13,7 +13,7 @@ from kurbel.cli.output_options import Output, loaded, output_options, set_option
 @set_option
 @click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")
 @click.option("--extremes", is_flag=True, help="Put stiff and extreme machines to kurbel instead.")
-@click.option("--plot", "picture", metavar="FILE.svg|png", help="Draw the picture too; needs matplotlib.")
+@click.option("--plot", "picture", metavar="FILE.svg|png|pdf", help="Draw the picture too.")
 @output_options
 def accuracy(
     file: str | None, overrides: tuple[str, ...], quick: bool, extremes: bool, picture: str | None, output: Output
@@ -28,17 +28,19 @@ def accuracy(
         raise click.UsageError("--set sets a value over that of FILE; give the FILE.")
     if extremes:
         return _extremes(file, picture, output)
-    from kurbel.render.plot import check_plot, draw
+    from kurbel.render.pictures.drawing import check_file, draw_file
 
     if picture is not None:
-        check_plot(picture)
+        check_file(picture, "--plot")
     from kurbel.machine_file import loads
     from kurbel.report.accuracy import accuracy_report
 
     report = accuracy_report(None if file is None else loaded(file, overrides, output.file_name, picture), quick, loads)
     output.write(report)
     if picture is not None:
-        draw(report, picture)
+        from kurbel.report.pictures.accuracy import accuracy_picture
+
+        draw_file([accuracy_picture(report)], output.look, picture)
     return 0
 
 

@@ -50,3 +50,10 @@ def complete_cylinder(ctx: click.Context, param: click.Parameter, incomplete: st
     except KurbelError:
         return []
     return _beginning((one.name for one in machine.cylinders), incomplete) if machine else []
+
+
+def complete_picture(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the pictures that begin like this."""
+    from kurbel.report.pictures import PICTURES
+
+    return _beginning((*(one.id for one in PICTURES), "all"), incomplete)

@@ -25,17 +25,13 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks > engine.yaml
       kurbel example waterworks | kurbel forces -
     """
-    from kurbel.render import Look
-    from kurbel.render.listing import entries
-    from kurbel.render.output import stdout_charset, stdout_width, write_stdout, write_text
+    from kurbel.render.listing import write_entries
+    from kurbel.render.output import write_text
 
-    if name is not None:
-        write_text(_read(_known(name)), file_name)
-    elif file_name is not None:
-        write_text("".join(line + "\n" for line in entries(_listing(), Look())), file_name)
+    if name is None:
+        write_entries([(each, _described(each)) for each in shipped_names()], file_name)
     else:
-        look = Look(encoding=stdout_charset().encoding, width=stdout_width())
-        write_stdout(line + "\n" for line in entries(_listing(), look))
+        write_text((_read(_known(name)),), file_name)
 
 
 def _folder() -> str:
@@ -62,8 +58,6 @@ def _read(name: str) -> str:
         return file.read()
 
 
-def _listing() -> list[tuple[str, str]]:
-    """Return the name of each machine, filled up to the longest, and the first comment line of its file."""
-    names = shipped_names()
-    longest = max(map(len, names))
-    return [(f"{name:<{longest}}  ", _read(name).partition("\n")[0].lstrip("# ")) for name in names]
+def _described(name: str) -> str:
+    """Return the first comment line of the file of a machine."""
+    return _read(name).partition("\n")[0].lstrip("# ")

@@ -17,15 +17,10 @@ def keys(key: str | None) -> None:
       kurbel keys
       kurbel keys masses.connecting_rod.share
     """
-    from kurbel.render import Look
-    from kurbel.render.listing import entries
-    from kurbel.render.output import stdout_charset, stdout_width, write_stdout
+    from kurbel.render.listing import write_entries
     from kurbel.report.keys import every_place, places_at
 
     if key is None:
-        found = [(path, ones[0].line) for path, ones in every_place().items()]
+        write_entries([(path, ones[0].line) for path, ones in every_place().items()])
     else:
-        found = [line for one in places_at(key) for line in one.full]
-    longest = max(len(head) for head, _ in found)
-    look = Look(encoding=stdout_charset().encoding, width=stdout_width())
-    write_stdout(line + "\n" for line in entries(((f"{head:<{longest}}  ", text) for head, text in found), look))
+        write_entries([line for one in places_at(key) for line in one.full])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -109,7 +109,9 @@ class Output(NamedTuple):
         write_report(report, self.look, self.file_name)
 
 
-def _stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    """Return what gives a command these options, in this order of its help."""
+
     def decorate(command: Command) -> Command:
         for option in reversed(options):
             command = option(command)
@@ -126,10 +128,10 @@ set_option = click.option(
     shell_complete=complete_override,
     help="This value instead of that of FILE, such as cylinders.0.bore='450 mm'; may be repeated.",
 )
-machine_file = _stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_option)
+machine_file = stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_option)
 """The machine file, or - for standard input, and values over those in it."""
 
-angle_options = _stacked(
+angle_options = stacked(
     click.option(
         "--step", type=Number(), default=10.0, metavar="DEGREES", help="Step of the crank angle; 10 if not given."
     ),
@@ -146,7 +148,7 @@ columns_option = click.option(
     help="Only these columns, by id or symbol, in this order.",
     shell_complete=complete_columns,
 )
-_part_options = _stacked(
+_part_options = stacked(
     click.option(
         "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
     ),
@@ -161,7 +163,7 @@ units_option = click.option(
 width_option = click.option(
     "--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill; a terminal's own if not given."
 )
-_look_options = _stacked(
+_look_options = stacked(
     click.option(
         "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
     ),
@@ -186,13 +188,20 @@ _look_options = _stacked(
 )
 
 
-_SUFFIXES = {".csv": "csv", ".json": "json", ".md": "markdown", ".markdown": "markdown"}
+_SUFFIXES = {
+    ".csv": "csv",
+    ".json": "json",
+    ".md": "markdown",
+    ".markdown": "markdown",
+    ".html": "html",
+    ".tex": "latex",
+}
 
 
-def format_of(asked: str | None, file_name: str | None) -> str:
+def format_of(asked: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES) -> str:
     """Return the format that is asked for, or that of the suffix of the file; UsageError where the two contradict."""
     dot = (file_name or "").rfind(".")
-    of_suffix = _SUFFIXES.get(file_name[dot:].lower()) if file_name else None
+    of_suffix = suffixes.get(file_name[dot:].lower()) if file_name else None
     if asked and of_suffix and asked != of_suffix:
         raise click.UsageError(
             f"--format {asked} contradicts the name {file_name}, which says {of_suffix}; change one of them."
@@ -268,23 +277,58 @@ class Asked(NamedTuple):
         """Return the crank angles in degrees to print for each part, from 0 to `end` where none are named."""
         return crank_angles(self.step, self.angles, end, parts)
 
-    def write(self, report: Report) -> None:
-        """Write what is asked of the report."""
+    def write(self, report: Report, case: Case | None = None, spreads: Sequence[tuple[str, str]] = ()) -> None:
+        """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""
         if self.key_values_only and self.columns:
             raise click.UsageError("--columns names columns of the table that --key-values leaves out.")
         if self.cylinder is not None:
             report = report.of_cylinder(self.cylinder)
-        self.output.write(report.key_values_alone() if self.key_values_only else report)
+        report = report.key_values_alone() if self.key_values_only else report
+        if case and (spreads or case.machine.uncertainty):
+            from kurbel.designs.uncertainty import with_uncertainty
+
+            report = with_uncertainty(report, case, spreads, self.units)
+        self.output.write(report)
+
+
+Spreads = tuple[tuple[str, str], ...]
+"""Dotted keys, each with its standard uncertainty as a text."""
+
+
+def uncertainty_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command standard uncertainties of inputs, which reach it as pairs of key and text."""
+    option = click.option(
+        "--uncertainty",
+        "spreads",
+        multiple=True,
+        metavar="KEY=SPREAD",
+        help="Standard uncertainty of a value of FILE, such as bore='0.2 mm' or '2 %'; may be repeated.",
+    )
+
+    @wraps(command)
+    def with_spreads(spreads: tuple[str, ...], **others: Any) -> Any:
+        return command(spreads=tuple(_spread(one) for one in spreads), **others)
+
+    return option(with_spreads)
+
+
+def _spread(text: str) -> tuple[str, str]:
+    from kurbel.declared.forms.uncertainties import spread_text
+
+    key, _, spread = text.partition("=")
+    if not (key.strip() and spread_text(spread)):
+        raise click.UsageError(f"--uncertainty {text}: write KEY=SPREAD, above 0, such as bore='0.2 mm'.")
+    return key.strip(), spread_text(spread)
 
 
 def machine_places(command: Callable[..., None]) -> Callable[..., Any]:
     """Give a command FILE and the options of one that tells nothing over the crank angle; see `machine_table`."""
-    return _stacked(machine_file, _part_options, units_option)(output_options(_with_asked(command)))
+    return stacked(machine_file, _part_options, units_option)(output_options(_with_asked(command)))
 
 
 def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
     """Give a command FILE and all options of a table, which reach it as one `asked: Asked`."""
-    return _stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
+    return stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
         output_options(_with_asked(command))
     )
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from kurbel.cli.output_options import Asked
+from kurbel.cli.output_options import Asked, stacked
 
 if TYPE_CHECKING:
     from kurbel.report.frame import Rows
@@ -43,7 +43,7 @@ class AskedRows(NamedTuple):
 where_option = click.option(
     "--where", metavar="'COLUMN = VALUE'", help="Rows where a column has a value, such as 'b = 1/6 b_max'."
 )
-_options = (
+_options = stacked(
     where_option,
     click.option(
         "--over", type=click.Choice(["x"]), help="Rows over the stroke, both ways, every --step percent of it."
@@ -59,7 +59,4 @@ def row_options(command: Callable[..., Any]) -> Callable[..., Any]:
     def with_rows(where: str | None, over: str | None, compare: bool, **others: Any) -> Any:
         return command(rows=AskedRows(where, over, compare), **others)
 
-    found: Callable[..., Any] = with_rows
-    for option in reversed(_options):
-        found = option(found)
-    return found
+    return _options(with_rows)

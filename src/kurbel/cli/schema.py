@@ -26,4 +26,4 @@ def schema(answers: bool, file_name: str | None) -> None:
 
     # escapes instead of Greek: valid in whatever encoding a shell redirects to
     text = json.dumps(answer_schema() if answers else json_schema(), indent=2, allow_nan=False) + "\n"
-    write_text(text, file_name)
+    write_text((text,), file_name)

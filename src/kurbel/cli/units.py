@@ -14,11 +14,6 @@ def units() -> None:
     Products and powers are written as people write them: N m or N*m, kg m2 or kg m^2.
     """
     from kurbel.declared.units import kinds, unit_names
-    from kurbel.render import Look
-    from kurbel.render.listing import entries
-    from kurbel.render.output import stdout_charset, stdout_width, write_stdout
+    from kurbel.render.listing import write_entries
 
-    longest = max(map(len, kinds()))
-    found = ((f"{kind.replace('_', ' '):<{longest}}  ", ", ".join(unit_names(kind))) for kind in kinds())
-    look = Look(encoding=stdout_charset().encoding, width=stdout_width())
-    write_stdout(line + "\n" for line in entries(found, look))
+    write_entries([(kind.replace("_", " "), ", ".join(unit_names(kind))) for kind in kinds()])

@@ -15,11 +15,13 @@ from kurbel.declared.keys import Described, Keys
 from kurbel.declared.quantities import Lists
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, UsageError, refuse
+from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle
     from kurbel.mechanisms.coupler import Coupler
+    from kurbel.mechanisms.sketch import Sketch
 
 MECHANISMS = {
     "slider-crank": Record("kurbel.mechanisms.slider_crank:SliderCrank"),
@@ -85,8 +87,9 @@ class Mechanism(Described):
 
     A class without one of these is refused. All else has an answer here that a mechanism may better: `crank_angles_at`,
     the inverse of `coordinate`; `landmarks`, where its functions bend sharply; the connecting rod, the radial force;
-    closed extremes; `lacks` and `notes`. What only some mechanisms have (a swinging lever, a sliding block, a coupler)
-    they hand out as columns in OFFERS and key values in KEY_OFFERS. Nobody asks for the class of a mechanism.
+    closed extremes; `sketch`, what is drawn of it; `lacks` and `notes`. What only some mechanisms have (a swinging
+    lever, a sliding block, a coupler) they hand out as columns in OFFERS and key values in KEY_OFFERS. Nobody asks for
+    the class of a mechanism.
     """
 
     KEYS: ClassVar[Keys]
@@ -170,9 +173,11 @@ class Mechanism(Described):
         inner, outer = (np.full_like(way, degrees) for degrees in self.dead_centres())
         ends = ((inner, -way), (outer, self.stroke - way))
         (low, f_low), (high, f_high) = ends if outstroke else (ends[1], (inner + 360.0, -way))
-        return bracketed_roots(
+        found = bracketed_roots(
             lambda degrees: self.coordinate(CrankAngle.of(degrees)) - self.start - way, low, high, f_low, f_high
         )
+        # beside a dead centre the rounding of the coordinate leaves 1e-6 degrees open
+        return np.where(f_low == 0, low, np.where(f_high == 0, high, found))
 
     def landmarks(self) -> tuple[float, ...]:
         """Return the crank angles in degrees, besides the dead centres, at which searches should split."""
@@ -209,6 +214,10 @@ class Mechanism(Described):
 
     def coupler_at(self, angle: CrankAngle) -> Coupler | None:
         """Return how the connecting rod or coupler on the crank pin lies and turns, or None where there is none."""
+        return None
+
+    def sketch(self, angle: CrankAngle) -> Sketch | None:
+        """Return what is drawn of the mechanism at the crank angle, or None where that cannot be drawn."""
         return None
 
     @property
@@ -286,14 +295,17 @@ def check_lengths(**lengths: float) -> None:
     refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
 
 
-def fan(centre: float, width: float) -> tuple[float, ...]:
+def fan(centre: Any, width: Any) -> tuple[Any, ...]:
     """Return angles in degrees that stand ever wider on both sides of a bend of this half width (degrees) at `centre`.
+
+    Of arrays, angles of which some have fewer are nan there.
 
     >>> fan(180.0, 10.0)
     (180.0, 170.0, 190.0, 150.0, 210.0)
     """
     angles = [centre]
-    while 0 < width < 45:
-        angles += [centre - width, centre + width]
-        width *= 3
+    while some(narrow := (width > 0) & (width < 45)):
+        apart = where(narrow, width, float("nan"))
+        angles += [centre - apart, centre + apart]
+        width = width * 3
     return tuple(angles)

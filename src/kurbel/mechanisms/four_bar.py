@@ -16,6 +16,7 @@ from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, turning_column
 from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.four_bar_loop import Loop
+from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
 from kurbel.numerics.arithmetic import bearing
 from kurbel.numerics.extreme import Extreme
@@ -155,6 +156,18 @@ class FourBar(Mechanism):
         """b in m."""
         return self.coupler
 
+    def sketch(self, angle: CrankAngle) -> Sketch:
+        """Return crank, coupler and rocker."""
+        sin, cos = self.loop.at(angle).direction
+        pivot = (self.frame, 0.0)
+        joints = {
+            SHAFT: (0.0, 0.0),
+            PIN: on_circle(self.crank, angle.cos, angle.sin),
+            "rocker pin": on_circle(self.rocker, cos, sin, pivot),
+            "pivot": pivot,
+        }
+        return Sketch(joints, ((SHAFT, PIN), (PIN, "rocker pin"), ("rocker pin", "pivot")), (SHAFT, "pivot"))
+
     def coupler_at(self, angle: CrankAngle) -> Coupler:
         """Return the coupler at the crank angle."""
         return self.loop.at(angle).coupler
@@ -231,32 +244,6 @@ class FourBar(Mechanism):
         """Crank rotation of the slower swing in degrees."""
         inner, outer = self.dead_centres()
         return outer - inner if self.works_outward else 360.0 - (outer - inner)
-
-    def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
-        """Return the crank angles in degrees where θ − start (n,) in rad is passed, θ rising (outstroke) or falling."""
-        import numpy as np
-
-        if self.turns:
-            return self._turned_to(self.start + displacement)
-        a, b, c = self.loop.crank, self.loop.coupler, self.loop.rocker
-        low, high = (math.radians(theta) for theta in self.limits)
-        theta = low + displacement
-        line = np.hypot(1 + c * np.cos(theta), c * np.sin(theta))  # from the crank pivot to the coupler's joint
-        # (b + a)² − line² and line² − (b − a)², which vanish at the dead centres
-        outer = 4 * c * np.sin((theta + low) / 2) * np.sin(displacement / 2) / (b + a + line)
-        inner = 4 * c * np.sin((theta + high) / 2) * np.sin((self.stroke - displacement) / 2) / (line + b - a)
-        sweep = 2 * np.degrees(np.arctan2(np.sqrt(outer * (line + b - a)), np.sqrt(inner * (line + a + b))))
-        turn = bearing(c * np.sin(theta), 1 + c * np.cos(theta))
-        return turn + sweep if outstroke else 360.0 + turn - sweep
-
-    def _turned_to(self, theta: Any) -> Any:
-        """φ of a rocker that runs on at θ (n,) in rad: the line to the coupler's joint, and the crank ahead of it."""
-        import numpy as np
-
-        a, b, c = self.loop.crank, self.loop.coupler, self.loop.rocker
-        line = np.hypot(1 + c * np.cos(theta), c * np.sin(theta))
-        sweep = 2 * np.arctan2(np.sqrt((b + line - a) * (b + a - line)), np.sqrt((line + a + b) * (line + a - b)))
-        return np.degrees(theta + sweep) - bearing(np.sin(theta), c + np.cos(theta))
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Key, Keys, check
 from kurbel.declared.quantity import Quantity
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_motion
+from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
 
 if TYPE_CHECKING:
@@ -103,6 +104,12 @@ class ParallelCrank(Mechanism):
     def swing_at(self, angle: CrankAngle) -> Swing:
         """Return the second crank, which turns as the first does."""
         return Swing(angle.degrees, self.slope(angle), self.curvature(angle))
+
+    def sketch(self, angle: CrankAngle) -> Sketch:
+        """Return both cranks and the coupler."""
+        pin = on_circle(self.crank, angle.cos, angle.sin)
+        joints = {SHAFT: (0.0, 0.0), PIN: pin, "second pin": (pin[0] + self.frame, pin[1]), "second": (self.frame, 0.0)}
+        return Sketch(joints, ((SHAFT, PIN), (PIN, "second pin"), ("second pin", "second")), (SHAFT, "second"))
 
     def coupler_path(self, angle: CrankAngle) -> tuple[Any, Any]:
         """Return the way (along, across) the line of the shafts that every coupler point has come from φ = 0, in m.

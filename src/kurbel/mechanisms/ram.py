@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from kurbel.numerics.arithmetic import bearing, sqrt
+from kurbel.numerics.arithmetic import sqrt
 
 Direction = tuple[float, float]
 """(sin θ, cos θ)."""
@@ -32,11 +32,6 @@ class ForkHead(NamedTuple):
     def bend(self, sin: Any, cos: Any) -> Any:
         """Return sin θ."""
         return sin
-
-    def tilt_at(self, place: Any, forward: bool) -> Any:
-        """Return θ in degrees at a place (n,), on the half where the ram moves forward with θ or on the other."""
-        tilt = bearing(place, sqrt((1 - place) * (1 + place)))
-        return tilt if forward else 180.0 - tilt
 
 
 class ConnectingLink(NamedTuple):
@@ -75,15 +70,3 @@ class ConnectingLink(NamedTuple):
         """Return sin θ + cos θ tan γ + sin²θ/(l cos³γ)."""
         rise, run = self._angle(cos)
         return sin + cos * (rise / run) + (sin * sin) / (self.length * (run * run * run))
-
-    def tilt_at(self, place: Any, forward: bool) -> Any:
-        """Return θ in degrees at a place (n,), from the triangle of pivot, lever's end and ram by half angles."""
-        import numpy as np
-
-        length, along = self.length, place + self.length
-        line = np.hypot(along, self.height)
-        # length − |line − 1| and the like, from differences that are zero where link and lever lie in line
-        opening = np.sqrt(np.maximum((length - line + 1) * (length + line - 1), 0.0))
-        closing = np.sqrt(np.maximum((line + 1 - length) * (line + 1 + length), 0.0))
-        turn = 2 * bearing(opening, closing)
-        return bearing(along, self.height) - turn if forward else bearing(along, self.height) + turn

@@ -9,6 +9,7 @@ from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Key, Keys
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_force
 from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area
+from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.slider_crank import CRANK_KEYS
 from kurbel.numerics.extreme import Extreme
 
@@ -61,16 +62,25 @@ class ScotchYoke(Mechanism):
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (pin_pressure(bound=200 * 98066.5),)
 
     @classmethod
-    def of_keys(
-        cls,
-        crank: float | None = None,
-        stroke: float | None = None,
-        guide_length: float | None = None,
-        pin_diameter: float | None = None,
-        pin_length: float | None = None,
-    ) -> ScotchYoke:
+    def of_keys(cls, crank: float | None = None, stroke: float = 0.0, **others: float) -> ScotchYoke:
         """Return the Scotch yoke that these keys of a machine file describe; raises RuleError."""
-        return cls(crank if crank is not None else (stroke or 0.0) / 2, guide_length, pin_diameter, pin_length)
+        return cls(stroke / 2 if crank is None else crank, **others)
+
+    def sketch(self, angle: CrankAngle) -> Sketch:
+        """Return the crank with its block in an upright yoke, and the rod that this moves."""
+        pin, reach = on_circle(self.crank, angle.cos, angle.sin), 1.2 * self.crank
+        joints = {
+            SHAFT: (0.0, 0.0),
+            PIN: pin,
+            "top": (pin[0], reach),
+            "bottom": (pin[0], -reach),
+            "yoke": (pin[0], 0.0),
+            "rod": (pin[0] + 2 * self.crank, 0.0),
+        }
+        links = ((SHAFT, PIN), ("bottom", "top"), ("yoke", "rod"))
+        guide = ((self.crank, 0.0), (3 * self.crank, 0.0))
+        blocks = ((PIN, ("bottom", "top")),)
+        return Sketch(joints, links, (SHAFT,), blocks, (guide,), "rod", (-1.0, 0.0), (0.0, -1.0))
 
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank)

@@ -14,6 +14,7 @@ from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
 from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area, sum_along
 from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
+from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import SWING_OFFERS, SWING_VALUES, Swing
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
@@ -190,6 +191,22 @@ class SlottedLever(Mechanism):
         """Return (sin θ, cos θ) of the lever's tilt from the line of the pivots."""
         return self._lever_at(angle)[:2]
 
+    def sketch(self, angle: CrankAngle) -> Sketch:
+        """Return the crank with its block on the lever, and the ram on its line, which is upright where φ = 0 lies."""
+        lever, pivot = self._lever_at(angle), (-self.frame, 0.0)
+        length = 1.1 * (self.crank + self.frame) if self.lever is None else self.lever
+        end = on_circle(length, lever.cos, lever.sin, pivot)
+        joints = {SHAFT: (0.0, 0.0), PIN: on_circle(self.crank, angle.cos, angle.sin), "pivot": pivot, "end": end}
+        links: tuple[tuple[str, ...], ...] = ((SHAFT, PIN), ("pivot", "end"))
+        blocks, fixed = ((PIN, ("pivot", "end")),), (SHAFT, "pivot")
+        if not self.slides:
+            return Sketch(joints, links, fixed, blocks)
+        line = pivot[0] + (length if self._forked else self._height)
+        middle = 0.0 if self._forked else length * (self._middle + self.link / length)
+        joints["ram"] = (line, middle + self.coordinate(angle))
+        guide = ((line, middle - self.stroke / 2), (line, middle + self.stroke / 2))
+        return Sketch(joints, (*links, ("end", "ram")), fixed, blocks, (guide,), "ram", (0.0, 1.0))
+
     def swing_at(self, angle: CrankAngle) -> Swing:
         """Return θ, θ′ = r(r + e cos φ)/ρ² and θ″ = −r e (e² − r²) sin φ/ρ⁴, with ρ the pin's distance from the pivot.
 
@@ -298,33 +315,6 @@ class SlottedLever(Mechanism):
         """Return dρ/dφ = −r e sin φ/ρ in m: times ω, the speed at which the block slides along the lever."""
         _, frame, _ = self._shares
         return -self.crank * frame * angle.sin / self._lever_at(angle).reach
-
-    def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
-        """Return the crank angles in degrees at which x − start (n,) in m is passed.
-
-        Turning lever: φ = θ + arcsin(κ sin θ). Swinging: with sin α = sin θ/κ, φ = θ + α on the working stroke and
-        θ + 180° − α on the return. The fork head's x = (s/2) sin α keeps all digits beside the dead centres.
-        """
-        import numpy as np
-
-        kappa, half = self._kappa[0], self.stroke / 2
-        if not self.slides:
-            return self._turned_to(np.degrees(self.start + displacement), outstroke)
-        if self._forked:
-            sin, cos = (displacement - half) / half, np.sqrt(displacement * (self.stroke - displacement)) / half
-            main, shift = bearing(sin, cos), bearing(kappa * sin, self._cos_shift(sin, cos))
-            return main + shift if outstroke else 180.0 - main + shift
-        theta = self._ram.tilt_at(self._middle + (displacement - half) / self._end, outstroke or not self.rotates)
-        return self._turned_to(theta, outstroke)
-
-    def _turned_to(self, theta: Any, outstroke: bool) -> Any:
-        import numpy as np
-
-        kappa, tilt = self._kappa[0], CrankAngle.of(theta)
-        if self.rotates:
-            return theta + bearing(kappa * tilt.sin, self._cos_shift(tilt.sin, tilt.cos))
-        alpha = bearing(tilt.sin, np.sqrt(np.maximum((kappa - tilt.sin) * (kappa + tilt.sin), 0.0)))
-        return theta + alpha if outstroke else theta + 180.0 - alpha
 
     def landmarks(self) -> tuple[float, ...]:
         """Return 0° and 180°, and a widening fan round 180° where the pin comes near the pivot."""

@@ -55,20 +55,6 @@ class YokeFrame(SliderCrank):
         ),
     }
 
-    @classmethod
-    def of_keys(
-        cls,
-        crank: float | None = None,
-        stroke: float | None = None,
-        rod: float | None = None,
-        rod_ratio: float | None = None,
-        offset: float = 0.0,
-        gland: float | None = None,
-    ) -> YokeFrame:
-        """Return the drive that these keys of a machine file describe; raises RuleError."""
-        plain = SliderCrank.of_keys(crank, stroke, rod, rod_ratio, offset)
-        return cls(plain.crank, plain.rod, plain.offset, gland)
-
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.gland is not None and not 0 < self.gland < float("inf"):

@@ -1,4 +1,4 @@
-"""From a neutral report to text: the page of the book, one line per angle, CSV, JSON and Markdown."""
+"""From a neutral report to text: the page of the book, one line per angle, CSV, JSON, Markdown, HTML and LaTeX."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from kurbel.render.charset import Charset
 if TYPE_CHECKING:
     from kurbel.report.tables import Report
 
-FORMATS = ("table", "csv", "json", "markdown")
+FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
 LAYOUTS = ("book", "rows")
 
 
@@ -54,6 +54,14 @@ def pieces(report: Report, look: Look) -> Iterable[str]:
         from kurbel.render.markdown import markdown
 
         return markdown(report, look)
+    if look.format == "html":
+        from kurbel.render.html import html
+
+        return html(report, look)
+    if look.format == "latex":
+        from kurbel.render.latex import latex
+
+        return latex(report, look)
     from kurbel.render.lines import plain
     from kurbel.render.page import page
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Sequence
 
 from kurbel.render import Look
 from kurbel.render.charset import left, width
@@ -27,6 +27,16 @@ def listing(checked: Checked, look: Look) -> str:
 def _said(section: Section) -> Hashable:
     """Return what equal cylinders have in common."""
     return (section.cylinder or section.title, tuple((one.what, one.text, one.severity) for one in section.entries))
+
+
+def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
+    """Write heads in a column, each with its text, to a file or to standard output."""
+    from kurbel.render.output import stdout_look, write_out
+
+    longest = max(len(head) for head, _ in found)
+    padded = ((f"{head:<{longest}}  ", text) for head, text in found)
+    look = Look() if file_name else stdout_look()
+    write_out((line + "\n" for line in entries(padded, look)), file_name)
 
 
 def entries(found: Iterable[tuple[str, str]], look: Look) -> Iterable[str]:

@@ -16,9 +16,12 @@ from kurbel.render import Look, pieces
 from kurbel.render.charset import Charset
 
 if TYPE_CHECKING:
+    from kurbel.render.lines import Line
     from kurbel.report.tables import Report
 
 _MOST_COLOURED_LINES = 400
+_SAYING_UTF_8 = ("html", "latex")
+"""Formats that are read as UTF-8, whatever the terminal has."""
 
 
 def write_report(report: Report, look: Look, file_name: str | None = None) -> None:
@@ -30,19 +33,24 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
     if file_name is not None and file_name != "-":
         write_file(file_name, pieces(report, look._replace(encoding="utf-8")))
         return
-    look = look._replace(encoding=stdout_charset().encoding, width=look.width or stdout_width())
-    if look.format == "table" and _stdout().isatty() and _coloured(report, look):
+    encoding = "utf-8" if look.format in _SAYING_UTF_8 else stdout_charset().encoding
+    look = look._replace(encoding=encoding, width=look.width or stdout_width())
+    if look.format == "table" and write_coloured(_page(report, look), look):
         return
-    write_stdout(pieces(report, look))
+    write_stdout(pieces(report, look), encoding)
 
 
-def _coloured(report: Report, look: Look) -> bool:
-    """Write the page in colour and return True, unless the terminal or its user would rather not."""
-    if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
-        return False
+def _page(report: Report, look: Look) -> Iterator[Line]:
     from kurbel.render.page import page
 
-    lines = list(islice(page(report, look), _MOST_COLOURED_LINES + 1))
+    return page(report, look)
+
+
+def write_coloured(page: Iterable[Line], look: Look) -> bool:
+    """Write lines in colour and return True, unless there is no terminal, or it or its user would rather not."""
+    if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+        return False
+    lines = list(islice(page, _MOST_COLOURED_LINES + 1))
     if len(lines) > _MOST_COLOURED_LINES:
         return False
     from kurbel.render.terminal import write_lines
@@ -110,12 +118,12 @@ def silence(stream: Any) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
-def write_text(text: str, file_name: str | None = None) -> None:
+def write_text(texts: Iterable[str], file_name: str | None = None) -> None:
     """Write UTF-8 text unchanged to a file, or to standard output whatever its encoding: a file that is piped on."""
     if file_name is not None and file_name != "-":
-        write_file(file_name, (text,))
+        write_file(file_name, texts)
     else:
-        write_stdout((text,), "utf-8")
+        write_stdout(texts, "utf-8")
 
 
 def write_file(file_name: str, texts: Iterable[str]) -> None:

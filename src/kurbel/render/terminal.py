@@ -24,6 +24,7 @@ _STYLES = {
     "mark": "bold red",
     "cell": "",
     "text": "",
+    **{f"curve{number}": style for number, style in enumerate(("bold", "blue", "red", "green", "magenta", "yellow"))},
 }
 
 

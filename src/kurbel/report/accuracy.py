@@ -71,9 +71,9 @@ def everything(case: Case) -> None:
 
     for subject in subjects(case):
         assert subject.at
-        answer = subject.at(np.arange(0.0, 361.0, 10.0))
-        for column in subject.lists.columns("forces").values():
-            answer(column)
+        state = subject.at(np.arange(0.0, 361.0, 10.0))
+        for id in subject.lists.columns("forces"):
+            getattr(state, id, None)
         for _ in subject.key_values("forces"):
             pass
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from kurbel.declared.unit_systems import show
 from kurbel.report.balance_tables import balance_tables
-from kurbel.report.frame import Frame, Subject, of_state
+from kurbel.report.frame import Frame, Subject
 from kurbel.report.pins import pin_notes
 from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
@@ -45,7 +45,7 @@ def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
     yield Subject(
         "whole machine",
         (*balance.answering, *((BookBalance(balance),) if compare else ())),
-        lambda degrees: of_state(balance.at(degrees)),
+        balance.at,
         left_out=lambda: _left_out(balance, compare),
         warnings=lambda: pin_notes(machine),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from kurbel.declared.unit_systems import show
-from kurbel.report.frame import Frame, Subject, of_state
+from kurbel.report.frame import Frame, Subject
 from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.bearings.bearing import Bearing
@@ -37,7 +37,7 @@ def subjects(case: Case) -> Iterable[Subject]:
 
 
 def _subject(part: Bearing) -> Subject:
-    return Subject(part.name, (part,), lambda degrees: of_state(part.at(degrees)), left_out=lambda: _left_out(part))
+    return Subject(part.name, (part,), part.at, left_out=lambda: _left_out(part))
 
 
 _FRAMES = (

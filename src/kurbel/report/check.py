@@ -12,8 +12,9 @@ from kurbel.errors import KurbelError, Path
 from kurbel.machine import Cylinder, Machine
 from kurbel.mechanisms import Mechanism
 from kurbel.report.compared import Entry, Unjudged, judged
-from kurbel.report.left_out import left_out, stages, strength_left_out, turning_stages
+from kurbel.report.left_out import left_out, missing, stages, strength_left_out, turning_stages
 from kurbel.report.notes import Note, machine_notes
+from kurbel.report.tables import LeftOut
 
 
 class Section(NamedTuple):
@@ -72,8 +73,8 @@ def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note
     entries = [
         Entry("mechanism", _described(cylinder.mechanism)),
         *(Entry(f"{piston.name}", f"bore {show(piston.bore, 'length')}") for piston in cylinder.pistons),
-        Entry("computed", ", ".join(what for what, why in stages(machine, cylinder).items() if not why)),
-        *(Entry("left out", f"{what}: {why}", "info", path) for what, why in left_out(machine, cylinder)),
+        _computed(stages(machine, cylinder)),
+        *_without(left_out(machine, cylinder), path),
         *_notes(found, cylinder.name, path),
         *(Entry("note", note, "info", path) for note in cylinder.mechanism.notes),
     ]
@@ -98,6 +99,14 @@ def _notes(found: Sequence[Note], cylinder: str | None, path: Path = ()) -> Iter
     return (Entry("note", text, "warning", path) for name, text in found if name == cylinder)
 
 
+def _computed(stages: dict[str, str]) -> Entry:
+    return Entry("computed", ", ".join(what for what, why in stages.items() if not why))
+
+
+def _without(found: Iterable[LeftOut], path: Path = ()) -> Iterable[Entry]:
+    return (Entry("left out", f"{what}: {why}", "info", path) for what, why in found)
+
+
 def _turning_entries(machine: Machine) -> Iterable[Entry]:
     """Yield what kurbel flywheel has to say of a machine, where that is more than its only cylinder has."""
     if not machine.cylinders and not machine.effort:
@@ -106,10 +115,8 @@ def _turning_entries(machine: Machine) -> Iterable[Entry]:
     if len(machine.cylinders) == 1 and machine.efficiency == 1 and not any(given):
         return
     stages = turning_stages(machine)
-    yield Entry("computed", ", ".join(what for what, why in stages.items() if not why))
-    for what, why in stages.items():
-        if why:
-            yield Entry("left out", f"{what}: {why}", "info")
+    yield _computed(stages)
+    yield from _without(missing(stages))
     yield Entry("load", _load(machine))
 
 
@@ -133,8 +140,7 @@ def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
         yield Entry("left out", f"strength: {obstacle}", "info", ("crankshaft",))
         return
     yield Entry("computed", "forces on the bearings, stresses in pin and webs")
-    for what, why in strength_left_out(machine):
-        yield Entry("left out", f"{what}: {why}", "info", ("crankshaft",))
+    yield from _without(strength_left_out(machine), ("crankshaft",))
 
 
 def _balance_entries(machine: Machine) -> Iterable[Entry]:
@@ -147,13 +153,12 @@ def _balance_entries(machine: Machine) -> Iterable[Entry]:
 
     try:
         (whole,) = subjects(Case(machine))
-        missing = tuple(whole.left_out())
+        lacking = tuple(whole.left_out())
     except KurbelError as error:
         yield Entry("left out", str(error), "info")
         return
     yield Entry("computed", "free forces and moments, their orders, best counterweights")
-    for what, why in missing:
-        yield Entry("left out", f"{what}: {why}", "info")
+    yield from _without(lacking)
 
 
 def _shaft_entries(machine: Machine) -> Iterable[Entry]:
@@ -171,8 +176,7 @@ def _shaft_entries(machine: Machine) -> Iterable[Entry]:
         return
     forced = "" if found.obstacle else ", torques and stresses"
     yield Entry("computed", f"natural frequencies, critical speeds{forced}")
-    for what, why in torsion_left_out(found):
-        yield Entry("left out", f"{what}: {why}", "info", ("shaft",))
+    yield from _without(torsion_left_out(found), ("shaft",))
 
 
 def _described(mechanism: Mechanism) -> str:

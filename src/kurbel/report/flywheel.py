@@ -8,7 +8,7 @@ from typing import NamedTuple
 from kurbel.declared.unit_systems import show
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
-from kurbel.report.frame import Frame, Rows, Subject, of_state, rows_of
+from kurbel.report.frame import Frame, Rows, Subject, rows_of
 from kurbel.report.left_out import flywheel_left_out
 from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.tables import Report
@@ -49,7 +49,7 @@ def subjects(case: Case) -> Iterable[Subject]:
     yield Subject(
         "whole machine",
         turning.answering,
-        lambda degrees: of_state(turning.at(degrees)),
+        turning.at,
         left_out=lambda: flywheel_left_out(case.machine),
         warnings=lambda: of_machine(machine_notes(case.machine, case), case.machine),
         source=turning,

@@ -8,7 +8,7 @@ from typing import Any
 
 from kurbel.declared.indicated import CYCLE_VALUES
 from kurbel.errors import UsageError
-from kurbel.report.frame import Answer, Frame, Rows, Subject, of_state, refuse_without_cylinder, rows_of
+from kurbel.report.frame import Frame, Rows, Subject, refuse_without_cylinder, rows_of
 from kurbel.report.guide import guide_notes
 from kurbel.report.left_out import left_out
 from kurbel.report.motion import mechanism_notes
@@ -91,9 +91,9 @@ def subjects(case: Case) -> Iterable[Subject]:
 def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[Note]]) -> Subject:
     cylinder = forces.drive.cylinder
 
-    def at(degrees: Any) -> Answer:
+    def at(degrees: Any) -> Any:
         forces.refuse_locking()  # first, with an angle that does not depend on the step
-        return of_state(forces.at(degrees))
+        return forces.at(degrees)
 
     def warnings() -> Iterable[str]:
         yield from of_cylinder(found(), case.machine, cylinder)

@@ -22,21 +22,19 @@ from kurbel.solver.figures import answered
 APPROXIMATIONS = ("x_book", "c_book", "b_book", "P_gas_book")
 """Columns of the book beside the exact ones."""
 
-Answer = Callable[[Quantity], Any]
-"""What answers a column with its values (n,) in SI at certain crank angles, or None where it has none."""
-
 
 class Subject(NamedTuple):
     """What a command speaks of: one cylinder, or the whole machine.
 
     results: what answers its key values, the first that knows one; at: takes crank angles (n,) in degrees and returns
-    what answers its columns; lists: the quantities that it may have. left_out, warnings, place_tables: are made
-    when they are read; source: where its columns are told of, `angles_where`, None for what has no rows.
+    the state whose attributes are its columns, (n,) in SI or None; lists: the quantities that it may have. left_out,
+    warnings, place_tables: are made when they are read; source: where its columns are told of, `angles_where`, None for
+    what has no rows.
     """
 
     name: str
     results: tuple[Any, ...]
-    at: Callable[[Any], Answer] | None = None
+    at: Callable[[Any], Any] | None = None
     lists: Lists = COMMON
     left_out: Callable[[], Iterable[LeftOut]] = tuple
     warnings: Callable[[], Iterable[str]] = tuple
@@ -60,14 +58,10 @@ class Subject(NamedTuple):
 
     def has(self, command: str) -> list[str]:
         """Return the ids of the columns of a command that it has."""
-        answer = self.at(np.zeros(1)) if self.at else None
-        columns = self.lists.columns(command).values() if answer else ()
-        return [one.id for one in columns if answer and (one.id == "phi" or answer(one) is not None)]
-
-
-def of_state(state: Any) -> Answer:
-    """Return what answers columns by the attributes of a state."""
-    return lambda column: getattr(state, column.id, None)
+        if self.at is None:
+            return []
+        state = self.at(np.zeros(1))
+        return [id for id in self.lists.columns(command) if id == "phi" or getattr(state, id, None) is not None]
 
 
 Rows = Callable[["Subject", float], "Sequence[float]"]

@@ -69,14 +69,19 @@ def _works(machine: Machine, cylinder: Cylinder, acting: dict[str, str]) -> dict
     return {"work": acting["gas force"], "power": acting["gas force"] or power, **brake}
 
 
+def missing(reasons: dict[str, str]) -> tuple[LeftOut, ...]:
+    """Return what of these stages is left out, those with a reason."""
+    return tuple(LeftOut(what, why) for what, why in reasons.items() if why)
+
+
 def left_out(machine: Machine, cylinder: Cylinder) -> tuple[LeftOut, ...]:
     """Return everything that forces and motion of this cylinder leave out, with the reason."""
-    return tuple(LeftOut(what, why) for what, why in stages(machine, cylinder).items() if why)
+    return missing(stages(machine, cylinder))
 
 
 def motion_left_out(machine: Machine, cylinder: Cylinder) -> tuple[LeftOut, ...]:
     """Return what of the motion of this cylinder is left out, with the reason."""
-    return tuple(LeftOut(what, why) for what, why in _motion_stages(machine, cylinder).items() if why)
+    return missing(_motion_stages(machine, cylinder))
 
 
 def strength_left_out(machine: Machine) -> tuple[LeftOut, ...]:
@@ -86,15 +91,16 @@ def strength_left_out(machine: Machine) -> tuple[LeftOut, ...]:
         return ()
     upright = "" if all(cylinder.inclination is not None for cylinder in machine.cylinders) else "no inclination given"
     journals = "" if shaft.journal_diameter else "no journal_diameter given"
-    reasons = {
-        "flywheel weight": upright if shaft.flywheel_mass else "no flywheel_mass given",
-        "journals": journals,
-        "pressure on the journals": journals or ("" if shaft.journal_length else "no journal_length given"),
-        "p_m v": "no speed given" if machine.speed is None else "",
-        "safety": "" if shaft.allowable_bending else "no allowable_bending given",
-        "α₀ of the webs": "" if shaft.allowable_bending and shaft.allowable_torsion else "1 without k_b and k_d",
-    }
-    return tuple(LeftOut(what, why) for what, why in reasons.items() if why)
+    return missing(
+        {
+            "flywheel weight": upright if shaft.flywheel_mass else "no flywheel_mass given",
+            "journals": journals,
+            "pressure on the journals": journals or ("" if shaft.journal_length else "no journal_length given"),
+            "p_m v": "no speed given" if machine.speed is None else "",
+            "safety": "" if shaft.allowable_bending else "no allowable_bending given",
+            "α₀ of the webs": "" if shaft.allowable_bending and shaft.allowable_torsion else "1 without k_b and k_d",
+        }
+    )
 
 
 def _no_gas(cylinder: Cylinder) -> str:
@@ -115,8 +121,7 @@ def flywheel_left_out(machine: Machine) -> tuple[LeftOut, ...]:
         for cylinder, ones in list(zip(machine.cylinders, of_each))[: 1 if alike else None]
         for one in ones
     ]
-    stages = turning_stages(machine)
-    return (*found, *(LeftOut(what, why) for what, why in stages.items() if why))
+    return (*found, *missing(turning_stages(machine)))
 
 
 def turning_stages(machine: Machine) -> dict[str, str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from kurbel.machine import Machine
-from kurbel.report.frame import Frame, Rows, Subject, of_state, refuse_without_cylinder, rows_of
+from kurbel.report.frame import Frame, Rows, Subject, refuse_without_cylinder, rows_of
 from kurbel.report.left_out import motion_left_out
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
@@ -36,7 +36,7 @@ def _subject(machine: Machine, forces: CylinderForces) -> Subject:
     return Subject(
         cylinder.name,
         (forces.motion,),
-        lambda degrees: of_state(forces.at(degrees)),
+        forces.at,
         forces.lists,
         lambda: motion_left_out(machine, cylinder),
         source=forces,

@@ -26,26 +26,28 @@ _ROUNDING = 1e-12
 def shown_columns(
     phi: Quantity,
     columns: Sequence[Quantity],
-    at: Callable[[Any], Callable[[Quantity], Any]],
+    at: Callable[[Any], Any],
     angles: Sequence[float],
     system: str,
 ) -> tuple[Column, ...]:
     """Return φ and these columns as far as the machine has them, at crank angles (n,) in degrees.
 
-    at: takes angles (k,) and returns what answers a column with values (k,) in SI, or None where there are none.
+    at: takes angles (k,) and returns a state whose attributes are the columns, (k,) in SI, or None.
     Raises UsageError where one is not finite.
     """
     wanted, everywhere = dict.fromkeys((phi, *columns)), at(_EVERYWHERE)
     found: dict[Quantity, array[float]] = {}
     for start in range(0, len(angles), _AT_ONCE):
         degrees = np.asarray(angles[start : start + _AT_ONCE], dtype=float)
-        value_of = at(degrees)
+        state = at(degrees)
         for column in wanted:
-            values = degrees if column is phi else value_of(column)
+            values = degrees if column is phi else getattr(state, column.id, None)
             if values is not None:
                 found.setdefault(column, array("d")).frombytes(np.asarray(values, dtype=float).tobytes())
     return tuple(
-        shown_column(column, values, system, 0.0 if column is phi else float(np.abs(everywhere(column)).max()))
+        shown_column(
+            column, values, system, 0.0 if column is phi else float(np.abs(getattr(everywhere, column.id)).max())
+        )
         for column, values in found.items()
     )
 

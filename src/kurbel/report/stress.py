@@ -8,7 +8,7 @@ import numpy as np
 
 from kurbel.declared.quantities import COLUMNS
 from kurbel.declared.shaft import STRESSES
-from kurbel.report.frame import Frame, Subject, of_state
+from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import left_out, strength_left_out
 from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.shown import shown_column
@@ -47,7 +47,7 @@ def subjects(case: Case) -> Iterable[Subject]:
     yield Subject(
         "crankshaft",
         (strength,),
-        lambda degrees: of_state(strength.at(degrees)),
+        strength.at,
         left_out=lambda: (*left_out(machine, machine.cylinders[0]), *strength_left_out(machine)),
         warnings=lambda: of_machine(machine_notes(machine, case), machine),
     )

@@ -157,14 +157,7 @@ class Report(NamedTuple):
         Raises UsageError where there are none, and where one is called by the number of another; NoSolutionError where
         no row of it is found.
         """
-        numbered = dict(zip(map(str, range(1, len(self.cylinders) + 1)), self.cylinders))
-        if numbered.get(name, name) != name and name in self.cylinders:
-            own = self.cylinders.index(name) + 1
-            raise UsageError(
-                f"--cylinder: '{name}' is the name of cylinder {own} and the number of '{shown(numbered[name])}'; "
-                f"write '{own}' or '{shown(numbered[name])}'"
-            )
-        name = numbered.get(name, name)
+        name = cylinder_meant(name, self.cylinders)
         names = tuple(str(part.name) for part in self.parts)
         if name not in names:
             there = ", ".join(names) or "the whole machine only"
@@ -180,3 +173,18 @@ class Report(NamedTuple):
         """Return the report without its tables."""
         parts = [part._replace(columns=(), place_tables=()) for part in self.all_parts]
         return self._replace(whole=parts.pop() if self.whole else None, parts=tuple(parts))
+
+
+def cylinder_meant(name: str, cylinders: Sequence[str]) -> str:
+    """Return the name of the cylinder that a name or a number from 1 on means; any other name as it is.
+
+    Raises UsageError where one cylinder is called by the number of another.
+    """
+    numbered = dict(zip(map(str, range(1, len(cylinders) + 1)), cylinders))
+    if numbered.get(name, name) != name and name in cylinders:
+        own = cylinders.index(name) + 1
+        raise UsageError(
+            f"--cylinder: '{name}' is the name of cylinder {own} and the number of '{shown(numbered[name])}'; "
+            f"write '{own}' or '{shown(numbered[name])}'"
+        )
+    return numbered.get(name, name)

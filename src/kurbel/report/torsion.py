@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError
-from kurbel.report.frame import Answer, Frame, Subject, of_state
+from kurbel.report.frame import Frame, Subject
 from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.orders import orders_of
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.report.torsion_tables import critical_table, holzer_table, modes_table, pieces_table, speeds_table
 from kurbel.solver.case import Case
-from kurbel.solver.torsion.vibration import Critical, PieceTorque, ShaftVibration
+from kurbel.solver.torsion.vibration import Critical, ShaftVibration
 
 _HIGHEST = 12
 """Order up to which critical speeds are told unless orders are asked for."""
@@ -46,7 +45,7 @@ def torsion_report(
         (whole,) = subjects(case, found, critical)
         whole = whole._replace(place_tables=tuple(_tables(found, critical, wanted, system)))
         pieces = found.pieces if columns else ()
-        each = [Subject(one.name, (), partial(_over, one)) for one in pieces]
+        each = [Subject(one.name, (), one.at) for one in pieces]
     frame = Frame("torsion", angles, columns, system)
     return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found, wanted))
 
@@ -67,10 +66,6 @@ def subjects(
             *of_machine(machine_notes(case.machine, case), case.machine),
         ),
     )
-
-
-def _over(piece: PieceTorque, degrees: Any) -> Answer:
-    return of_state(piece.at(degrees))
 
 
 def _tables(found: ShaftVibration, critical: tuple[Critical, ...], wanted: Wanted, system: str) -> Iterable[PlaceTable]:

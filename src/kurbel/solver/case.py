@@ -11,7 +11,7 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import quantities_of
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Figure, Results
+from kurbel.solver.figures import Figure, Results, Shown
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -27,7 +27,7 @@ _WHOLE = {"stress": "strength", "flywheel": "flywheel", "balance": "balance", "t
 """Command of the whole machine -> the results of a case that answer it."""
 
 
-class Case:
+class Case(Shown):
     """A machine with its results.
 
     >>> from kurbel.machine import Cylinder, Machine
@@ -59,16 +59,6 @@ class Case:
 
     def __repr__(self) -> str:
         return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
-
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        machine = self.machine
-        parts: list[tuple[str, Results]] = [(one.drive.name, one) for one in self.cylinders]
-        if len(parts) != 1 or machine.flywheel:
-            parts.append(("whole machine", self.flywheel))
-        tables = (f"<h4>{escape(name)}</h4>{one._repr_html_()}" for name, one in parts)
-        return f"<h3>{escape(machine.name)}</h3>{''.join(tables)}"
 
     @cached_property
     def cylinders(self) -> tuple[CylinderForces, ...]:

@@ -1,16 +1,17 @@
-"""Results by name: key values by id or printed symbol, all columns at once, and what a notebook shows of them."""
+"""Results by name: key values by id or printed symbol, and all columns at once."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from kurbel.declared.quantities import COMMON, Lists
-from kurbel.declared.quantity import NOISE_POWER, Quantity, ambiguity, called
+from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI, convert, shown_unit
-from kurbel.errors import KurbelError, UsageError
+from kurbel.declared.unit_systems import SI
+from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
 
@@ -27,7 +28,16 @@ class Figure(NamedTuple):
     quantity: Quantity
 
 
-class Results:
+class Shown:
+    """What a notebook shows; `kurbel.notebook` puts in how, since tables and pictures are made far above the solver."""
+
+    as_html: ClassVar[Callable[[Any], str] | None] = None
+
+    def _repr_html_(self) -> str | None:
+        return Shown.as_html(self) if Shown.as_html else None
+
+
+class Results(Shown):
     """What has key values and columns of a command; attributes of those ids, or what a quantity asks, answer them."""
 
     command: ClassVar[str]
@@ -82,16 +92,6 @@ class Results:
     def __repr__(self) -> str:
         return f"<kurbel {self.command} of {self._of}: ['id'], key_values(), columns(degrees)>"
 
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        try:
-            with np.errstate(all="ignore"):
-                rows = "".join(map(_row, self.key_values().values()))
-        except KurbelError as error:
-            return f"<p>{escape(str(error))}</p>"
-        return f"<table>{rows}</table>"
-
 
 def crank_angles(degrees: Any) -> Array:
     """Return crank angles in degrees as an array; raises UsageError for what are no finite numbers."""
@@ -131,17 +131,3 @@ def _asked(results: Any, name: str, argument: str = "", part: str = "") -> Any:
 def _figure(quantity: Quantity, value: Any) -> Figure:
     number, degrees = value if isinstance(value, Extreme) else (value, None)
     return Figure(number, quantity.marked(SI[quantity.kind]), degrees, quantity)
-
-
-def _row(figure: Figure) -> str:
-    from html import escape
-
-    quantity = figure.quantity
-    each = figure.value if isinstance(figure.value, tuple) else (figure.value,)
-    unit = shown_unit(quantity.kind, "metric", max(map(abs, each), default=0.0))
-    numbers = ", ".join(f"{convert(one, quantity.kind, unit):.4g}" for one in each)
-    if any(map(quantity.is_noise, each)):
-        numbers = f"< 1e{NOISE_POWER}"
-    at = "" if figure.degrees is None else f"at {figure.degrees:.2f}°"
-    cells = (quantity.symbol, numbers, quantity.marked(unit), at, quantity.text)
-    return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"

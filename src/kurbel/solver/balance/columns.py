@@ -21,9 +21,10 @@ class BalanceColumns:
     A column that the machine does not have is None.
     """
 
-    def __init__(self, balance: MachineBalance, phi: Array) -> None:
+    def __init__(self, balance: MachineBalance, phi: Array, within: Array | None = None) -> None:
         self._balance = balance
         self.phi = phi
+        self._within = phi if within is None else within
 
     def _vector(self, free: Free | None, name: str) -> ComplexArray | None:
         circles: Circles | None = getattr(free, name, None)
@@ -78,9 +79,9 @@ class BalanceColumns:
 
     @property
     def M_roll(self) -> Array | None:
-        """Rolling moment on the frame in N m, just after a jump where there is one."""
+        """Rolling moment on the frame in N m."""
         roll = self._balance.roll
-        return None if roll is None else np.asarray(roll.torque(self.phi, self.phi).value)
+        return None if roll is None else np.asarray(roll.torque(self.phi, self._within).value)
 
     @property
     def F_x_book(self) -> Array | None:

@@ -23,7 +23,7 @@ from kurbel.solver.balance.products import Products, of_throws
 from kurbel.solver.balance.rolling import rolling_moment, swirls
 from kurbel.solver.balance.weights import Throw, Weight, counterweights_of, shafts_of
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Results
+from kurbel.solver.figures import Results, crank_angles
 from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.torques import Sum
 
@@ -60,9 +60,17 @@ class MachineBalance(Results):
         """What answers key values, the first that knows one."""
         return (self, *((self.locomotive,) if self.locomotive else ()))
 
-    def at(self, degrees: Array) -> BalanceColumns:
-        """Return every column at crank angles (n,) of crank 1 in degrees."""
-        return BalanceColumns(self, np.asarray(degrees, dtype=float))
+    def at(self, degrees: Any, within: Array | None = None) -> BalanceColumns:
+        """Return every column at crank angles (n,) of crank 1 in degrees.
+
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        """
+        return BalanceColumns(self, crank_angles(degrees), within)
+
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees between which every quantity is smooth."""
+        return self.roll.cuts.grid().breaks if self.roll else np.array([0.0, self.cycle])
 
     # what moves, all of it over ω²
 

@@ -15,7 +15,7 @@ from kurbel.numerics.grid import Cuts, Grid, Pieces, integral
 from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
 from kurbel.solver.bearings.directions import Plane, Unloaded, unloaded
 from kurbel.solver.cylinder.following import Following
-from kurbel.solver.figures import Results
+from kurbel.solver.figures import Results, crank_angles
 from kurbel.solver.shaft.statics import norm
 
 if TYPE_CHECKING:
@@ -77,15 +77,23 @@ class Bearing(Results):
     def work_rubbing(self) -> float | None:
         """Work of its friction in J per cycle of the machine; None without a coefficient."""
 
-    def at(self, degrees: Any) -> BearingColumns:
-        """Return the load at angles (n,) of crank 1 in degrees, just after a jump."""
-        angles = np.asarray(degrees, dtype=float)
-        found = self._evaluate(angles, angles)
+    def at(self, degrees: Any, within: Array | None = None) -> BearingColumns:
+        """Return the load at angles (n,) of crank 1 in degrees.
+
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        """
+        angles = crank_angles(degrees)
+        found = self._evaluate(angles, angles if within is None else within)
         # of the two names of one direction the positive one
         directions = (np.where(one.value == -180, 180.0, one.value) if one else None for one in map(found.get, FRAMES))
         return BearingColumns(angles, found["load"].value, *directions)
 
     # the cycle
+
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees between which every quantity is smooth."""
+        return self._grid.breaks
 
     def _evaluate(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return size and directions of the load, and the rate at which its surfaces rub."""
@@ -169,7 +177,8 @@ class Bearing(Results):
     def _unloaded(self, frame: str) -> Unloaded | None:
         """Return the arc of the surface that stands still in a frame; None where it is loaded nowhere."""
         points = [self._curves[name] for name in (frame, "load")]
-        degrees, within = (np.concatenate([one[part] for one in points]) for part in (0, 1))
+        degrees = np.concatenate([one.degrees for one in points])
+        within = np.concatenate([one.within for one in points])
         order = np.lexsort((degrees, within))
         degrees, within = degrees[order], within[order]
         found = self._evaluate(degrees, within)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.piston import Piston
+from kurbel.machine.variants import taken
 from kurbel.mechanisms import Mechanism
+from kurbel.numerics.arithmetic import total
+from kurbel.numerics.cycles import later
 from kurbel.solver.pressure import Setting, pressure_in
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
+    from kurbel.arrays import Array, Indices
 
 
 class PistonGas:
@@ -37,16 +39,24 @@ class PistonGas:
         self._cycle = cycle
         self.head = None if head is None else pressure_in(head, at_head)
         self.crank = None if crank is None else pressure_in(crank, at_crank)
-        self._stroke = mechanism.stroke
+        self.stroke = mechanism.stroke
+
+    def taken(self, index: Indices) -> PistonGas:
+        """Return the gas of these variants, at angles of the shape of the index."""
+        other = copy(self)
+        other.piston, other.stroke = taken(self.piston, index), taken(self.stroke, index)
+        other.base = taken(self.base, index)
+        other.head, other.crank = (end and end.taken(index) for end in (self.head, self.crank))
+        return other
 
     @property
-    def starts(self) -> Array:
-        """The crank angles (n,) in degrees in the cylinder's cycle at which a pressure bends or jumps."""
+    def starts(self) -> list[Any]:
+        """The crank angles (n,) in degrees of the cylinder's cycle at which each pressure bends or jumps, or `Flat`."""
         ends = [end.starts for end in (self.head, self.crank) if end]
-        return np.concatenate([starts + turn * self._cycle for turn in range(self.repeats) for starts in ends])
+        return [later(starts, turn * self._cycle) for turn in range(self.repeats) for starts in ends]
 
     @property
-    def bends(self) -> tuple[float, ...]:
+    def bends(self) -> tuple[Any, ...]:
         """Crank angles in degrees of a turn at which quadratures should split."""
         return tuple(angle for end in (self.head, self.crank) if end for angle in end.bends)
 
@@ -62,9 +72,9 @@ class PistonGas:
         return force
 
     @cached_property
-    def works(self) -> tuple[float, float]:
+    def works(self) -> tuple[Any, Any]:
         """Indicated work in J per cycle of the cylinder of head end and crank end: A s ∮ p dz."""
-        way = self._stroke * self.repeats
+        way = self.stroke * self.repeats
         return (
             self.piston.head_area * way * self.head.area if self.head else 0.0,
             self.piston.crank_area * way * self.crank.area if self.crank else 0.0,
@@ -73,7 +83,8 @@ class PistonGas:
     @property
     def work(self) -> float:
         """Indicated work in J per cycle."""
-        return math.fsum(self.works)
+        work: float = total(*self.works)
+        return work
 
     @cached_property
     def traced(self) -> tuple[float, float] | None:
@@ -82,14 +93,15 @@ class PistonGas:
         found = [
             (area * end.area, area * end.area_by_angle) for end, area in ends if end and hasattr(end, "area_by_angle")
         ]
-        way = self._stroke * self.repeats
+        way = self.stroke * self.repeats
         return (way * sum(w for w, _ in found), way * sum(d for _, d in found)) if found else None
 
     @property
     def noise(self) -> float:
         """Standard deviation in N of the noise that traces bring into the force."""
         ends = ((self.head, self.piston.head_area), (self.crank, self.piston.crank_area))
-        return math.hypot(*(getattr(end, "noise", 0.0) * area for end, area in ends))
+        noises = [getattr(end, "noise", None) for end, _ in ends]
+        return math.hypot(*(noise * area for noise, (_, area) in zip(noises, ends) if noise))
 
     @cached_property
     def clearance_volumes(self) -> tuple[float, float]:
@@ -97,10 +109,10 @@ class PistonGas:
         indicator = self.piston.indicator
         chambers = (indicator.head_end, indicator.crank_end) if indicator else (None, None)
         shares = [getattr(chamber, "clearance", None) or 0.0 for chamber in chambers]
-        return shares[0] * self.piston.head_area * self._stroke, shares[1] * self.piston.crank_area * self._stroke
+        return shares[0] * self.piston.head_area * self.stroke, shares[1] * self.piston.crank_area * self.stroke
 
     @property
     def swept_volume(self) -> float:
         """Volume in m³ swept in the chambers that have pressures."""
         head = self.piston.head_area if self.head else 0.0
-        return float((head + (self.piston.crank_area if self.crank else 0.0)) * self._stroke)
+        return (head + (self.piston.crank_area if self.crank else 0.0)) * self.stroke

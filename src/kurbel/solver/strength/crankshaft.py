@@ -81,10 +81,15 @@ class CrankshaftStrength(Results):
     def _running(self, state: State) -> FreeBody:
         return self._body(on_pin(state), state.angle)
 
-    def at(self, degrees: Any) -> StrengthColumns:
-        """Return forces on the bearings and stresses at crank angles (n,) in degrees, just after a jump."""
-        state = self.forces.at(degrees)
+    def at(self, degrees: Any, within: Array | None = None) -> StrengthColumns:
+        """Return forces on the bearings and stresses at crank angles (n,) in degrees; within: see `CylinderForces`."""
+        state = self.forces.at(degrees, within)
         return strength_columns(state, self._running(state), self.places)
+
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees between which every quantity is smooth."""
+        return self._grid.breaks
 
     # the cycle
 

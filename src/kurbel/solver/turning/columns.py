@@ -28,10 +28,16 @@ class TurningColumns:
     """
 
     def __init__(
-        self, turned: MachineEffort, crank: float | None, speed: SpeedLine | ElasticCoupling | None, phi: Array
+        self,
+        turned: MachineEffort,
+        crank: float | None,
+        speed: SpeedLine | ElasticCoupling | None,
+        phi: Array,
+        within: Array | None = None,
     ) -> None:
         self._turned, self._crank, self._speed = turned, crank, speed
         self.phi = phi
+        self._within = phi if within is None else within
 
     def curve(self, column: str, within: Array) -> Sampled | None:
         """Return a column with its slope by φ, on the sides of jumps that hold `within`; None for one left out."""
@@ -53,8 +59,13 @@ class TurningColumns:
 
     @cached_property
     def M(self) -> Array:
-        """Turning effort in N m, just after a jump where there is one."""
-        return np.asarray(self._turned.effort.torque(self.phi, self.phi).value)
+        """Turning effort in N m."""
+        return np.asarray(self._turned.effort.torque(self.phi, self._within).value)
+
+    @property
+    def M_load(self) -> Array:
+        """The resistance in N m, at the nominal speed."""
+        return np.asarray(self._turned.excess.load.torque(self.phi, self._within).value)
 
     @property
     def T(self) -> Array | None:
@@ -66,7 +77,7 @@ class TurningColumns:
         """The share of the inertia forces in T, in N (Tolle)."""
         if self._crank is None or not self._turned.masses:
             return None
-        return np.asarray(self._inertia.torque(self.phi, self.phi).value / self._crank)
+        return np.asarray(self._inertia.torque(self.phi, self._within).value / self._crank)
 
     @property
     def E(self) -> Array:

@@ -54,9 +54,17 @@ class MachineTurning(Results):
         """What answers key values, the first that knows one."""
         return (self, *((self.elastic,) if self.elastic else ()), self.brake)
 
-    def at(self, degrees: Array) -> TurningColumns:
-        """Return every column at crank angles (n,) of crank 1 in degrees, just after a jump where there is one."""
-        return TurningColumns(self.turned, self.crank, self.speed, crank_angles(degrees))
+    def at(self, degrees: Array, within: Array | None = None) -> TurningColumns:
+        """Return every column at crank angles (n,) of crank 1 in degrees.
+
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        """
+        return TurningColumns(self.turned, self.crank, self.speed, crank_angles(degrees), within)
+
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees between which every quantity is smooth."""
+        return self.excess.grid.breaks
 
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""

@@ -1,0 +1,68 @@
+"""`kurbel report`: all that one machine has on one page, or two machines side by side."""
+
+from __future__ import annotations
+
+import click
+
+from kurbel.cli.exit_status import exit_statuses
+from kurbel.cli.output_options import Number, loaded, set_option, units_option
+
+
+@click.command(short_help="Everything on one page of HTML; two machines side by side.", epilog=exit_statuses())
+@click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
+@set_option
+@click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
+@click.option("--step", type=Number(), default=15.0, metavar="DEGREES", help="Step of the tables; 15 if not given.")
+@units_option
+@click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign.")
+@click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4 if not given.")
+def report(
+    files: tuple[str, ...],
+    overrides: tuple[str, ...],
+    file_name: str | None,
+    step: float,
+    units: str | None,
+    decimal: str,
+    digits: int | None,
+) -> None:
+    """Write all that the machine in FILE has to one page: input, pictures, tables, key values, limits, energy balance.
+
+    The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
+    with their differences. --set holds for each of them. FILE may be - for standard input.
+    """
+    from kurbel.cli.progress import Progress
+    from kurbel.machine_file.given import given
+    from kurbel.render import Look
+    from kurbel.render.output import refuse_overwriting, write_text
+    from kurbel.render.report_page import report_page
+    from kurbel.report.side_by_side import side_by_side
+    from kurbel.report.whole import whole_report
+    from kurbel.solver.case import Case
+
+    if len(files) > 2 or files.count("-") > 1:
+        raise click.UsageError("a report is of one machine, or of two side by side.")
+    if file_name is not None and file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
+        raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
+    for file in files:
+        refuse_overwriting(file_name, (file,))
+    cases = [Case(loaded(file, overrides, file_name)) for file in files]
+    progress = Progress("kurbel report")
+    keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
+    system = units or "metric"
+    if len(cases) == 1:
+        document = whole_report(cases[0], keys[0], system, step, progress)
+    else:
+        document = side_by_side(cases, keys, system, progress)
+    progress("writing")
+    look = Look("html", comma=decimal == "comma", digits=digits)
+    write_text(report_page(document, look, _today()), file_name)
+
+
+def _today() -> str:
+    """Return the date; SOURCE_DATE_EPOCH decides it where a page must come out the same every time."""
+    import os
+    import time
+
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    seconds = float(epoch) if epoch.isdecimal() else time.time()
+    return time.strftime("%Y-%m-%d", time.gmtime(seconds) if epoch.isdecimal() else time.localtime(seconds))

@@ -1,0 +1,80 @@
+"""What a notebook shows of results: the tables of the reports, and pictures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from kurbel.errors import KurbelError
+from kurbel.numerics.extreme import Extreme
+from kurbel.solver.case import Case as Case
+from kurbel.solver.figures import Figure, Results, Shown
+
+if TYPE_CHECKING:
+    from kurbel.report.pictures.picture import Picture
+
+
+class Drawing(NamedTuple):
+    """Pictures of a machine, one below the other; a notebook shows them."""
+
+    pictures: tuple[Picture, ...]
+
+    def _repr_svg_(self) -> str:
+        from kurbel.render import Look
+        from kurbel.render.pictures.svg import svg_file
+
+        return "".join(svg_file(list(self.pictures), Look()))
+
+    def save(self, file_name: str) -> None:
+        """Draw to a file that ends in .svg, .png or .pdf. Raises UsageError where it cannot be written."""
+        from kurbel.render import Look
+        from kurbel.render.pictures.drawing import draw_file
+
+        draw_file(list(self.pictures), Look(), file_name)
+
+
+def draw(case: Case, *names: str, units: str = "metric", angles: tuple[float, ...] | None = None) -> Drawing:
+    """Return pictures of a machine, by the words of `kurbel plot --list`; without names the one that says most.
+
+    angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that there is not.
+    """
+    from kurbel.report.pictures import FILE, Wish, pictures
+
+    return Drawing(tuple(pictures(case, names, Wish(units, FILE, None, angles))))
+
+
+def as_html(shown: Case | Results) -> str:
+    """Return the key values of results, or of every part of a machine, as HTML."""
+    if isinstance(shown, Results):
+        return _key_values(shown, "Key values")
+    from html import escape
+
+    machine = shown.machine
+    parts: list[tuple[str, Results]] = [(one.drive.name, one) for one in shown.cylinders]
+    if len(parts) != 1 or machine.flywheel:
+        parts.append(("whole machine", shown.flywheel))
+    return f"<h3>{escape(machine.name)}</h3>\n{''.join(_key_values(one, name) for name, one in parts)}"
+
+
+def _key_values(results: Results, caption: str) -> str:
+    """Return a table, or the reason why there is none."""
+    from html import escape
+
+    import numpy as np
+
+    from kurbel.render import Look
+    from kurbel.render.html import key_values
+    from kurbel.report.shown import shown_key_value
+
+    with np.errstate(all="ignore"):
+        try:
+            found = [shown_key_value(one.quantity, _value(one), "metric") for one in results.key_values().values()]
+        except KurbelError as error:
+            return f"<p>{escape(str(error))}</p>"
+    return key_values(found, caption, Look("html"))
+
+
+def _value(figure: Figure) -> Any:
+    return figure.value if figure.degrees is None else Extreme(figure.value, figure.degrees)
+
+
+Shown.as_html = as_html

@@ -1,0 +1,209 @@
+"""HTML: a page of its own for one report, and the tables that longer pages and notebooks are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from html import escape
+from itertools import chain, repeat
+from typing import TYPE_CHECKING
+
+from kurbel.render.numbers import angle
+from kurbel.render.prose import list_text, sentence_text, value_text
+from kurbel.render.sheet import MARK, part_name, sheets
+
+if TYPE_CHECKING:
+    from kurbel.render import Look
+    from kurbel.report.tables import KeyValue, Part, Report
+
+_ACROSS = 9
+"""Columns of a table beside that of the angle: what a page of A4 holds; more make a table of their own."""
+
+INK, PAPER, FAINT, RULE, SHADE = (
+    ("#1a1a1a", "#e8e8e8"),
+    ("#ffffff", "#15181b"),
+    ("#555555", "#adadad"),
+    ("#c4c4c4", "#41474d"),
+    ("#f3f4f5", "#1f2428"),
+)
+GOOD, BAD, LINK = ("#1d6b34", "#7fd49a"), ("#a31515", "#ff9d94"), ("#0b5394", "#8cc4f5")
+"""Each in light and in dark, of a contrast of 4.5 to the paper and to the shade."""
+
+
+def html(report: Report, look: Look) -> Iterator[str]:
+    """Yield the report as a page of its own."""
+    yield from page(look.charset.text(report.title), chain(("<main>\n",), tables(report, look, 1), ("</main>\n",)))
+
+
+def page(title: str, body: Iterable[str], more_style: str = "") -> Iterator[str]:
+    """Yield a self-contained page: no script, nothing from elsewhere, and the browser is told so."""
+    yield (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
+        'img-src data:">\n'
+        f'<meta name="color-scheme" content="light dark">\n<title>{escape(title)}</title>\n'
+        f"<style>\n{style()}{more_style}</style>\n</head>\n<body>\n"
+    )
+    yield from body
+    yield "</body>\n</html>\n"
+
+
+def style() -> str:
+    """Return the style sheet of pages: light, dark, and print."""
+    names = {"ink": INK, "paper": PAPER, "faint": FAINT, "rule": RULE, "shade": SHADE}
+    names |= {"good": GOOD, "bad": BAD, "link": LINK}
+    light, dark = (";".join(f"--{name}:{colours[mode]}" for name, colours in names.items()) for mode in (0, 1))
+    return (
+        f":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n"
+        "body{margin:0;background:var(--paper);color:var(--ink);"
+        'font:15px/1.45 system-ui,"DejaVu Sans",sans-serif}\n'
+        "main{max-width:60rem;margin:0 auto;padding:1rem;overflow-wrap:anywhere}\n"
+        "h1{font-size:1.5rem}h2{font-size:1.25rem;border-bottom:1px solid var(--rule)}h3{font-size:1.05rem}"
+        "h4{font-size:1rem;margin-bottom:.3rem}a{color:var(--link)}\n"
+        ".wide{overflow-x:auto;margin:.6rem 0}.wide:focus-visible{outline:2px solid var(--link)}\n"
+        "table{border-collapse:collapse;font-variant-numeric:tabular-nums}"
+        "caption{text-align:left;font-weight:600;padding:.3rem 0}\n"
+        "th,td{padding:.12rem .5rem;text-align:left;vertical-align:top;overflow-wrap:normal}"
+        "td.r,th.r{text-align:right;white-space:nowrap}\n"
+        "thead th{border-top:2px solid var(--ink);border-bottom:1px solid var(--ink);vertical-align:bottom}"
+        "tbody tr:last-child>*{border-bottom:2px solid var(--ink)}tbody th{font-weight:400}\n"
+        "@media screen and (max-width:40rem){.wide td:not(.r):last-child{min-width:12rem}}\n"
+        "tbody tr:nth-child(even){background:var(--shade)}small{color:var(--faint)}"
+        ".good{color:var(--good)}.bad{color:var(--bad);font-weight:600}\n"
+        "@page{margin:14mm}@media print{body{font-size:9pt}main{max-width:none;padding:0}"
+        ".wide{overflow:visible}table{font-size:7.5pt}th,td{padding:.05rem .3rem}"
+        "tr,figure,h2,h3,h4,caption{break-inside:avoid}h2,h3,h4,caption{break-after:avoid}"
+        "thead{display:table-header-group}}\n"
+    )
+
+
+def tables(report: Report, look: Look, level: int = 2) -> Iterator[str]:
+    """Yield title, tables, key values and notes of a report, under a heading of this level."""
+    title = escape(look.charset.text(report.title))
+    yield f"<h{level}>{title}</h{level}>\n"
+    yield from (f"<p>{_prose(one, look)}</p>\n" for one in report.head)
+    yield from _angle_tables(report, look)
+    yield from _place_tables(report, look)
+    yield from (f"<p>{_prose(one, look)}</p>\n" for one in (report.mirrored, *report.notes) if one)
+    for part in report.all_parts:
+        yield from _of_part(part_name(report, part, look), part, look, level + 1)
+
+
+def _angle_tables(report: Report, look: Look) -> Iterator[str]:
+    for sheet in sheets(report, look):
+        for band in sheet.bands:
+            for start in range(0, max(len(band.rows), 1), _ACROSS):
+                columns = [*sheet.heads, *band.rows[start : start + _ACROSS]]
+                rows = zip(*(row.cells for row in columns))
+                heads = [(row.symbol, row.unit) for row in columns]
+                yield from table(heads, rows, band.name, len(sheet.heads), range(len(heads)))
+
+
+def _place_tables(report: Report, look: Look) -> Iterator[str]:
+    from kurbel.render.place_table import cells_of
+
+    for one in (one for part in report.all_parts for one in part.place_tables):
+        cells = cells_of(one, look)
+        names = [[_text(name, look) for name in names] for names in cells.names]
+        for start in range(0, max(len(cells.heads), 1), _ACROSS):
+            across = slice(start, start + _ACROSS)
+            heads = [*((head, "") for head in one.heads), *cells.heads[across]]
+            rows = ((*own, *texts[across]) for own, texts in zip(names, cells.rows))
+            yield from table(heads, rows, look.charset.text(one.title), 0, range(len(one.heads), len(heads)))
+
+
+def table(
+    heads: Sequence[tuple[str, str]],
+    rows: Iterable[Sequence[str]],
+    caption: str,
+    of_row: int,
+    numbers: Collection[int],
+    verdicts: Sequence[str] = (),
+) -> Iterator[str]:
+    """Yield a table that a narrow window scrolls, row by row: heads of columns with their units, rows of texts.
+
+    of_row: how many columns are the heads of their rows; numbers: which columns are numbers; verdicts: a class of each
+    row, `good` or `bad`, where they have one.
+    """
+    said = f"<caption>{escape(caption)}</caption>" if caption else ""
+    over = "".join(
+        f'<th scope="col"{_RIGHT if k in numbers else ""}>{escape(symbol)}{f"<br>{_small(unit)}" if unit else ""}</th>'
+        for k, (symbol, unit) in enumerate(heads)
+    )
+    label = escape(caption or "values over the crank angle", quote=True)
+    yield f'<div class="wide" tabindex="0" role="region" aria-label="{label}"><table>{said}\n'
+    yield f"<thead><tr>{over}</tr></thead>\n<tbody>\n"
+    classes = (f' class="{one}"' for one in verdicts) if verdicts else repeat("")
+    for own, row in zip(classes, rows):
+        yield f"<tr{own}>{''.join(_cells(row, of_row, numbers))}</tr>\n"
+    yield "</tbody></table></div>\n"
+
+
+_RIGHT = ' class="r"'
+
+
+def _small(unit: str) -> str:
+    return f"<small>{escape(unit)}</small>"
+
+
+def _cells(row: Sequence[str], of_row: int, numbers: Collection[int]) -> Iterator[str]:
+    for k, text in enumerate(row):
+        text = text.strip()
+        shown = f"<b>{escape(text[:-1])}</b>" if text.endswith(MARK) else escape(text)
+        right = _RIGHT if k in numbers else ""
+        yield f'<th scope="row"{right}>{shown}</th>' if k < of_row else f"<td{right}>{shown}</td>"
+
+
+def _text(text: str, look: Look) -> str:
+    return look.charset.text(text)
+
+
+def _prose(text: str, look: Look) -> str:
+    return escape(sentence_text(text, look))
+
+
+def _of_part(name: str, part: Part, look: Look, level: int) -> Iterator[str]:
+    said = f": {name}" if name else ""
+    if part.key_values:
+        yield key_values(part.key_values, f"Key values{said}", look)
+    if part.left_out:
+        lines = (f"{one.what}: {one.why}" for one in part.left_out)
+        yield item_list(f"Left out{said}", lines, level, look)
+    if part.warnings:
+        yield item_list(f"Warnings{said}", part.warnings, level, look)
+
+
+def item_list(title: str, items: Iterable[str], level: int, look: Look) -> str:
+    """Return a list of sentences under its title, a heading of this level."""
+    lines = "".join(f"<li>{_prose(one, look)}</li>\n" for one in items)
+    return f"<h{level}>{escape(title)}</h{level}>\n<ul>\n{lines}</ul>\n"
+
+
+def key_values(found: Iterable[KeyValue], caption: str, look: Look) -> str:
+    """Return a table of key values: symbol, value, unit, where it stands, what it is."""
+    rows = "".join(f"<tr>{''.join(_key_value(one, look))}</tr>\n" for one in found)
+    heads = (("Symbol", ""), ("Value", _RIGHT), ("Unit", ""), ("At", _RIGHT), ("Meaning", ""))
+    over = "".join(f'<th scope="col"{right}>{head}</th>' for head, right in heads)
+    return (
+        f'<div class="wide" tabindex="0" role="region" aria-label="{escape(caption, quote=True)}"><table>'
+        f"<caption>{escape(caption)}</caption>\n<thead><tr>{over}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
+    )
+
+
+def _key_value(one: KeyValue, look: Look) -> Iterator[str]:
+    charset = look.charset
+    yield f'<th scope="row">{escape(charset.symbol(one.symbol, one.ascii_symbol))}</th>'
+    right = "" if isinstance(one.value, tuple) and one.value else _RIGHT
+    yield f"<td{right}>{escape(number_text(one, look))}</td><td>{escape(charset.unit(one.unit))}</td>"
+    at = "" if one.at_deg is None else angle(one.at_deg, look.comma) + charset.degree
+    yield f"<td{_RIGHT}>{escape(at)}</td><td>{_prose(one.text, look)}</td>"
+
+
+def number_text(one: KeyValue, look: Look) -> str:
+    """Return the number, or the numbers, of a key value."""
+    if one.value is None or one.value == ():
+        return look.charset.no_value
+    if isinstance(one.value, tuple):
+        return list_text(one, look)
+    text, exponent = value_text(one, look)
+    return text + (look.charset.times_power(exponent) if exponent else "")

@@ -1,0 +1,94 @@
+"""A grid of characters to draw on: eight dots of Braille to a character, or one letter where there are none."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kurbel.render.charset import width
+from kurbel.render.lines import Line, Piece
+from kurbel.render.pictures.style import LOOKS
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
+_BLANK = 0x2800
+_DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
+"""Bits of the dots of a character, four down and two across."""
+
+
+class Canvas:
+    """Characters (rows, columns) with dots in them, written over with texts; each has the role of what is in it.
+
+    braille: whether there are dots; else a character stands for its curve.
+    """
+
+    def __init__(self, columns: int, rows: int, braille: bool) -> None:
+        self.columns, self.rows, self.braille = columns, rows, braille
+        self._bits = np.zeros((rows, columns), dtype=int)
+        self._letters = [[" "] * columns for _ in range(rows)]
+        self._roles = [["text"] * columns for _ in range(rows)]
+        self._written = np.zeros((rows, columns), dtype=bool)
+
+    @property
+    def fine(self) -> tuple[int, int]:
+        """Dots across and down."""
+        return (2 * self.columns, 4 * self.rows) if self.braille else (self.columns, self.rows)
+
+    def line(self, x: Array, y: Array, look: int, role: str, dashed: tuple[float, ...] = ()) -> None:
+        """Draw a line through places (n,), counted in dots from the upper left corner; what lies beyond is cut off."""
+        across, down = self.fine
+        steps = np.maximum(np.ceil(np.maximum(np.abs(np.diff(x)), np.abs(np.diff(y)))), 1).astype(int)
+        way = np.concatenate([k + np.arange(n) / n for k, n in enumerate(steps)] + [np.array([len(x) - 1.0])])
+        number = np.arange(len(x))
+        columns, rows = (np.rint(np.interp(way, number, one)).astype(int) for one in (x, y))
+        inside = (columns >= 0) & (columns < across) & (rows >= 0) & (rows < down)
+        for column, row in set(zip(columns[inside].tolist(), rows[inside].tolist())):
+            self._dot(column, row, look, role)
+
+    def _dot(self, column: int, row: int, look: int, role: str) -> None:
+        if self.braille:
+            place = row // 4, column // 2
+            self._bits[place] |= _DOTS[row % 4, column % 2]
+        else:
+            place = row, column
+            if role.startswith("curve") or self._letters[row][column] == " ":
+                self._letters[row][column] = LOOKS[look].character if role.startswith("curve") else "."
+        self._roles[place[0]][place[1]] = role
+
+    def free(self, column: int, row: int, text: str, blank: bool = False) -> bool:
+        """Whether a text may stand there: inside, on no other text, and, where asked, on no line."""
+        end = column + width(text)
+        if not (0 <= row < self.rows and column >= 0 and end <= self.columns):
+            return False
+        taken = self._written[row, max(column - 1, 0) : end + 1].any()
+        lined = blank and (self._bits[row, column:end].any() or "".join(self._letters[row][column:end]).strip())
+        return not taken and not lined
+
+    def write(self, column: int, row: int, text: str, role: str) -> None:
+        """Write a text over what is drawn."""
+        for offset, letter in enumerate(text):
+            self._letters[row][column + offset] = letter
+            self._bits[row, column + offset] = 0
+            self._roles[row][column + offset] = role
+            self._written[row, column + offset] = True
+
+    @property
+    def used(self) -> tuple[int, int]:
+        """The first row in which something stands, and the row after the last one."""
+        rows = [k for k in range(self.rows) if self._bits[k].any() or "".join(self._letters[k]).strip()] or [0]
+        return rows[0], rows[-1] + 1
+
+    def line_of(self, row: int) -> Line:
+        """Return a row of the canvas, neighbours of one role as one piece."""
+        pieces: list[Piece] = []
+        for column in range(self.columns):
+            bits = int(self._bits[row, column])
+            letter = chr(_BLANK + bits) if bits else self._letters[row][column]
+            role = self._roles[row][column]
+            if pieces and pieces[-1].role == role:
+                pieces[-1] = Piece(pieces[-1].text + letter, role)
+            else:
+                pieces.append(Piece(letter, role))
+        return tuple(pieces)

@@ -1,0 +1,95 @@
+"""Where the labels of a picture stand: beside what they name, and not on one another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+from kurbel.render.charset import width
+from kurbel.render.numbers import angle, single
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+    from kurbel.render import Look
+    from kurbel.report.pictures.picture import Figure, Words
+
+CHARACTER, LINE = 5.8, 11.0
+"""Width and height of a character of a label, in points."""
+
+
+class Box(NamedTuple):
+    """A place that is taken: left, top, right, bottom."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+    def meets(self, other: Box) -> bool:
+        """Whether two boxes share a place."""
+        return (
+            self.left < other.right and other.left < self.right and self.top < other.bottom and other.top < self.bottom
+        )
+
+
+class Taken:
+    """The places that labels have taken within a frame; where they can they stand on no place (n, 2) of a curve."""
+
+    def __init__(self, frame: Box, curves: Array) -> None:
+        self._frame, self._curves = frame, curves
+        self._boxes: list[Box] = []
+
+    def take(self, box: Box) -> None:
+        """Keep a place free of labels."""
+        self._boxes.append(box)
+
+    def _on_curves(self, box: Box) -> int:
+        x, y = self._curves.T
+        return int(((x > box.left) & (x < box.right) & (y > box.top) & (y < box.bottom)).sum())
+
+    def place(self, x: float, y: float, text: str, upward: bool) -> tuple[float, float] | None:
+        """Return where a label begins that names a point, above or below it first; None where all is taken."""
+        free = []
+        for number, (left, base, box) in enumerate(self._tries(x, y, text, upward)):
+            inside = box.top >= self._frame.top and box.bottom <= self._frame.bottom and left >= self._frame.left
+            if inside and not any(box.meets(other) for other in self._boxes):
+                free.append((self._on_curves(box), number, left, base, box))
+        if not free:
+            return None
+        *_, left, base, box = min(free)
+        self._boxes.append(box)
+        return left, base
+
+    def _tries(self, x: float, y: float, text: str, upward: bool) -> Iterator[tuple[float, float, Box]]:
+        """Yield where a label may stand, the best first: its left end, its base line, and what it covers."""
+        wide = CHARACTER * width(text)
+        first, second = (y - 6, y + LINE + 5) if upward else (y + LINE + 5, y - 6)
+        shifts = (-wide / 2, 6.0, -wide - 6.0)
+        tries = [(x + shift, base) for base in (first, second) for shift in shifts]
+        tries += [(x + 7, y + 4), (x - wide - 7, y + 4)]
+        tries += [(x + shift, base + step) for step in (-LINE, LINE) for base in (first, second) for shift in shifts]
+        for start, base in tries:
+            left = min(max(start, self._frame.left), self._frame.right - wide)
+            yield left, base, Box(left, base - LINE + 2, left + wide, base + 2)
+
+
+def symbol(words: Words, look: Look) -> str:
+    """Return a symbol in the characters of the output; what no character must do in it, does nothing."""
+    return look.charset.text(look.charset.symbol(words.symbol, words.ascii_symbol))
+
+
+def axis_text(words: Words, unit: str, look: Look) -> str:
+    """Return what stands at the end of an axis."""
+    return "  ".join(filter(None, (symbol(words, look), look.charset.unit(unit))))
+
+
+def figure_text(figure: Figure, look: Look) -> str:
+    """Return a figure: symbol, value, unit, and where it stands."""
+    text = symbol(figure.name, look)
+    if figure.value is not None:
+        number, power = single(figure.value, look.digits, look.comma)
+        number += look.charset.times_power(power) if power else ""
+        text += f" {number} {look.charset.unit(figure.unit)}".rstrip()
+    if figure.at_deg is not None:
+        text += f"{',' if figure.value is not None else ''} {angle(figure.at_deg, look.comma)}{look.charset.degree}"
+    return text

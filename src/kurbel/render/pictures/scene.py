@@ -1,0 +1,83 @@
+"""A picture laid out on paper: lines, areas and texts at places in points from the upper left corner."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, Union
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
+Places = tuple[tuple[float, float], ...]
+
+
+class Line(NamedTuple):
+    """A line through places, of a class of the style; `parts`: several lines of one look; frames: how it moves."""
+
+    parts: tuple[Places, ...]
+    look: str
+    closed: bool = False
+    frames: tuple[tuple[Places, ...], ...] = ()
+
+
+class Text(NamedTuple):
+    """A text at a place, by its start, middle or end; halo: it may stand on lines; frames: where it moves to."""
+
+    x: float
+    y: float
+    text: str
+    look: str = "t"
+    anchor: str = "start"
+    halo: bool = False
+    frames: Places = ()
+
+
+class Dots(NamedTuple):
+    """Small figures at places, of a class of the style; corners: of the figure, none for a circle."""
+
+    places: Places
+    look: str
+    radius: float = 2.6
+    frames: tuple[Places, ...] = ()
+    corners: Places = ()
+
+
+Item = Union[Line, Text, Dots]
+
+
+class Scene(NamedTuple):
+    """A laid out picture: its size, what stands on it, the later over the earlier, and what it says in words."""
+
+    width: float
+    height: float
+    items: tuple[Item, ...]
+    words: str
+    seconds: float = 0.0
+
+
+def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
+    """Return places x, y (n,) without those that lie on a straight line between others, but for `within`."""
+    keep = np.zeros(len(x), dtype=bool)
+    keep[[0, -1]] = True
+    spans = [(0, len(x) - 1)]
+    while spans:
+        start, end = spans.pop()
+        if end - start < 2:
+            continue
+        far = _distances(x[start : end + 1], y[start : end + 1])
+        most = int(np.argmax(far))
+        if far[most] > within:
+            keep[start + most] = True
+            spans += [(start, start + most), (start + most, end)]
+    return tuple(zip(x[keep].tolist(), y[keep].tolist()))
+
+
+def _distances(x: Array, y: Array) -> Array:
+    """Return how far places (n,) lie from the chord between the first and the last."""
+    along, across = x[-1] - x[0], y[-1] - y[0]
+    length = float(np.hypot(along, across))
+    if not length:
+        return np.asarray(np.hypot(x - x[0], y - y[0]))
+    inner = np.clip(((x - x[0]) * along + (y - y[0]) * across) / length**2, 0.0, 1.0)
+    return np.asarray(np.hypot(x - x[0] - inner * along, y - y[0] - inner * across))

@@ -1,0 +1,86 @@
+"""The work-precision picture of `kurbel accuracy`: time over error, one panel for each quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from kurbel.errors import UsageError
+from kurbel.report.pictures.picture import Axis, Curve, Panel, Picture, Piece, Words
+from kurbel.report.tables import PlaceTable, Report
+
+_TABLE = "numerical_error"
+_LEAST = 1e-17
+"""Errors below this, zero too, are drawn here."""
+_ROUNDING = 2.0**-53
+
+Dots = dict[str, dict[str, list[list[tuple[float, float]]]]]
+"""Quantity -> method -> errors and times in ms, a list for each scene."""
+
+
+def accuracy_picture(report: Report) -> Picture:
+    """Return a panel for each quantity of an accuracy report, with all its scenes.
+
+    Raises UsageError where nothing was compared.
+    """
+    found = dots(report)
+    if not found:
+        raise UsageError("--plot: nothing was compared, there is nothing to draw")
+    methods = list(dict.fromkeys(method for every in found.values() for method in every))
+    every = [
+        dot
+        for methods_ in found.values()
+        for scenes in methods_.values()
+        for dot in [one for scene in scenes for one in scene]
+    ]
+    times = min(time for _, time in every), max(time for _, time in every)
+    return Picture(
+        "accuracy",
+        "time over error",
+        "Time over relative error of each method, lines between its answers for one machine; the error falls to the "
+        "right, the thin upright line is the rounding of one float.",
+        tuple(_panel(quantity, scenes, methods, times) for quantity, scenes in found.items()),
+        report.title,
+        across=min(4, len(found)),
+        legend=tuple((Words(method, method), number) for number, method in enumerate(methods)),
+    )
+
+
+def dots(report: Report) -> Dots:
+    """Return what is drawn of each quantity; methods without an answer have no dots."""
+    found: Dots = {}
+    for table in (table for part in report.parts for table in part.place_tables if table.id == _TABLE):
+        scene: dict[tuple[str, str], list[tuple[float, float]]] = {}
+        for quantity, method, error, time in _answers(table):
+            scene.setdefault((quantity, method), []).append((max(error, _LEAST), time))
+        for (quantity, method), answers in scene.items():
+            found.setdefault(quantity, {}).setdefault(method, []).append(answers)
+    return found
+
+
+def _answers(table: PlaceTable) -> Iterator[tuple[str, str, float, float]]:
+    columns = {column.id: column.values for column in table.columns}
+    for (quantity, method, _, state), error, time in zip(table.names, columns["error"], columns["median"]):
+        if error is not None and time is not None and state == "ok":
+            yield quantity, method.split(",")[0], error, time
+
+
+def _panel(
+    quantity: str,
+    found: dict[str, list[list[tuple[float, float]]]],
+    methods: list[str],
+    times: tuple[float, float],
+) -> Panel:
+    curves = [
+        Curve(Words(method, method), tuple(map(_piece, scenes)), "dots", methods.index(method))
+        for method, scenes in found.items()
+    ]
+    rounding = Curve(Words("", ""), (Piece(np.array([_ROUNDING, _ROUNDING]), np.array(times)),), "faint")
+    x = Axis(Words("error", "error"), "", True, _LEAST, 1.0, falling=True)
+    return Panel(x, Axis(Words("time", "time"), "ms", True, *times), (rounding, *curves), title=quantity)
+
+
+def _piece(answers: list[tuple[float, float]]) -> Piece:
+    errors, times = np.array(answers).T
+    return Piece(errors, times)

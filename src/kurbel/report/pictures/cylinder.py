@@ -1,0 +1,246 @@
+"""The pictures of one cylinder: indicator cards, piston force with its inertia line, forces, T in polar form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.declared.unit_systems import convert
+from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Piece, Shade, Words
+from kurbel.report.pictures.sampling import Samples, pieces, sampled
+from kurbel.report.pictures.source import PHI, Source, words, zero_line
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+    from kurbel.solver.cylinder.gas import PistonGas
+
+_V = Words("V", "V")
+_INERTIA_LINE = Words("−P_b", "-P_b")
+_REVERSAL = Words("Druckwechsel", "Druckwechsel")
+
+
+def cards(source: Source) -> Iterator[Panel]:
+    """Yield the indicator cards of every piston, both ends over the stroke."""
+    for gas in source.results.drive.gas:
+        yield _card(source, gas, False)
+
+
+def cards_over_volume(source: Source) -> Iterator[Panel]:
+    """Yield the same over the volumes of the chambers."""
+    for gas in source.results.drive.gas:
+        yield _card(source, gas, True)
+
+
+def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
+    """Return the pressures of one piston over the way, or over the volume of each chamber."""
+    piston, several = gas.piston, len(source.results.drive.gas) > 1
+    ends = [(name, end) for name, end in (("p_head", gas.head), ("p_crank", gas.crank)) if end]
+
+    def values(degrees: Array, within: Array) -> Array:
+        state = source.results.at(degrees, within)
+        angle = CrankAngle.of(degrees)
+        return np.stack([state.way, *(end(state.way, angle, within) + gas.base for _, end in ends)])
+
+    samples = sampled(source.results.breaks, values, source.fineness)
+    for (name, _), line in zip(ends, samples.values[1:]):
+        source.refuse_overflow(name, line)
+    unit = source.unit("pressure", *samples.values[1:])
+    places = {name: _volume(gas, name, samples.values[0]) if over_volume else samples.values[0] for name, _ in ends}
+    kind = "volume" if over_volume else "length"
+    run = source.unit(kind, *places.values())
+    curves = [
+        Curve(
+            words(source.quantity(name)),
+            pieces(samples, convert(places[name], kind, run), convert(p, "pressure", unit)),
+        )
+        for (name, _), p in zip(ends, samples.values[1:])
+    ]
+    own = piston is source.results.drive.cylinder.pistons[0] and not over_volume
+    marks = tuple(_highest(source, unit, run)) if own else ()
+    y = Axis(Words("p", "p"), f"{unit} abs" if gas.absolute else unit)
+    x = Axis(_V if over_volume else words(source.quantity("x")), run)
+    ambient = zero_line(curves, float(convert(gas.base, "pressure", unit)))
+    return Panel(x, y, (*curves, ambient), marks=marks, title=piston.name if several else "")
+
+
+def _volume(gas: PistonGas, end: str, way: Array) -> Array:
+    """Return the volume in m³ of a chamber: what the piston has swept, and the clearance where it is known."""
+    indicator, stroke = gas.piston.indicator, gas.stroke
+    at_head = end == "p_head"
+    chamber = indicator and (indicator.head_end if at_head else indicator.crank_end)
+    area = gas.piston.head_area if at_head else gas.piston.crank_area
+    clearance = getattr(chamber, "clearance", None) or 0.0
+    return np.asarray(area * ((way if at_head else stroke - way) + clearance * stroke))
+
+
+def _highest(source: Source, unit: str, run: str) -> Iterable[Mark]:
+    highest = source.results.p_max
+    if highest is not None:
+        way = float(source.results.at(np.array([highest.degrees])).way[0])
+        quantity = source.results.lists.key_values("forces")["p_max"]
+        value = float(convert(highest.value, "pressure", unit))
+        yield Mark(
+            float(convert(way, "length", run)),
+            value,
+            Figure(words(quantity), value, quantity.marked(unit), highest.degrees),
+        )
+
+
+def piston_force(source: Source) -> Iterator[Panel]:
+    """Yield the force without inertia against the inertia line, what is left between them shaded, and that alone."""
+    if source.having(("P",)):
+        if source.having(("P_inertia", "P_start")) == ("P_inertia", "P_start"):
+            yield _against_inertia(source, PHI)
+        yield _rest(source)
+
+
+def piston_force_over_way(source: Source) -> Iterator[Panel]:
+    """Yield the same over the way, one panel for each stroke."""
+    if source.having(("P", "x")) != ("P", "x") or source.results.drive.mechanism.turns:
+        return
+    with_inertia = source.having(("P_inertia", "P_start")) == ("P_inertia", "P_start")
+    inner, outer = source.results.drive.mechanism.dead_centres()
+    cycle = source.results.drive.cycle
+    ends = sorted({(end + turn) % cycle for turn in range(0, int(cycle), 360) for end in (inner, outer)})
+    for start, end in zip(ends, [*ends[1:], ends[0] + cycle]):
+        out = bool(np.isclose((start - inner) % 360.0, 0.0) or np.isclose((start - inner) % 360.0, 360.0))
+        title = f"{'Hingang' if out else 'Rückgang'} {start:.4g}–{end:.4g}°"
+        ids = ("x", "P_start", "P_inertia") if with_inertia else ("x", "P")
+        yield _stroke(source, ids, start, end, title)
+
+
+def _stroke(source: Source, ids: tuple[str, ...], start: float, end: float, title: str) -> Panel:
+    cycle = source.results.drive.cycle
+    reversals = source.results.phi_reversal or ()
+    inside = [a + turn for a in (*source.results.breaks, *reversals) for turn in (0.0, cycle) if start < a + turn < end]
+    breaks = np.array(sorted({start, *inside, end}))
+
+    def values(degrees: Array, within: Array) -> Array:
+        turned = cycle * np.floor(within / cycle)  # the end of the cycle is not its beginning
+        return source.values(ids, degrees - turned, within - turned)
+
+    samples = sampled(breaks, values, source.fineness)
+    for id, line in zip(ids, samples.values):
+        source.refuse_overflow(id, line)
+    length, unit = source.unit("length", samples.values[0]), source.unit("force", *samples.values[1:])
+    x = convert(samples.values[0], "length", length)
+    lines = [convert(line, "force", unit) for line in samples.values[1:]]
+    run = Axis(words(source.quantity("x")), length)
+    return _panel_of_rest(samples, run, Axis(Words("P", "P"), unit), x, lines, title)
+
+
+def _against_inertia(source: Source, over: str) -> Panel:
+    reversals = source.results.phi_reversal or ()
+    samples = source.samples((over, "P_start", "P_inertia"), reversals)
+    unit = source.unit("force", *samples.values[1:])
+    lines = [convert(line, "force", unit) for line in samples.values[1:]]
+    panel = _panel_of_rest(
+        samples, source.axis(over, samples.values[0]), Axis(Words("P", "P"), unit), samples.values[0], lines, ""
+    )
+    return panel._replace(marks=tuple(_reversals(source, reversals, unit)))
+
+
+def _reversals(source: Source, angles: Iterable[float], unit: str) -> Iterator[Mark]:
+    for angle in angles:
+        at = np.array([angle])
+        (line,) = source.values(("P_inertia",), at, at)
+        yield Mark(angle, -float(convert(line[0], "force", unit)), Figure(_REVERSAL, at_deg=angle))
+
+
+def _panel_of_rest(samples: Samples, run: Axis, rise: Axis, x: Array, lines: list[Array], title: str) -> Panel:
+    """Return a panel of a force and the inertia line (or the line of no force), with what lies between them shaded."""
+    force, inertia = lines[0], -lines[1] if len(lines) > 1 else np.zeros_like(x)
+    name = Words("P_0", "P_0") if len(lines) > 1 else Words("P", "P")
+    curves = [Curve(name, pieces(samples, x, force))]
+    if len(lines) > 1:
+        curves.append(Curve(_INERTIA_LINE, pieces(samples, x, inertia)))
+    return Panel(run, rise, (*curves, zero_line(curves)), tuple(between(x, inertia, force)), title=title)
+
+
+def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
+    """Yield what lies between two lines, cut where they cross."""
+    above = np.sign(line - base)
+    # a point on the base belongs to the surface before it, and to the next one, too
+    turns = [i for i in range(1, len(x) - 1) if above[i] == 0 or above[i] * above[i + 1] < 0]
+    cuts = [0, *turns, len(x) - 1]
+    for start, end in pairwise(cuts):
+        part = slice(start, end + 1)
+        if end > start and (above[part] != 0).any():
+            yield Shade(x[part], base[part], line[part], bool(above[part].sum() > 0))
+
+
+def _rest(source: Source) -> Panel:
+    """Return the whole piston force over the crank angle, its extremes and the Druckwechsel marked."""
+    panel = source.panel(("P",))
+    reversals = source.results.phi_reversal or ()
+    marks = tuple(Mark(angle, 0.0, Figure(_REVERSAL, at_deg=angle)) for angle in reversals)
+    return panel._replace(curves=(*panel.curves, zero_line(panel.curves)), marks=(*panel.marks, *marks))
+
+
+def forces(source: Source) -> Iterator[Panel]:
+    """Yield the forces in the rod, on the guide and on the pin, and what else the mechanism offers, kind by kind."""
+    offered = [one.quantity.id for one in source.results.drive.mechanism.OFFERS if one.quantity.commands == ("forces",)]
+    found = source.having(("S", "N", "D", "T", "M_out", *offered))
+    kinds = dict.fromkeys(source.quantity(id).kind for id in found)
+    for kind in kinds:
+        panel = source.panel([id for id in found if source.quantity(id).kind == kind])
+        yield panel._replace(curves=(*panel.curves, zero_line(panel.curves)))
+
+
+def polar_effort(source: Source) -> Iterator[Panel]:
+    """Yield T drawn outward from the crank circle, R Abb. 1063."""
+    if source.having(("T",)):
+        samples = source.samples((PHI, "T"))
+        unit = source.unit("force", samples.values[1])
+        force = convert(samples.values[1], "force", unit)
+        yield polar_panel(samples, Words("T", "T"), force, unit, list(source.marks("T", unit)), _mean(source, unit))
+
+
+def _mean(source: Source, unit: str) -> Figure | None:
+    mean = getattr(source.results, "W", None)
+    return None if not mean else Figure(Words("W", "W"), float(convert(mean, "force", unit)), unit)
+
+
+def polar_panel(
+    samples: Samples, name: Words, values: Array, unit: str, marks: list[Mark], mean: Figure | None
+) -> Panel:
+    """Return values over the crank angle as a panel in polar form: outward from a circle that stands for zero."""
+    size = float(np.abs(values).max()) or 1.0
+    base = max(0.6 * size, size * 0.25 - float(values.min()))
+    x, y = _polar(samples.degrees, base + values)
+    curve = Curve(name, pieces(samples, x, y))
+    rings = [_ring(base, Figure(name, 0.0, unit))]
+    if mean and mean.value is not None:
+        rings.append(_ring(base + mean.value, mean))
+    placed = [_placed(one, base) for one in marks]
+    reach = base + max(size, 0.0)
+    spokes = [_spoke(angle, base, reach * 1.04) for angle in range(0, 360, 90)]
+    axis = Axis(Words("", ""), unit)
+    return Panel(axis, axis, (curve, *rings, *spokes), marks=tuple(placed), equal=True, plain=True)
+
+
+def _polar(degrees: Any, radius: Any) -> tuple[Any, Any]:
+    angle = CrankAngle.of(np.asarray(degrees, dtype=float))
+    return radius * angle.cos, radius * angle.sin
+
+
+def _ring(radius: float, figure: Figure) -> Curve:
+    around = np.linspace(0.0, 360.0, 121)
+    x, y = _polar(around, radius)
+    symbol, plain = figure.name
+    name = Words(f"{symbol} = 0", f"{plain} = 0") if figure.value == 0 else figure.name
+    return Curve(name, (Piece(x, y),), kind="faint")
+
+
+def _spoke(degrees: float, inner: float, outer: float) -> Curve:
+    x, y = _polar(degrees, np.array([inner, outer]))
+    return Curve(Words(f"φ = {degrees:g}°", f"phi = {degrees:g}"), (Piece(x, y),), kind="faint")
+
+
+def _placed(mark: Mark, base: float) -> Mark:
+    x, y = _polar(mark.x, base + mark.y)
+    return mark._replace(x=float(x), y=float(y))

@@ -1,0 +1,148 @@
+"""What a picture is made of, whatever draws it: curves, shades and marks on panels with two axes, in units as shown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
+
+class Words(NamedTuple):
+    """A symbol as it is printed, and as it is written where there are no Greek letters."""
+
+    symbol: str
+    ascii_symbol: str
+
+
+class Axis(NamedTuple):
+    """What runs along an axis, and its unit; log: by powers of ten; names: what stands at 0, 1, … instead of numbers.
+
+    low, high: how far the axis must reach at least, whatever is drawn; falling: large values stand on the left.
+    """
+
+    name: Words
+    unit: str
+    log: bool = False
+    low: float | None = None
+    high: float | None = None
+    falling: bool = False
+    names: tuple[str, ...] = ()
+
+
+class Piece(NamedTuple):
+    """Points of a curve without a jump, in the units of the axes, (n,).
+
+    degrees, within: at which crank angles they were computed, and on which side of jumps; None where they have none.
+    """
+
+    x: Array
+    y: Array
+    degrees: Array | None = None
+    within: Array | None = None
+
+
+class Curve(NamedTuple):
+    """A curve: pieces that follow one another, a jump between two of them.
+
+    kind: `line`; `faint`, a line to compare with, such as a mean; of mechanisms `member`, `guide`, and the points
+    `joint` and `fixed`; `dots`, points that are joined; look: which of the looks it has, where that is not its place
+    among the lines of its panel.
+    """
+
+    name: Words
+    pieces: tuple[Piece, ...]
+    kind: str = "line"
+    look: int | None = None
+
+
+class Figure(NamedTuple):
+    """A figure that is written into a picture: symbol, value and unit, and the crank angle at which it stands."""
+
+    name: Words
+    value: float | None = None
+    unit: str = ""
+    at_deg: float | None = None
+
+
+class Mark(NamedTuple):
+    """A point with its figure."""
+
+    x: float
+    y: float
+    figure: Figure
+
+
+class Shade(NamedTuple):
+    """The surface between two lines over the same places x (n,); `gain`: it counts positive.
+
+    figure: what is written into it, at its widest place.
+    """
+
+    x: Array
+    low: Array
+    high: Array
+    gain: bool = True
+    figure: Figure | None = None
+
+
+class Arrow(NamedTuple):
+    """A force that acts at a point: its ends, and what it is called."""
+
+    tail: tuple[float, float]
+    head: tuple[float, float]
+    name: Words
+
+
+class Panel(NamedTuple):
+    """Two axes with what stands on them; equal: both have one scale; plain: nothing is written at the axes.
+
+    title: what tells it from the other panels of its picture; frames: how it moves, round and round.
+    """
+
+    x: Axis
+    y: Axis
+    curves: tuple[Curve, ...] = ()
+    shades: tuple[Shade, ...] = ()
+    marks: tuple[Mark, ...] = ()
+    arrows: tuple[Arrow, ...] = ()
+    equal: bool = False
+    plain: bool = False
+    title: str = ""
+    frames: tuple[Frame, ...] = ()
+
+
+class Frame(NamedTuple):
+    """A moving panel at one moment: its curves and arrows, in the order and with as many points as in the panel."""
+
+    curves: tuple[Curve, ...]
+    arrows: tuple[Arrow, ...]
+
+
+class Picture(NamedTuple):
+    """A picture: its word on the command line, the printed title, and a sentence that says what is seen.
+
+    machine: its name; of: the cylinder, '' where there is one only; across: how many panels stand side by side;
+    legend: what the looks of its curves stand for, where that is told once for all panels.
+    """
+
+    id: str
+    title: str
+    text: str
+    panels: tuple[Panel, ...]
+    machine: str = ""
+    of: str = ""
+    across: int = 1
+    legend: tuple[tuple[Words, int], ...] = ()
+
+    @property
+    def heading(self) -> str:
+        """What stands over the picture."""
+        return ". ".join(filter(None, (self.machine, f"{self.title}: {self.of}" if self.of else self.title)))
+
+
+def extent(pieces: Sequence[Any], part: str) -> tuple[float, float]:
+    """Return the smallest and the largest value of a part (x, y, low, high) of several pieces or shades."""
+    ends = [(float(values.min()), float(values.max())) for one in pieces if len(values := getattr(one, part))]
+    return min((low for low, _ in ends), default=0.0), max((high for _, high in ends), default=0.0)

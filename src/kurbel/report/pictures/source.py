@@ -1,0 +1,136 @@
+"""Where a picture takes its values from: the results of one command, sampled, in the units in which they are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kurbel.declared.quantity import Quantity
+from kurbel.declared.unit_systems import convert, shown_unit
+from kurbel.numerics.extreme import Extreme
+from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Piece, Words, extent
+from kurbel.report.pictures.sampling import Samples, pieces, sampled
+from kurbel.report.shown import too_large
+from kurbel.solver.figures import answered
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
+PHI = "phi"
+
+
+class Source:
+    """The results of one cylinder or of the whole machine, as pictures need them.
+
+    results: what answers columns (`at`), key values (`answering`) and where it is smooth (`breaks`); system: of units;
+    fineness: by what of its height a line of points may miss a curve; angles: in degrees, at which a mechanism stands.
+    """
+
+    def __init__(self, results: Any, system: str, fineness: float, angles: Sequence[float] | None = None) -> None:
+        self.results, self.system, self.fineness, self.angles = results, system, fineness, angles
+
+    @cached_property
+    def _declared(self) -> dict[str, Quantity]:
+        return {one.id: one for one in self.results.lists.all_columns}
+
+    def quantity(self, id: str) -> Quantity:
+        """Return the declaration of a column."""
+        return self._declared[id]
+
+    @cached_property
+    def _at_zero(self) -> Any:
+        return self.results.at(np.zeros(1), np.full(1, 1e-3))
+
+    def having(self, ids: Iterable[str]) -> tuple[str, ...]:
+        """Return those of these columns that there are."""
+        return tuple(id for id in ids if id in self._declared and getattr(self._at_zero, id, None) is not None)
+
+    def values(self, ids: Sequence[str], degrees: Array, within: Array) -> Array:
+        """Return columns (k, n) in SI at crank angles (n,); φ is one of them."""
+        state = self.results.at(degrees, within)
+        found = [degrees if id == PHI else np.broadcast_to(getattr(state, id), degrees.shape) for id in ids]
+        return np.stack([np.asarray(one, dtype=float) for one in found])
+
+    def samples(self, ids: Sequence[str], also: Iterable[float] = ()) -> Samples:
+        """Return columns (k, n) in SI over the cycle, at the crank angles `also` too. Raises UsageError, see below."""
+        breaks = self.results.breaks
+        # not numpy.isin, which loads numpy.ma, a fifth of the whole start-up
+        cut = np.array(sorted({*breaks.tolist(), *(angle for angle in also if 0 < angle < breaks[-1])}))
+        found = sampled(cut, lambda degrees, within: self.values(ids, degrees, within), self.fineness)
+        for id, line in zip(ids, found.values):
+            self.refuse_overflow(id, line)
+        return found
+
+    def refuse_overflow(self, id: str, values: Array) -> None:
+        """Raise UsageError where a column has left the range of floats."""
+        if not np.isfinite(values).all():
+            raise too_large(self.quantity(id))
+
+    def unit(self, kind: str, *values: Any) -> str:
+        """Return the unit in which values in SI of one kind are shown together."""
+        return shown_unit(kind, self.system, max((float(np.max(np.abs(one))) for one in values), default=0.0))
+
+    def extremes(self, id: str) -> list[tuple[Quantity, Extreme]]:
+        """Return the key values that are the largest and the smallest value of a column, as far as there are any."""
+        known = self.results.lists.key_values(self.results.command)
+        found = [(known[name], answered(self.results.answering, known[name])) for name in _ends(id) if name in known]
+        turns = [(quantity, value) for quantity, value in found if isinstance(value, Extreme)]
+        return turns if len({value.value for _, value in turns}) == len(turns) else []  # of a level line there are none
+
+    def panel(self, ids: Sequence[str], over: str = PHI, title: str = "") -> Panel:
+        """Return a panel of columns of one kind over another column, with their extremes marked."""
+        samples = self.samples((over, *ids))
+        kind = self.quantity(ids[0]).kind
+        unit, run = self.unit(kind, *samples.values[1:]), self.axis(over, samples.values[0])
+        x = convert(samples.values[0], self.quantity(over).kind, run.unit)
+        curves = tuple(
+            Curve(words(self.quantity(id)), pieces(samples, x, convert(line, kind, unit)))
+            for id, line in zip(ids, samples.values[1:])
+        )
+        marks = tuple(mark for id in ids for mark in self.marks(id, unit, over, run.unit))
+        name = words(self.quantity(ids[0])) if len(ids) == 1 else joined(self.quantity(id) for id in ids)
+        return Panel(run, Axis(name, unit), curves, marks=marks, title=title)
+
+    def axis(self, id: str, values: Array) -> Axis:
+        """Return the axis for values of a column in SI."""
+        quantity = self.quantity(id)
+        unit = "deg" if id == PHI else self.unit(quantity.kind, values)
+        return Axis(words(quantity), unit)
+
+    def marks(self, id: str, unit: str, over: str = PHI, over_unit: str = "deg") -> Iterable[Mark]:
+        """Yield the extremes of a column as marks at their exact place."""
+        for quantity, extreme in self.extremes(id):
+            at = np.array([extreme.degrees])
+            (place,) = self.values((over,), at, at)
+            value = float(convert(extreme.value, quantity.kind, unit))
+            figure = Figure(words(quantity), value, unit, extreme.degrees)
+            yield Mark(float(convert(place[0], self.quantity(over).kind, over_unit)), value, figure)
+
+
+def _ends(id: str) -> tuple[str, str]:
+    return f"{id}_max", f"{id}_min"
+
+
+def words(quantity: Quantity) -> Words:
+    """Return how a quantity is called in a picture."""
+    return Words(quantity.symbol, quantity.ascii_symbol)
+
+
+def joined(quantities: Iterable[Quantity]) -> Words:
+    """Return how several quantities on one axis are called."""
+    symbols, plain = zip(*((one.symbol, one.ascii_symbol) for one in quantities))
+    return Words(", ".join(symbols), ", ".join(plain))
+
+
+def level(name: Words, value: float, x: tuple[float, float]) -> Curve:
+    """Return a faint level line with its name."""
+    return Curve(name, (Piece(np.array(x), np.array([value, value])),), kind="faint")
+
+
+def zero_line(curves: Sequence[Curve], height: float = 0.0) -> Curve:
+    """Return the faint line y = 0, or of what else counts as nothing, as far as the curves reach."""
+    every = [piece for curve in curves for piece in curve.pieces]
+    return level(Words("", ""), height, extent(every, "x"))

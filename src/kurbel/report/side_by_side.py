@@ -1,0 +1,108 @@
+"""Two machines side by side: what they were given differently, key values with their differences, pictures in pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from importlib import import_module
+from itertools import zip_longest
+from typing import Any
+
+import numpy as np
+
+from kurbel.declared.quantity import Quantity
+from kurbel.declared.unit_systems import convert, shown_unit
+from kurbel.errors import KurbelError
+from kurbel.numerics.extreme import Extreme
+from kurbel.report.document import Document, Grid, Pair, Section
+from kurbel.report.frame import Subject
+from kurbel.report.pictures import PICTURES, Wish, pictures
+from kurbel.report.pictures.picture import Picture
+from kurbel.report.provenance import provenance
+from kurbel.report.whole import COMMANDS, Command, Given, Progress
+from kurbel.solver.case import Case
+
+_NONE = "–"
+
+
+def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, progress: Progress) -> Document:
+    """Return two machines side by side. progress: is told what is being done."""
+    first, second = _names(cases)
+    sections = [Section("input", "What was given differently", tuple(_given(given, first, second)))]
+    with np.errstate(all="ignore"):
+        for command in COMMANDS:
+            progress(command.title.lower())
+            sections.append(Section(command.word, command.title, tuple(_of_command(cases, command, system))))
+    sources = tuple(provenance(case.machine) for case in cases)
+    return Document(f"{first} and {second}", sources, tuple(one for one in sections if one.items))
+
+
+def _names(cases: Sequence[Case]) -> tuple[str, str]:
+    """Return the names of both, told apart by A and B where they are one."""
+    first, second = (case.machine.name for case in cases)
+    return (first, second) if first != second else (f"{first} (A)", f"{second} (B)")
+
+
+def _given(given: Sequence[Given], first: str, second: str) -> Iterator[Grid | str]:
+    one, other = map(dict, given)
+    keys = list(dict.fromkeys((*one, *other)))
+    rows = [(key, one.get(key, _NONE), other.get(key, _NONE)) for key in keys if one.get(key) != other.get(key)]
+    yield Grid("Keys", ("Key", first, second), tuple(rows)) if rows else "Nothing: both files give the same."
+
+
+def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterator[Grid | Pair]:
+    """Yield the key values of both machines, cylinder beside cylinder, and then the pictures."""
+    both = [_subjects(case, command.word) for case in cases]
+    first, second = _names(cases)
+    for left, right in zip_longest(*both):
+        rows = tuple(_rows(left, right, command.word, system))
+        if rows:
+            title = (left or right).name if max(map(len, both)) > 1 else "Key values"
+            heads = ("Symbol", first, second, "Unit", "Difference", "Meaning")
+            yield Grid(title, heads, rows, (1, 2, 4), (3,))
+    for declared in PICTURES:
+        if declared.command == command.word:
+            drawn = [_pictures(case, declared.id, system) for case in cases]
+            yield from (Pair(left, right) for left, right in zip_longest(*drawn))
+
+
+def _subjects(case: Case, command: str) -> list[Subject]:
+    try:
+        return list(import_module(f"kurbel.report.{command}").subjects(case))
+    except KurbelError:
+        return []
+
+
+def _pictures(case: Case, id: str, system: str) -> list[Picture]:
+    try:
+        return list(pictures(case, (id,), Wish(system)))
+    except KurbelError:
+        return []
+
+
+def _rows(left: Subject | None, right: Subject | None, command: str, system: str) -> Iterator[tuple[str, ...]]:
+    found = [_values(one, command) for one in (left, right)]
+    for quantity in dict.fromkeys((*found[0], *found[1])):
+        values = [one.get(quantity) for one in found]
+        given = [value for value in values if value is not None]
+        unit = shown_unit(quantity.kind, system, max(map(abs, given)))
+        texts = [_NONE if value is None else f"{convert(value, quantity.kind, unit):.5g}" for value in values]
+        yield quantity.symbol, *texts, quantity.marked(unit), _difference(values), quantity.text
+
+
+def _values(subject: Subject | None, command: str) -> dict[Quantity, float]:
+    """Return the single key values of a subject in SI; lists are not compared, nor is rounding."""
+    try:
+        found: dict[Quantity, Any] = dict(subject.key_values(command)) if subject else {}
+    except KurbelError:
+        return {}
+    numbers = {one: value.value if isinstance(value, Extreme) else value for one, value in found.items()}
+    return {one: value for one, value in numbers.items() if isinstance(value, (int, float)) and not one.residual}
+
+
+def _difference(values: Sequence[float | None]) -> str:
+    """Return by how many percent of the first the second is larger, where that can be told."""
+    first, second = values
+    if first is None or second is None or (not first and second):
+        return _NONE
+    percent = 100 * (second - first) / abs(first) if first else 0.0
+    return f"{percent:+.{2 if abs(percent) < 100 else 0}f} %" if percent else "0 %"

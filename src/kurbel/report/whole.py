@@ -1,0 +1,193 @@
+"""The report of `kurbel report`: all that a machine has, section by section; or several machines side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
+from typing import NamedTuple
+
+import numpy as np
+
+from kurbel.errors import KurbelError, NoSolutionError, UsageError
+from kurbel.report.angles import stepped
+from kurbel.report.check import Checked, checked
+from kurbel.report.document import Document, Grid, Item, Section
+from kurbel.report.keys import every_place
+from kurbel.report.pictures import PICTURES, Wish, pictures
+from kurbel.report.provenance import provenance
+from kurbel.report.tables import LeftOut, Report
+from kurbel.solver.case import Case
+
+Given = Sequence[tuple[str, str]]
+"""The keys of a machine file with their values, as they were read."""
+Progress = Callable[[str], None]
+
+
+class Command(NamedTuple):
+    """A command whose tables a report has: its word, a title, and what makes them at crank angles (n,) in degrees.
+
+    turns: whether its table runs over the whole cycle of the machine.
+    """
+
+    word: str
+    title: str
+    make: Callable[[Case, Sequence[float], str], Report]
+    turns: bool = True
+
+
+def _made_by(module: str) -> Callable[[Case, Sequence[float], str], Report]:
+    """Return what makes the report of a command, as the module of that name below `kurbel.report` has it."""
+
+    def make(case: Case, angles: Sequence[float], system: str) -> Report:
+        report: Report = getattr(import_module(f"kurbel.report.{module}"), f"{module}_report")(
+            case, angles, None, system
+        )
+        return report
+
+    return make
+
+
+def _harmonics(case: Case, angles: Sequence[float], system: str) -> Report:
+    from kurbel.report.harmonics import harmonics_report
+
+    return harmonics_report(case, None, None, system)
+
+
+def _torsion(case: Case, angles: Sequence[float], system: str) -> Report:
+    from kurbel.report.torsion import Wanted, torsion_report
+
+    return torsion_report(case, Wanted(), angles, None, system)
+
+
+COMMANDS = (
+    Command("motion", "Motion", _made_by("motion"), False),
+    Command("forces", "Forces", _made_by("forces")),
+    Command("flywheel", "Turning effort and flywheel", _made_by("flywheel")),
+    Command("stress", "Strength of the crankshaft", _made_by("stress")),
+    Command("bearings", "Bearings", _made_by("bearings")),
+    Command("balance", "Balance of the masses", _made_by("balance")),
+    Command("harmonics", "Orders of the turning effort", _harmonics),
+    Command("torsion", "Torsional vibration", _torsion),
+)
+"""In the order in which a report has them."""
+
+
+def whole_report(case: Case, given: Given, system: str, step: float, progress: Progress) -> Document:
+    """Return everything that a machine has. progress: is told what is being done."""
+    stepped(step, 360.0)  # a step that is none is refused at once
+    progress("reading and checking")
+    found = checked(case.machine)
+    sections: list[Section | None] = [_input(case, given, found)]
+    left_out: list[LeftOut] = []
+    for command in COMMANDS:
+        progress(command.title.lower())
+        sections.append(_section(case, command, system, step, left_out))
+    sections += [_verdicts(found), _energy(case, system), _left_out(left_out)]
+    name = case.machine.name
+    return Document(name, (provenance(case.machine),), tuple(one for one in sections if one))
+
+
+def _input(case: Case, given: Given, found: Checked) -> Section:
+    places = every_place()
+    rows = []
+    for path, value in given:
+        steps = [step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()]
+        meant = next((places[".".join(steps[k:])][0] for k in range(len(steps)) if ".".join(steps[k:]) in places), None)
+        rows.append((path, value, meant.key.text.replace("`", "") if meant else ""))
+    items: list[Item] = [Grid("Given", ("Key", "Value", "Meaning"), tuple(rows))] if rows else []
+    for part in found.sections:
+        if part.title not in ("Limits", "Expected"):
+            items.append(Grid(part.title, ("", ""), tuple((one.what, one.text) for one in part.entries)))
+    return Section("input", "Input as understood", tuple(items))
+
+
+def _section(case: Case, command: Command, system: str, step: float, left_out: list[LeftOut]) -> Section | None:
+    """Return pictures and tables of one command, or None where the machine has none, with the reason in `left_out`."""
+    try:
+        table = _table(case, command, system, step)
+    except NoSolutionError as error:
+        table = f"No solution: {error}"
+    except UsageError as error:
+        left_out.append(LeftOut(command.title, str(error).removeprefix(f"{case.machine.name}: ")))
+        return None
+    return Section(command.word, command.title, (*_pictures_of(case, command.word, Wish(system)), table))
+
+
+def _table(case: Case, command: Command, system: str, step: float) -> Report | str:
+    end = 360.0 * case.machine.revolutions if command.turns else 360.0
+    report = command.make(case, stepped(step, end, max(len(case.cylinders), 1)), system)
+    for part in report.all_parts:  # what cannot be computed is told now, not while the page is written
+        len(part.key_values)
+    return report
+
+
+def _pictures_of(case: Case, command: str, wish: Wish) -> Iterator[Item]:
+    """Yield the pictures of one command that the machine has; of one without a solution, why."""
+    for one in PICTURES:
+        if one.command == command:
+            try:
+                yield from pictures(case, (one.id,), wish)
+            except NoSolutionError as error:
+                yield f"{one.title}: {error}"
+            except UsageError:
+                continue  # what it would show is told among what is left out
+
+
+def _verdicts(found: Checked) -> Section | None:
+    """Return how the limits and the expectations of the machine file stand."""
+    items: list[Item] = []
+    for part in found.sections:
+        if part.title in ("Limits", "Expected"):
+            rows = tuple((one.what, one.text) for one in part.entries)
+            verdicts = tuple("bad" if one.severity == "error" else "good" for one in part.entries)
+            items.append(Grid(part.title, ("Key value", "Verdict"), rows, verdicts=verdicts))
+    items += [str(error) for error in found.errors]
+    return Section("verdicts", "Limits and expectations", tuple(items)) if items else None
+
+
+_BALANCE = (
+    ("work_driving", 1),
+    ("work_driven", 1),
+    ("crosshead_work", -1),
+    ("ring_work", -1),
+    ("constant_work", -1),
+    ("resistance_work", 1),
+)
+_CALLED = {
+    "work_driving": "Indicated work of the driving pistons",
+    "work_driven": "Indicated work of the driven pistons",
+    "crosshead_work": "Friction of the crosshead",
+    "ring_work": "Friction of the piston rings",
+    "constant_work": "Friction given as a force",
+    "resistance_work": "What the output works against",
+}
+
+
+def _energy(case: Case, system: str) -> Section | None:
+    """Return for every cylinder where the energy of a cycle goes, and what an independent quadrature leaves open."""
+    from kurbel.declared.unit_systems import convert, shown_unit
+
+    items: list[Item] = []
+    with np.errstate(all="ignore"):
+        for forces in case.cylinders:
+            try:
+                left = forces.work_left
+                terms = [(name, sign * value) for name, sign in _BALANCE if (value := getattr(forces, name))]
+                residual = forces.energy_residual
+            except KurbelError:
+                continue
+            if left is None:
+                continue
+            unit = shown_unit("energy", system, max((abs(value) for _, value in terms), default=abs(left)))
+            rows = [(_CALLED[name], f"{convert(value, 'energy', unit):.5g}", unit) for name, value in terms]
+            rows.append(("Reaches the shaft, 2π R W per turn", f"{convert(left, 'energy', unit):.5g}", unit))
+            open_ = "below 1e-14" if residual is not None and abs(residual) < 1e-14 else f"{residual:.2g}"
+            rows.append(("Left open by an independent quadrature, over the turnover", open_, ""))
+            items.append(Grid(forces.drive.name, ("Per cycle", "Energy", "Unit"), tuple(rows), (1,), (2,)))
+    return Section("energy", "Energy balance", tuple(items)) if items else None
+
+
+def _left_out(found: Sequence[LeftOut]) -> Section | None:
+    rows = tuple((one.what, one.why) for one in found)
+    items = (Grid("", ("Part", "Why"), rows),) if rows else ()
+    return Section("left-out", "Left out", items) if items else None

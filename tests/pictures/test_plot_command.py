@@ -1,0 +1,149 @@
+"""`kurbel plot`: what it draws, what it lists, and what it answers to wrong wishes."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from click.testing import CliRunner, Result
+from drawn import CONFIGS
+
+from kurbel.cli import kurbel
+from kurbel.report.pictures import PICTURES
+
+WATERWORKS = str(CONFIGS["waterworks"])
+
+
+def run(*args: str, text: str | None = None) -> Result:
+    return CliRunner().invoke(kurbel, ["plot", *args], input=text)
+
+
+def test_without_a_name_the_picture_that_says_most() -> None:
+    result = run(WATERWORKS)
+    assert result.exit_code == 0
+    assert result.stdout.startswith("Waterworks engine, high-pressure side. Kolbenüberdrucklinie\n")
+    assert "P_max 137.0 kN, 360°" in result.stdout
+    moving = run("-", text="{speed: 50 rpm, stroke: 800 mm, rod_ratio: 5}")
+    assert moving.stdout.startswith("machine. Kolbenweg, Geschwindigkeit, Beschleunigung\n")
+
+
+def test_the_list_names_what_this_machine_has() -> None:
+    listed = [line.split()[0] for line in run(str(CONFIGS["gas-engine"]), "--list").stdout.splitlines()]
+    assert listed == [one.id for one in PICTURES if one.id in listed]
+    assert "throw-stress" in listed
+    assert "throw-stress" not in run(WATERWORKS, "--list").stdout
+    assert run(WATERWORKS, "--list", "-o", "x.svg").exit_code == 2
+
+
+def test_several_pictures_stand_one_below_the_other(tmp_path: Path) -> None:
+    one, both = tmp_path / "one.svg", tmp_path / "both.svg"
+    assert run(WATERWORKS, "card", "-o", str(one)).exit_code == 0
+    assert run(WATERWORKS, "card", "effort", "-o", str(both)).exit_code == 0
+    heights = [float(ElementTree.parse(path).getroot().get("height", "0")) for path in (one, both)]
+    assert heights[1] > 1.5 * heights[0]
+
+
+def test_all_are_drawn_where_all_are_asked_for() -> None:
+    result = run(WATERWORKS, "all", "--width", "60")
+    assert result.exit_code == 0
+    listed = len(run(WATERWORKS, "--list").stdout.splitlines())
+    # each pin has its own polar diagram
+    assert result.stdout.count("Waterworks engine, high-pressure side. ") == listed + 1
+
+
+def test_a_mechanism_at_chosen_angles(tmp_path: Path) -> None:
+    file = tmp_path / "m.svg"
+    assert run(WATERWORKS, "mechanism", "--angles", "0,45,90", "-o", str(file)).exit_code == 0
+    text = file.read_text(encoding="utf-8")
+    assert all(f"φ = {angle}°" in text for angle in (0, 45, 90))
+    assert "animate" not in text
+
+
+def test_only_one_cylinder() -> None:
+    two = str(CONFIGS["waterworks-two-cranks"])
+    assert "high pressure" not in run(two, "forces", "--cylinder", "low pressure").stdout
+    wrong = run(two, "forces", "--cylinder", "middle pressure")
+    assert wrong.exit_code == 2
+    assert "there is no 'middle pressure'; there are high pressure, low pressure" in wrong.stderr
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (["efort"], "no picture 'efort'; did you mean 'effort'? (there are piston-force,"),
+        (["throw-stress"], "no 'crankshaft' is given"),
+        (["card", "-o", "x.jpg"], "the name of a picture ends in .svg, .png or .pdf"),
+        (["card", "-o", "nowhere/x.svg"], "cannot write nowhere/x.svg: No such file or directory"),
+        (["card", "-o", "nowhere/x.pdf"], "cannot write nowhere/x.pdf: No such file or directory"),
+        (["\x1b[31m<script>"], r"no picture '\u001b[31m<script>'"),
+        (["mechanism", "--angles", "inf"], "inf"),
+    ],
+)
+def test_wrong_wishes(args: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = run(WATERWORKS, *args)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert "\x1b" not in result.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_machine_file_is_never_overwritten(tmp_path: Path) -> None:
+    file = tmp_path / "m.svg"
+    file.write_bytes(CONFIGS["waterworks"].read_bytes())
+    result = run(str(file), "-o", str(file))
+    assert result.exit_code == 2
+    assert "would overwrite" in result.stderr
+
+
+def test_without_matplotlib_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import importlib.util
+
+    real = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name, *more: None if name == "matplotlib" else real(name, *more)
+    )
+    result = run(WATERWORKS, "card", "-o", str(tmp_path / "x.pdf"))
+    assert result.exit_code == 2
+    assert (
+        "a pdf needs matplotlib, which is not installed: pip install 'kurbel[plot]'; an svg needs nothing"
+        in result.stderr
+    )
+    assert run(WATERWORKS, "card", "-o", str(tmp_path / "x.svg")).exit_code == 0
+
+
+@pytest.mark.parametrize("command", [["plot", WATERWORKS], ["plot", WATERWORKS, "-o", "x.svg"], ["report", WATERWORKS]])
+def test_matplotlib_is_imported_only_for_png_and_pdf(command: list[str], tmp_path: Path) -> None:
+    code = (
+        "import sys\nfrom kurbel.cli import kurbel\n"
+        "try:\n    kurbel.main(sys.argv[1:])\nexcept SystemExit as end:\n    assert not end.code\n"
+        "assert not {'matplotlib', 'rich'} & {name.partition('.')[0] for name in sys.modules}"
+    )
+    done = subprocess.run([sys.executable, "-c", code, *command], cwd=tmp_path, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr.decode()
+
+
+def test_no_display_is_needed(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    nowhere = {
+        key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY", "MPLBACKEND")
+    }
+    command = [sys.executable, "-m", "kurbel", "plot", WATERWORKS, "card", "-o", str(tmp_path / "x.png")]
+    subprocess.run(command, env=nowhere, check=True)
+    assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_machine_without_solution_ends_with_status_3() -> None:
+    locked = "{speed: 50 rpm, stroke: 800 mm, rod_ratio: 2, masses: {piston: 100 kg}, friction: {crosshead: 5}}"
+    result = run("-", "forces", text=locked)
+    assert result.exit_code == 3
+    assert "locks itself" in result.stderr
+    assert run("-", "--list", text=locked).exit_code == 0
+
+
+def test_the_decimal_comma_stands_in_pictures_too() -> None:
+    assert "T_max 87,70 kN, 67,3°" in run(WATERWORKS, "effort", "--decimal", "comma", "--width", "100").stdout

@@ -1,0 +1,150 @@
+"""Pictures as files: small, legible in black and white and for the colour-blind, and harmless."""
+
+from __future__ import annotations
+
+import re
+from itertools import combinations
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from drawn import CONFIGS, drawn, ids_of, named
+
+from kurbel.render import Look
+from kurbel.render.html import BAD, GOOD, LINK
+from kurbel.render.html import FAINT as PAGE_FAINT
+from kurbel.render.html import INK as PAGE_INK
+from kurbel.render.html import PAPER as PAGE_PAPER
+from kurbel.render.html import SHADE as PAGE_SHADE
+from kurbel.render.pictures.drawing import draw_file
+from kurbel.render.pictures.scene import thinned
+from kurbel.render.pictures.style import FAINT, GAIN, INK, LOOKS, LOSS, PAPER, css
+from kurbel.render.pictures.svg import svg_file
+from kurbel.report.pictures import Wish, pictures
+
+LARGEST = 60_000
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance after WCAG 2."""
+    parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+    red, green, blue = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts)
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+
+def contrast(one: str, other: str) -> float:
+    light, dark = sorted((luminance(one), luminance(other)), reverse=True)
+    return (light + 0.05) / (dark + 0.05)
+
+
+@pytest.mark.parametrize("name", CONFIGS)
+def test_files_are_small_and_whole(name: str) -> None:
+    for id in ids_of(name):
+        for picture in drawn(name, id):
+            text = "".join(svg_file([picture], Look()))
+            assert len(text.encode()) <= LARGEST
+            root = ElementTree.fromstring(text)
+            assert "nan" not in text.lower().replace("finance", "")
+            assert root.find("{http://www.w3.org/2000/svg}title") is not None
+
+
+@pytest.mark.parametrize("mode", [0, 1], ids=["light", "dark"])
+def test_contrast(mode: int) -> None:
+    for colours in (INK, FAINT, *((look.light, look.dark) for look in LOOKS)):
+        assert contrast(colours[mode], PAPER[mode]) >= 4.5
+    for ground in (GAIN, LOSS):
+        assert contrast(INK[mode], ground[mode]) >= 4.5
+    for colours in (PAGE_INK, PAGE_FAINT, GOOD, BAD, LINK):
+        for ground in (PAGE_PAPER, PAGE_SHADE):
+            assert contrast(colours[mode], ground[mode]) >= 4.5
+
+
+def test_curves_are_told_apart_without_colour() -> None:
+    assert len({look.dashes for look in LOOKS}) == len(LOOKS)
+    assert len({look.character for look in LOOKS}) == len(LOOKS)
+    assert contrast(GAIN[0], LOSS[0]) > 1.15  # of two grey values the one is darker
+
+
+def lms(colour: str) -> tuple[float, float, float]:
+    """What the three kinds of cones see of a colour (Smith and Pokorny, as Viénot, Brettel and Mollon 1999 have it)."""
+    parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+    r, g, b = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts)
+    return (
+        17.8824 * r + 43.5161 * g + 4.11935 * b,
+        3.45565 * r + 27.1554 * g + 3.86714 * b,
+        0.0299566 * r + 0.184309 * g + 1.46709 * b,
+    )
+
+
+def test_colours_are_told_apart_without_red_or_green_cones() -> None:
+    """Without one kind of cones two are left: in each of them or in both the first four colours differ by a sixth."""
+    for one, other in combinations(LOOKS[:4], 2):
+        for kept in ((1, 2), (0, 2)):
+            first, second = ([lms(look.light)[k] for k in kept] for look in (one, other))
+            assert max(abs(a - b) / max(a, b) for a, b in zip(first, second)) > 1 / 6
+
+
+def test_the_palette_of_the_style_sheet_is_that_of_the_tests() -> None:
+    assert all(look.light in css() and look.dark in css() for look in LOOKS)
+
+
+def test_a_name_is_text_and_nothing_else() -> None:
+    text = "".join(svg_file(list(pictures(named(), ("motion", "mechanism"), Wish())), Look()))
+    assert "<script" not in text
+    assert "&lt;script&gt;" in text
+    assert "\x1b" not in text
+    ElementTree.fromstring(text)
+
+
+def test_nothing_is_loaded_from_elsewhere() -> None:
+    text = "".join(svg_file(list(drawn("waterworks", "mechanism")), Look()))
+    assert not re.findall(r"href|url\(|@import|<script|<image|\bon\w+=", text)
+    assert re.findall(r"https?://[^\"]*", text) == ["http://www.w3.org/2000/svg"]
+
+
+@pytest.mark.parametrize(
+    "name", ["waterworks", "scotch-yoke-pump", "shaper", "crank-rocker", "coupled-axle", "yoke-frame-pump"]
+)
+def test_every_mechanism_of_the_book_moves(name: str) -> None:
+    text = "".join(svg_file(list(drawn(name, "mechanism")), Look()))
+    moves = re.findall(r'<animate attributeName="(\w+)" dur="6s" repeatCount="indefinite" values="([^"]*)"', text)
+    assert {"d", "cx", "x"} <= {attribute for attribute, _ in moves}
+    for _, values in moves:
+        every = values.split(";")
+        assert len(every) == 73
+        assert every[0] == every[-1]  # round and round
+    assert "prefers-reduced-motion" in text
+
+
+def test_only_what_moves_is_drawn_twice_for_those_who_want_it_still() -> None:
+    root = ElementTree.fromstring("".join(svg_file(list(drawn("waterworks", "mechanism")), Look())))
+    names = [one.get("class") for one in root.iter("{http://www.w3.org/2000/svg}g")]
+    assert "moving" in names
+    assert "still" in names
+    still = next(one for one in root.iter("{http://www.w3.org/2000/svg}g") if one.get("class") == "still")
+    assert not list(still.iter("{http://www.w3.org/2000/svg}animate"))
+    assert "animate" not in "".join(svg_file(list(drawn("waterworks", "forces")), Look()))
+
+
+def test_the_same_picture_every_time(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    for name in ("a.svg", "b.svg", "a.pdf", "b.pdf", "a.png"):
+        draw_file(list(drawn("waterworks", "card")), Look(), str(tmp_path / name))
+    for suffix, begin in (("svg", b"<svg"), ("pdf", b"%PDF")):
+        first, second = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("a", "b"))
+        assert first == second
+        assert first.startswith(begin)
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_thinning_leaves_out_only_what_lies_on_a_line() -> None:
+    import numpy as np
+
+    x = np.linspace(0, 100, 401)
+    y = np.abs(x - 50)
+    assert thinned(x, y) == ((0.0, 50.0), (50.0, 0.0), (100.0, 50.0))
+    wave = 40 * np.sin(x / 8)
+    kept = np.array(thinned(x, wave))
+    steepness = np.hypot(1, np.interp(x, kept[:-1, 0] / 2 + kept[1:, 0] / 2, np.diff(kept[:, 1]) / np.diff(kept[:, 0])))
+    assert (np.abs(np.interp(x, *kept.T) - wave) / steepness).max() <= 0.15
+    assert len(kept) < 200
