@@ -27,8 +27,10 @@ from kurbel.solver.turning.torques import Sum, Torque
 if TYPE_CHECKING:
     from kurbel.arrays import Array
 
-_MOST_WORK = 1e9
-"""Multiplications that the equations of all elements may take at first: about as many as a second holds, refined."""
+_MOST_WORK = 5e7
+"""Multiplications that one solution of all elements may take; with what refines them that is about a second."""
+_FEWEST = 40
+"""Elements that a cycle is refined to at least."""
 
 
 def acting(turned: MachineEffort, line: ShaftLine) -> dict[int, Sum]:
@@ -62,8 +64,8 @@ class SteadyMotion:
         rise = Rise(line.load % len(line.masses), law) if law else None
         self._equation = ChainEquation(chain, omega, order, self._driving, rise)
         breaks = Cuts.joined([one.effort.cuts for one in self._acting.values()]).grid().breaks
-        parts = self._equation.parts(breaks).sum()
-        if parts * (STAGES * len(self._equation.matrix)) ** 3 > _MOST_WORK:
+        elements = max(self._equation.parts(breaks).sum(), _FEWEST)
+        if elements * (STAGES * len(self._equation.matrix)) ** 3 > _MOST_WORK:
             raise Unsettled
         self.motion = self._equation.solved(breaks)
 
