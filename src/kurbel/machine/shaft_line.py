@@ -54,7 +54,11 @@ class ShaftPart(Described):
             "Name of the cylinder whose crank stands here, or a list of those on one pin; its masses count by the mean "
             "of their reduced inertia over the turn",
         ),
-        "load": Key(Truth(), "Whether this mass takes the load", absent="the last mass does"),
+        "load": Key(
+            Truth(),
+            "Whether this mass takes the load",
+            absent="the last; the first if cranks stand at the last",
+        ),
         "stiffness": Key(Physical("stiffness", above=0), "Stiffness of a piece; or give `diameter` and `length`", "k"),
         "diameter": Key(
             Physical("length", above=0), "Diameter of a piece; beside a stiffness it serves the stress alone", "d"

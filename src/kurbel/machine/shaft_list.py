@@ -110,7 +110,8 @@ class _Builder:
     def line(self) -> ShaftLine:
         masses: list[ShaftMass] = []
         pieces: list[ShaftPiece] = []
-        load, open_ = -1, False  # whether pieces stand behind the last mass
+        load: int | None = None
+        open_ = False  # whether pieces stand behind the last mass
         for index, part in enumerate(self._parts):
             kind = _kind(part)
             if kind == "piece":
@@ -131,7 +132,9 @@ class _Builder:
                 if isinstance(part, ShaftPart) and part.load:
                     load = len(masses) - 1
         ground = "before" if self.grounds[0] else "after" if self.grounds[-1] else ""
-        return ShaftLine(tuple(masses), tuple(pieces), ground, load if load >= 0 else len(masses) - 1)
+        if load is None:  # what drives or is driven stands at an end, and is no crank
+            load = 0 if masses[-1].cylinders and not masses[0].cylinders else len(masses) - 1
+        return ShaftLine(tuple(masses), tuple(pieces), ground, load)
 
     def _mass(self, index: int, number: int) -> ShaftMass:
         part, ratio = self._parts[index], self._ratio(index)

@@ -255,8 +255,16 @@ class MachineTurning(Results):
 
     @cached_property
     def elastic(self) -> ElasticCoupling | None:
-        """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with."""
-        return None if self.J is None or not self._lines or self._needs_no_inertia else self._lines.elastic(self.J)
+        """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
+
+        Raises NoSolutionError where no motion of it repeats.
+        """
+        if self.J is None or not self._lines or self._needs_no_inertia:
+            return None
+        try:
+            return self._lines.elastic(self.J)
+        except Unsettled as stop:
+            raise NoSolutionError(self._refusal(self._lines, self.J, stop)) from None
 
     # speed line
 
@@ -286,7 +294,8 @@ class MachineTurning(Results):
 
     def _refusal(self, lines: SpeedLines, flywheel: float, stop: Unsettled) -> str:
         """Return where the machine stands still, if it does, and the flywheel with which it was found to turn."""
-        with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if self.elastic else ''}"
+        elastic = self.natural_order is not None and not self.rigid
+        with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
         message = f"{with_this} no speed line is found that repeats under this load"
         if isinstance(stop, Standstill):
             message = (
