@@ -12,7 +12,6 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.solver.balance.weights import Weight, levered
 
 if TYPE_CHECKING:
-    from kurbel.solver.balance.circles import Circles
     from kurbel.solver.balance.machine_balance import MachineBalance
 
 
@@ -36,19 +35,15 @@ class LocomotiveBalance:
         return self._given.wheel_diameter and self._given.wheel_diameter / 2 * omega
 
     @property
-    def traction_variation(self) -> Extreme:
+    def traction_variation(self) -> Extreme | None:
         """Largest free force in N along the stroke lines, by which the pull at the drawbar varies."""
-        return self._largest(self._balance.free.force.along)
+        return self._balance.largest(self._balance.free.force.along)
 
     @property
     def swaying_couple(self) -> Extreme | None:
         """Largest moment in N m of the free forces along the stroke lines about the upright axis."""
         moment = self._balance.free.moment
-        return None if moment is None else self._largest(moment.along)
-
-    def _largest(self, vector: Circles) -> Extreme:
-        found = vector.largest
-        return Extreme(found.value * self._omega * self._omega, found.degrees)
+        return self._balance.largest(moment and moment.along)
 
     def _in_wheels(self, weights: Iterable[tuple[str, Weight]]) -> tuple[complex, complex]:
         """Return the sums of weights in the two wheels, as by a lever, in kg m; each with what it is of."""

@@ -17,7 +17,7 @@ from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Results, crank_angles
 from kurbel.solver.turning.columns import OF_SPEED, TurningColumns
-from kurbel.solver.turning.machine_effort import MachineEffort, dead_centre_force
+from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedLine, floquet
 from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law, turning
 
@@ -165,10 +165,6 @@ class MachineTurning(Results):
     def energy_fluctuation(self) -> float | None:
         """ΔE over the work of a cycle."""
         return self.dE / self.work_shaft if self.work_shaft > 0 else None
-
-    def dead_centre_force(self, forces: CylinderForces) -> Extreme | None:
-        """Return what the parts before a directly driven pump must stand; see there."""
-        return dead_centre_force(forces, self.turned.cycle)
 
     # flywheel
 
