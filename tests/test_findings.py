@@ -18,8 +18,8 @@ from kurbel.declared.quantity import by_id
 from kurbel.errors import UsageError
 from kurbel.report.check import checked
 from kurbel.report.compared import Unjudged, compared
+from representative import shipped
 
-CONFIGS = Path(__file__).parent.parent / "configs"
 ENDLESS = "{constant: {expansion: 1e300 at, compression: 1e300 at}}"
 HUGE = f"crank: 1 m\nrod_ratio: 5\nbore: 1 m\nindicator: {{head_end: {ENDLESS}}}\n"
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -241,7 +241,7 @@ def test_a_check_goes_to_a_file_but_never_over_its_own(tmp_path: Path) -> None:
 # notes
 
 
-@pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.yaml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", shipped("waterworks-two-cranks", "diesel-trace", "gas-engine", "compressor", "punch"))
 def test_warnings_are_the_same_in_every_command(path: Path) -> None:
     """Of every shipped machine, forces, flywheel, stress and check print the same set of them."""
     found = {}

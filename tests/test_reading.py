@@ -31,7 +31,10 @@ ELSEWHERE = READERS | {"examples/ICE_example.py", "kurbel.mechanisms.harmonic_ca
 
 def docstrings(file: Path) -> Iterator[str]:
     """Yield the text of a module that is there to be read: docstrings, also those of constants."""
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    statements: list[ast.AST] = [ast.parse(file.read_text(encoding="utf-8"))]
+    while statements:  # a walk through every expression would take most of the time
+        node = statements.pop()
+        statements += getattr(node, "body", []) if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) else []
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
             yield node.value.value
 

@@ -16,6 +16,7 @@ from kurbel.cli import kurbel
 from kurbel.machine_file import loads
 from kurbel.report.notes import machine_notes
 from kurbel.solver.case import Case
+from representative import few
 
 AMBIENT = 1.01325
 ENGINE = Engine()
@@ -156,7 +157,7 @@ def test_the_brake_of_an_engine_of_four(tmp_path: Path) -> None:
     assert notes_of(four) == []
 
 
-@pytest.mark.parametrize("command", ["check", "forces", "flywheel", "stress"])
+@pytest.mark.parametrize("command", few(["check", "forces", "flywheel", "stress"], ["check", "forces"]))
 def test_every_command_shows_the_same_notes_once(tmp_path: Path, command: str) -> None:
     shaft = (
         "crankshaft: {a: 80 mm, b: 80 mm, web_distance: 50 mm, web_thickness: 20 mm, web_width: 70 mm, "

@@ -19,7 +19,9 @@ from click.testing import CliRunner
 from kurbel.cli import kurbel
 
 FOLDER = Path(__file__).parent
-TABLE: dict[str, list[dict[str, Any]]] = yaml.safe_load((FOLDER / "answers.yaml").read_text(encoding="utf-8"))
+TABLE: dict[str, list[dict[str, Any]]] = yaml.load(
+    (FOLDER / "answers.yaml").read_text(encoding="utf-8"), getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+)
 ROWS = [{"file": example, **row} for example, rows in TABLE.items() for row in rows]
 ASKED = [row for row in ROWS if "ask" in row]
 FILES = sorted(path.stem for path in FOLDER.glob("*.yaml") if path.stem != "answers")

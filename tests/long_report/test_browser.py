@@ -20,7 +20,7 @@ from browser import CHROMIUM, dumped
 pytestmark = pytest.mark.slow  # each takes seconds to start a browser
 browser = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine")
 PAGES = [("waterworks",), ("gas-engine",), ("waterworks", "compressor")]
-NO_NET = "--host-resolver-rules=MAP * ~NOTFOUND"  # nothing of the page may need it
+FLAGS = ("--host-resolver-rules=MAP * ~NOTFOUND", "--hide-scrollbars")  # nothing of the page may need the net
 MEASURE = """<script>
 const beyond = [...document.querySelectorAll('body *')].filter(one => {
   const box = one.getBoundingClientRect();
@@ -49,7 +49,7 @@ document.body.innerHTML = '<pre id="found"></pre>'; document.getElementById('fou
 
 
 def shown(file: Path, *flags: str) -> tuple[str, list[str]]:
-    return dumped(file.as_uri(), file.parent / f"profile-{os.urandom(4).hex()}", NO_NET, *flags)
+    return dumped(file.as_uri(), file.parent / f"profile-{os.urandom(4).hex()}", *FLAGS, *flags)
 
 
 def measured(page: str, width: int, folder: Path, *flags: str, scrolled: bool = True) -> dict[str, Any]:

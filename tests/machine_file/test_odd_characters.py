@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from kurbel.errors import MachineFileError, UnitError
 from kurbel.machine_file import load, loads
 
 # all of Unicode's white space but the line ends of YAML and the control characters that it refuses
-SPACES = [c for c in map(chr, range(0x80, 0x110000)) if c.isspace() and c not in "\x85\u2028\u2029"]
+SPACES = [c for c in re.findall(r"\s", "".join(map(chr, range(0x80, 0x110000)))) if c not in "\x85\u2028\u2029"]
 
 
 @pytest.mark.parametrize("space", SPACES, ids=ascii)

@@ -17,6 +17,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.errors import RuleError
 from kurbel.mechanisms import crank_formulas
 from kurbel.mechanisms.slider_crank import SliderCrank
+from representative import few
 
 RATIOS = (1e-12, 1e-8, 1e-3, 0.2, 0.25, 0.7, 0.99, 1 - 1e-4, 1 - 1e-8, 1 - 1e-12)
 BESIDE = [centre + step for centre in (0, 90, 180, 270, 360) for step in (-1e-3, -1e-7, -1e-13, 1e-13, 1e-7, 1e-3)]
@@ -38,7 +39,7 @@ def textbook(machine, degrees):
 
 
 @pytest.mark.parametrize("lam", RATIOS)
-@pytest.mark.parametrize("rod", [1.0, 2.3])
+@pytest.mark.parametrize("rod", few([1.0, 2.3], [2.3]))
 def test_straight_within_eight_ulp(lam, rod):
     machine = SliderCrank(lam * rod, rod)
     for degrees in ANGLES:

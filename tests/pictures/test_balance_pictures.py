@@ -80,7 +80,9 @@ def test_bars_of_the_torque_are_its_orders() -> None:
     panel = drawn("marine-diesel", "orders")[0].panels[0]
     heights = [float(one.high[0]) for one in panel.shades]
     found = case.harmonics()
-    assert heights == [abs(one) / 1e3 for one in found.machine.whole.amplitudes[: len(heights)].tolist()]
+    assert heights == pytest.approx(
+        [abs(one) / 1e3 for one in found.machine.whole.amplitudes[: len(heights)]], rel=1e-15
+    )
     assert panel.x.names[int(np.argmax(heights))] == "6"
 
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from drawn import CONFIGS, case_of, drawn, ids_of
+from scipy.integrate import trapezoid
 
 from kurbel.declared.unit_systems import convert
 from kurbel.errors import NoSolutionError, UsageError
@@ -135,7 +136,7 @@ def test_lobes_are_shaded_and_numbered_with_their_work() -> None:
         assert shade.gain == (work > 0)
     # the surface itself, in kN times the way of the pin in m, is that work: straight lines miss it by their fineness
     first = figures["A_2"]
-    area = float(np.trapezoid(first.high - first.low, np.radians(first.x))) * turning.crank
+    area = float(trapezoid(first.high - first.low, np.radians(first.x))) * turning.crank
     assert area == pytest.approx(turning.lobes[1] / 1e3, rel=2e-3)
 
 
@@ -148,7 +149,7 @@ def test_the_card_encloses_the_indicated_work() -> None:
     for curve in (one for one in panel.curves if one.kind == "line"):
         V = np.concatenate([piece.x for piece in curve.pieces]) / 1e6
         p = np.concatenate([piece.y for piece in curve.pieces]) * 1e5
-        work += float(np.trapezoid(p, V))
+        work += float(trapezoid(p, V))
     assert work == pytest.approx(case.cylinders[0].work, rel=1e-3)
 
 

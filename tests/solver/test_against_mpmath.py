@@ -19,6 +19,7 @@ from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.cylinder.forces import CylinderForces
 from machines import AT, STEAM_CARD, one_cylinder
+from representative import few
 
 mp = mpmath.mp
 NODES, WEIGHTS = (tuple(map(mpmath.mpf, each)) for each in np.polynomial.legendre.leggauss(28))
@@ -122,10 +123,10 @@ def edges(forces: CylinderForces) -> list[mpmath.mpf]:
     return [mpmath.mpf(float(angle)) * mp.pi / 180 for angle in forces.grid.breaks]
 
 
-@pytest.mark.parametrize("weight", [False, True])
-@pytest.mark.parametrize(
-    "lam", [one if one in (0.25, 0.99) else pytest.param(one, marks=pytest.mark.slow) for one in LAMBDAS]
-)
+WEIGHED = [(lam, weight) for lam in LAMBDAS for weight in (False, True)]
+
+
+@pytest.mark.parametrize(("lam", "weight"), few(WEIGHED, [(0.25, False), (0.25, True), (0.99, True)]))
 def test_friction_work(lam: float, weight: bool) -> None:
     forces = machine(lam, weight, f=0.1 if lam < 0.9 else 0.02 if lam < 0.999 else 1e-7)
     with mpmath.workdps(26):

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from scipy.integrate import solve_ivp, trapezoid
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.turning import Coupling, Effort, Load
@@ -75,7 +75,7 @@ def in_time(machine: MachineTurning, torque: Points, load: Points, own: float) -
     start = np.linalg.lstsq(np.eye(3) - state[:, 1:], state[:, 0], rcond=1e-9)[0]
     angles, states = np.concatenate(after), np.concatenate(rows) @ np.append(1.0, start)
     passed = states[:, 0] * scale + d * (states[:, 1] - states[:, 2])
-    mean = np.trapezoid(states[:, 1], angles) / cycle
+    mean = trapezoid(states[:, 1], angles) / cycle
     return np.stack((angles, passed, states[:, 1] - mean))
 
 

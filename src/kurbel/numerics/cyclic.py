@@ -18,9 +18,9 @@ def around(before: Array, after: Array, sides: Array) -> Array:
     reach.
     """
     count, size = sides.shape
+    if not all(np.isfinite(one).all() for one in (before, after, sides)):
+        raise np.linalg.LinAlgError("beyond the range of floats")  # LAPACK itself prints it, or answers with anything
     if count == 1:
-        if not (np.isfinite(before).all() and np.isfinite(after).all() and np.isfinite(sides).all()):
-            raise np.linalg.LinAlgError("beyond the range of floats")  # LAPACK itself would only print it
         return np.asarray(np.linalg.lstsq(before[0] + after[0], sides[0], rcond=1e-13)[0][None])
     even, odd = slice(0, count - 1, 2), slice(1, count, 2)
     turn, upper = np.linalg.qr(np.concatenate((after[even], before[odd]), axis=1), mode="complete")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from abc import abstractmethod
+from functools import cache
 from operator import ge, gt, le, lt
 from typing import Any, NoReturn
 
@@ -293,6 +294,7 @@ class UnitName(Scalar):
         return {"type": "string", "pattern": f"^\\s*{_units(self.kind)}\\s*$"}
 
 
+@cache
 def _units(kind: str) -> str:
     """Return a pattern of the units of a kind in every spelling that the reader takes."""
     return "(?:" + "|".join(_spellings(name) for name in unit_names(kind)) + ")"

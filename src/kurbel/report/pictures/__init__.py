@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from importlib import import_module
-from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -201,6 +200,9 @@ def pictures(case: Case, names: Sequence[str], wish: Wish) -> Iterator[Picture]:
     """
     wish = wish._replace(cylinder=wish.cylinder and cylinder_meant(wish.cylinder, _names(case)))
     with np.errstate(all="ignore"):
+        if not names:
+            yield from _first(case, wish)
+            return
         for declared in _chosen(case, names, wish):
             found = list(_pictures(case, declared, wish))
             if not found:
@@ -221,14 +223,19 @@ def pictures_of(case: Case, wish: Wish) -> tuple[Declared, ...]:
     return tuple(found)
 
 
+def _first(case: Case, wish: Wish) -> list[Picture]:
+    """Return the first picture that there is; none is drawn only to see whether there is one."""
+    for declared in PICTURES:
+        with suppress(UsageError):
+            if found := list(_pictures(case, declared, wish)):
+                return found
+    raise UsageError(f"{case.machine.name}: there is nothing to draw; kurbel check says what is missing")
+
+
 def _chosen(case: Case, names: Sequence[str], wish: Wish) -> Iterable[Declared]:
-    if names and "all" not in names:
+    if "all" not in names:
         return [_named(name) for name in names]
-    having = (one for one in PICTURES if _has(case, one, wish))
-    found = list(having if names else islice(having, 1))
-    if not found:
-        raise UsageError(f"{case.machine.name}: there is nothing to draw; kurbel check says what is missing")
-    return found
+    return [one for one in PICTURES if _has(case, one, wish)]
 
 
 def _named(name: str) -> Declared:
