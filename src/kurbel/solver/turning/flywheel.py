@@ -13,6 +13,7 @@ from kurbel.machine import Machine
 from kurbel.numerics.collocation import Standstill, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import rising_root
+from kurbel.numerics.search import Extremes
 from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Results, crank_angles
@@ -106,33 +107,12 @@ class MachineTurning(Results):
         given = self.machine.load.diagram if self.machine.load else None
         return self.excess.deficit or None if given else None
 
-    @property
-    def M_max(self) -> Extreme:
-        """Largest torque in N m."""
-        return self.excess.effort_extremes.largest
-
-    @property
-    def M_min(self) -> Extreme:
-        """Smallest torque in N m."""
-        return self.excess.effort_extremes.smallest
-
-    @property
-    def T_max(self) -> Extreme | None:
-        """Largest tangential force in N at the radius of crank 1."""
-        return self._at_crank(self.M_max)
-
-    @property
-    def T_min(self) -> Extreme | None:
-        """Smallest tangential force in N at the radius of crank 1."""
-        return self._at_crank(self.M_min)
-
-    @property
-    def T_peak(self) -> Extreme | None:
-        """Largest magnitude of the tangential force in N at the radius of crank 1."""
-        return self._at_crank(self.excess.effort_extremes.peak)
-
-    def _at_crank(self, torque: Extreme) -> Extreme | None:
-        return None if self.crank is None else Extreme(torque.value / self.crank, torque.degrees)
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
+        if column == "alpha":
+            return None if self.speed is None else self.speed.alpha_extremes
+        arm, found = self.crank if column == "T" else 1.0, self.excess.effort_extremes
+        return None if arm is None else Extremes(*(Extreme(one.value / arm, one.degrees) for one in found))
 
     # excess work
 
@@ -310,16 +290,6 @@ class MachineTurning(Results):
     def omega_min(self) -> Extreme | None:
         """Smallest angular velocity in rad/s."""
         return None if self.speed is None else self.speed.omega_min
-
-    @property
-    def alpha_max(self) -> Extreme | None:
-        """Largest angular acceleration in rad/s²."""
-        return None if self.speed is None else self.speed.alpha_extremes.largest
-
-    @property
-    def alpha_min(self) -> Extreme | None:
-        """Smallest angular acceleration in rad/s²."""
-        return None if self.speed is None else self.speed.alpha_extremes.smallest
 
     @property
     def omega_mean(self) -> float | None:
