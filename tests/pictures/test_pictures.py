@@ -238,3 +238,22 @@ def test_units_are_those_that_are_asked_for() -> None:
 def test_ids_are_unique_and_every_function_exists() -> None:
     assert len({one.id for one in PICTURES}) == len(PICTURES)
     assert all(one.title and one.text.endswith(".") for one in PICTURES)
+
+
+def test_equal_cylinders_are_drawn_once() -> None:
+    case = case_of("four-in-line")
+    (motion,) = pictures(case, ("motion",), Wish())
+    assert motion.of == "cylinders 1–4"
+    panel = motion.panels[0]
+    for piece in panel.curves[0].pieces:
+        for one in case.cylinders:  # the picture is that of each of them
+            np.testing.assert_array_equal(convert(one.at(piece.degrees).way, "length", panel.y.unit), piece.y)
+    (third,) = pictures(case, ("motion",), Wish(cylinder="3"))
+    assert third.of == "cylinder 3"
+
+
+def test_cylinders_that_differ_by_one_key_are_drawn_apart() -> None:
+    equal = "{name: A, stroke: 800 mm, rod_ratio: 5, masses: {piston: 100 kg}}"
+    others = "{name: B, like: A, crank_position: 120 deg}, {name: C, like: A, masses: {piston: 101 kg}}"
+    case = Case(loads(f"{{speed: 50 rpm, cylinders: [{equal}, {others}]}}"))
+    assert [one.of for one in pictures(case, ("forces",), Wish())] == ["A, B", "C"]

@@ -28,7 +28,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 COMMANDS = (
     *("table", "motion", "forces", "flywheel", "stress", "bearings", "balance", "harmonics", "torsion"),
-    *("plot", "report", "accuracy"),
+    *("plot", "report", "sweep", "accuracy"),
     *("friction", "check", "example", "keys", "units", "schema"),
 )
 """In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from kurbel.render.numbers import angle
 from kurbel.render.prose import list_text, sentence_text, value_text
 from kurbel.render.sheet import MARK, part_name, sheets
+from kurbel.report.alike import told_once
 
 if TYPE_CHECKING:
     from kurbel.render import Look
@@ -79,6 +80,7 @@ def style() -> str:
 
 def tables(report: Report, look: Look, level: int = 2) -> Iterator[str]:
     """Yield title, tables, key values and notes of a report, under a heading of this level."""
+    report = told_once(report)
     title = escape(look.charset.text(report.title))
     yield f"<h{level}>{title}</h{level}>\n"
     yield from (f"<p>{_prose(one, look)}</p>\n" for one in report.head)

@@ -10,6 +10,7 @@ from kurbel.render.html import number_text
 from kurbel.render.numbers import angle
 from kurbel.render.prose import sentence_text
 from kurbel.render.sheet import MARK, part_name, sheets
+from kurbel.report.alike import told_once
 
 if TYPE_CHECKING:
     from kurbel.render import Look
@@ -19,20 +20,25 @@ _ACROSS = 9
 _GREEK = {
     "φ": "varphi", "ψ": "psi", "θ": "theta", "ω": "omega", "δ": "delta", "λ": "lambda", "μ": "mu", "η": "eta",
     "π": "pi", "ρ": "varrho", "α": "alpha", "β": "beta", "κ": "kappa", "σ": "sigma", "τ": "tau", "Δ": "Delta",
+    "ε": "varepsilon", "γ": "gamma", "ν": "nu",
+    "ζ": "zeta", "ξ": "xi", "χ": "chi", "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega", "Θ": "Theta", "∠": "angle",
     "Σ": "Sigma", "∮": "oint", "√": "surd", "∞": "infty", "·": "cdot", "×": "times", "≤": "le", "≥": "ge",
     "≈": "approx", "≠": "ne", "→": "to", "±": "pm", "−": "-", "²": "^2", "³": "^3", "°": "^\\circ", "′": "prime",
-    "½": "tfrac12", "¼": "tfrac14", "⅔": "tfrac23", "₀": "_0", "…": "dots",
+    "½": "frac12", "¼": "frac14", "⅔": "frac23", "₀": "_0", "…": "dots",
 }  # fmt: skip
 _POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _SPECIAL = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
     "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", "<": r"\textless{}", ">": r"\textgreater{}",
-    "|": r"\textbar{}", '"': r"\textquotedbl{}",
+    "|": r"\textbar{}", '"': r"\textquotedblright{}", "„": r"\quotedblbase{}", "[": "{[}", "*": "{*}",
 }  # fmt: skip
+"""Behind the end of a row a bracket or a star would belong to it."""
+_DOTS = {"\u0307": "dot", "\u0308": "ddot"}
 
 
 def latex(report: Report, look: Look) -> Iterator[str]:
     """Yield the report as LaTeX, one table after the other."""
+    report = told_once(report)
     yield "% \\usepackage{booktabs, longtable}\n"
     yield f"\\subsection*{{{text(look.charset.text(report.title))}}}\n"
     yield from (text(look.charset.text(one)) + "\n\n" for one in report.head)
@@ -49,10 +55,13 @@ def text(plain: str) -> str:
     >>> print(text("50 % of φ_1 ≤ 90°"))
     50 \\% of $\\varphi$\\_1 $\\le$ 90$^\\circ$
     """
-    return "".join(_SPECIAL.get(one) or _math(one) for one in plain)
+    return "".join(_SPECIAL.get(one) or _math(one) for one in re.findall(".[\u0307\u0308]?", plain, re.DOTALL))
 
 
 def _math(one: str) -> str:
+    """Return a character, or a letter with the dots over it, as LaTeX sets it between words."""
+    if one[1:]:
+        return f"${_letter(one)}$"
     if one in "⁻⁰¹⁴⁵⁶⁷⁸⁹":
         return f"$^{{{one.translate(_POWERS)}}}$"
     found = _GREEK.get(one)
@@ -67,12 +76,18 @@ def symbol(plain: str) -> str:
     >>> print(symbol("P_b"), symbol("φ_P=0"), symbol("ΔE"))
     $P_{\\mathrm{b}}$ $\\varphi_{\\mathrm{P=0}}$ $\\Delta$E
     """
-    found = re.fullmatch(r"([A-Za-zΑ-ω]{1,3})_([\w,=−+-]+)", plain)
+    found = re.fullmatch("((?:[A-Za-zΑ-ω][\u0307\u0308]?){1,3})_([\\w,=−+-]+)", plain)
     if not found:
         return text(plain)
-    name, index = ("".join(f"\\{_GREEK[c]}" if c in _GREEK else c for c in part) for part in found.groups())
+    name, index = ("".join(map(_letter, re.findall(".[\u0307\u0308]?", part))) for part in found.groups())
     index = index.replace("_", "\\_").replace("\\-", "-")
     return f"${name}_{{\\mathrm{{{index}}}}}$"
+
+
+def _letter(one: str) -> str:
+    """Return a letter within a formula, with the dots that stand over it."""
+    base = f"\\{_GREEK[one[0]]}" if one[0] in _GREEK else one[0]
+    return f"\\{_DOTS[one[1]]}{{{base}}}" if one[1:] else base
 
 
 def _angle_tables(report: Report, look: Look) -> Iterator[str]:

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Hashable, Iterable, Sequence
+from dataclasses import fields, is_dataclass
 from itertools import groupby
-from typing import TypeVar
+from typing import Any, TypeVar
 
+import numpy as np
+
+from kurbel.machine import Cylinder
 from kurbel.report.tables import Part, Report
 
 Item = TypeVar("Item")
+_PLACE = ("name", "crank_position", "bank_angle", "axial_position", "counterweights")
+"""Keys of a cylinder that say where on the shaft it stands, and what the shaft carries there."""
 
 
 def together(names: Sequence[str]) -> str:
@@ -36,14 +42,36 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
     return list(groups.values())
 
 
+def gathered(items: Iterable[Item], equal: Callable[[Item, Item], bool]) -> list[list[Item]]:
+    """Return the items in groups of equal ones, in the order of their first ones."""
+    groups: list[list[Item]] = []
+    for item in items:
+        found = next((group for group in groups if equal(group[0], item)), None)
+        groups.append([item]) if found is None else found.append(item)
+    return groups
+
+
+def work_alike(one: Cylinder, other: Cylinder) -> bool:
+    """Whether two cylinders move and are pushed alike, wherever on the shaft they stand."""
+    keys = (field.name for field in fields(Cylinder) if field.name not in _PLACE)
+    return all(_same(getattr(one, key), getattr(other, key)) for key in keys)
+
+
+def _same(one: Any, other: Any) -> bool:
+    if one is other or type(one) is not type(other):
+        return one is other
+    if is_dataclass(one):
+        return all(_same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(_same, one, other))
+    return bool(np.array_equal(one, other))
+
+
 def told_once(report: Report) -> Report:
     """Return the report with its equal cylinders as one part; its title names them where no other part is left."""
     if len(report.parts) < 2 or report.group != "cylinders":
         return report
-    groups: list[list[Part]] = []
-    for part in report.parts:
-        equal = next((group for group in groups if _equal(group[0], part)), None)
-        groups.append([part]) if equal is None else equal.append(part)
+    groups = gathered(report.parts, _equal)
     if len(groups) == len(report.parts):
         return report
     parts = tuple(_as_one(group) for group in groups)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
+from kurbel.report.alike import gathered, together, work_alike
 from kurbel.report.angles import stepped
 from kurbel.report.check import Checked, checked
 from kurbel.report.document import Document, Grid, Item, Section
@@ -169,7 +170,8 @@ def _energy(case: Case, system: str) -> Section | None:
 
     items: list[Item] = []
     with np.errstate(all="ignore"):
-        for forces in case.cylinders:
+        for equal in gathered(case.cylinders, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
+            forces = equal[0]
             try:
                 left = forces.work_left
                 terms = [(name, sign * value) for name, sign in _BALANCE if (value := getattr(forces, name))]
@@ -183,7 +185,15 @@ def _energy(case: Case, system: str) -> Section | None:
             rows.append(("Reaches the shaft, 2π R W per turn", f"{convert(left, 'energy', unit):.5g}", unit))
             open_ = "below 1e-14" if residual is not None and abs(residual) < 1e-14 else f"{residual:.2g}"
             rows.append(("Left open by an independent quadrature, over the turnover", open_, ""))
-            items.append(Grid(forces.drive.name, ("Per cycle", "Energy", "Unit"), tuple(rows), (1,), (2,)))
+            items.append(
+                Grid(
+                    together([one.drive.name for one in equal]),
+                    ("Per cycle", "Energy", "Unit"),
+                    tuple(rows),
+                    (1,),
+                    (2,),
+                )
+            )
     return Section("energy", "Energy balance", tuple(items)) if items else None
 
 

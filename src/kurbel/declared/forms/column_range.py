@@ -22,5 +22,8 @@ class ColumnRange(Patterned):
             refused(f"{text} runs backward or names a column twice; write for instance '2-61'")
         return found if len(found) <= _MOST else refused(f"{text} are {len(found)} columns; at most {_MOST} are read")
 
+    def expected(self) -> str:
+        return "the numbers of columns, such as '2-61', or in quotation marks '2, 5, 7-9'"
+
     def written(self) -> str:
-        return "`2-61`, or `2, 5, 7-9`"
+        return "`2-61`, or in quotation marks `'2, 5, 7-9'`"

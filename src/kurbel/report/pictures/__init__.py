@@ -12,6 +12,7 @@ import numpy as np
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.near_words import did_you_mean
+from kurbel.report.alike import gathered, together, work_alike
 from kurbel.report.pictures.picture import Panel, Picture
 from kurbel.report.tables import cylinder_meant
 
@@ -271,7 +272,7 @@ def _pictures(case: Case, declared: Declared, wish: Wish) -> Iterator[Picture]:
 
 
 def _sources(case: Case, declared: Declared, wish: Wish) -> Iterator[tuple[Source, str]]:
-    """Yield what a picture is drawn from, each with the name of its cylinder."""
+    """Yield what a picture is drawn from, each with the name of its cylinder; equal ones are drawn once."""
     from kurbel.report.pictures.source import Source
 
     if declared.command in _OF_MACHINE:
@@ -280,12 +281,12 @@ def _sources(case: Case, declared: Declared, wish: Wish) -> Iterator[tuple[Sourc
         for part in case.bearings.parts:
             yield Source(part, wish.system, wish.fineness), part.name
     else:
-        for one in case.cylinders:
-            if wish.cylinder in (None, one.drive.name):
-                if declared.command == "forces":
-                    one.refuse_locking()
-                several = len(case.cylinders) > 1
-                yield Source(one, wish.system, wish.fineness, wish.angles), one.drive.name if several else ""
+        wanted = [one for one in case.cylinders if wish.cylinder in (None, one.drive.name)]
+        for equal in gathered(wanted, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
+            if declared.command == "forces":
+                equal[0].refuse_locking()
+            names = together([one.drive.name for one in equal]) if len(case.cylinders) > 1 else ""
+            yield Source(equal[0], wish.system, wish.fineness, wish.angles), names
 
 
 _OF_MACHINE: dict[str, Callable[[Case], Any]] = {

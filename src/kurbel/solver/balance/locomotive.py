@@ -16,20 +16,20 @@ if TYPE_CHECKING:
 
 
 class LocomotiveBalance:
-    """The key values of a locomotive, in SI, at the angular velocity of its machine.
+    """The key values of a locomotive, in SI, at the angular velocity of its machine; None what hangs on one not given.
 
     The counterweights balance all that turns; what they have more than that, so as to balance a share of what goes to
     and fro, loads and lifts the wheel in which it stands: its hammer blow.
     """
 
     def __init__(self, balance: MachineBalance, given: Locomotive) -> None:
-        assert balance.omega
-        self._balance, self._given, self._omega = balance, given, balance.omega
+        self._balance, self._given = balance, given
+        self._square = balance.omega**2 if balance.omega else None
 
     @property
     def train_speed(self) -> float | None:
         """Speed of the train in m/s; None without the diameter of the wheels."""
-        return self._rolling(self._omega)
+        return self._rolling(self._balance.omega) if self._balance.omega else None
 
     def _rolling(self, omega: float) -> float | None:
         return self._given.wheel_diameter and self._given.wheel_diameter / 2 * omega
@@ -43,7 +43,7 @@ class LocomotiveBalance:
     def swaying_couple(self) -> Extreme | None:
         """Largest moment in N m of the free forces along the stroke lines about the upright axis."""
         moment = self._balance.free.moment
-        return self._balance.largest(moment and moment.along)
+        return None if moment is None else self._balance.largest(moment.along)
 
     def _in_wheels(self, weights: Iterable[tuple[str, Weight]]) -> tuple[complex, complex]:
         """Return the sums of weights in the two wheels, as by a lever, in kg m; each with what it is of."""
@@ -57,9 +57,9 @@ class LocomotiveBalance:
         return self._in_wheels((*rotating, *(("counterweights", one) for one in self._balance.counterweights)))
 
     @property
-    def hammer_blow(self) -> float:
+    def hammer_blow(self) -> float | None:
         """Largest force in N by which a wheel is loaded and lifted."""
-        return self._most * self._omega * self._omega
+        return None if self._square is None else self._most * self._square
 
     @property
     def _most(self) -> float:
@@ -80,8 +80,8 @@ class LocomotiveBalance:
     @property
     def share_allowed(self) -> float | None:
         """Largest share of the reciprocating masses of which the counterweights keep the limit of the hammer blow."""
-        if self._given.hammer_limit is None:
+        if self._given.hammer_limit is None or self._square is None:
             return None
         whole = self._in_wheels((one.drive.name, one.weight(one.drive.mass)) for one in self._balance.throws)
-        blow = max(map(abs, whole)) * self._omega * self._omega
+        blow = max(map(abs, whole)) * self._square
         return min(1.0, self._given.hammer_limit / blow) if blow else 1.0
