@@ -12,6 +12,7 @@ import pytest
 
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPart, ShaftPiece
+from kurbel.machine.shaft_list import line_of
 from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.numerics.grid import Cuts
@@ -251,7 +252,7 @@ def test_the_damping_takes_what_the_torques_give() -> None:
 
 
 def shaft(effort: Any, speed: float, *parts: Any, **more: Any) -> ShaftVibration:
-    return Case(Machine((), effort=effort, speed=speed, shaft=ShaftLine.of_parts(parts), **more)).torsion
+    return Case(Machine((), effort=effort, speed=speed, shaft=line_of(parts), **more)).torsion
 
 
 def test_two_masses_in_closed_form() -> None:

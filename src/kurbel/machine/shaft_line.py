@@ -187,13 +187,3 @@ class ShaftLine:
     pieces: tuple[ShaftPiece, ...]
     ground: str = ""
     load: int = -1
-
-    @classmethod
-    def of_parts(cls, parts: Sequence[ShaftPart | str], cylinders: Sequence[str] = ()) -> ShaftLine:
-        """Return the line that a list of a machine file describes; cylinders: the names of those of the machine.
-
-        Raises RuleError.
-        """
-        from kurbel.machine.shaft_list import line_of
-
-        return line_of(parts, cylinders)

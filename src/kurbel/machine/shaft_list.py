@@ -80,7 +80,7 @@ def _of_load(parts: Sequence[Part]) -> Iterator[Fault]:
         yield Fault((gears[0], "gear"), "cranks stand before and behind the gear; they turn at one speed")
 
 
-def line_of(parts: Sequence[Part], cylinders: Sequence[str]) -> ShaftLine:
+def line_of(parts: Sequence[Part], cylinders: Sequence[str] = ()) -> ShaftLine:
     """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError."""
     refuse(*_of_cylinders(parts, cylinders), *_of_order(parts), *_of_load(parts))
     return _Builder(parts).line()

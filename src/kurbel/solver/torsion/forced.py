@@ -12,7 +12,7 @@ from kurbel.machine.shaft_line import ShaftLine
 from kurbel.numerics.waves import crests
 from kurbel.solver.shaft_line.chain import Chain
 from kurbel.solver.shaft_line.response import responding, twisting
-from kurbel.solver.turning.harmonics import MachineOrders, spectrum
+from kurbel.solver.turning.harmonics import MachineOrders, Spectrum, spectrum
 from kurbel.solver.turning.speed_lines import speed_law
 
 if TYPE_CHECKING:
@@ -156,10 +156,7 @@ class Vibration:
 
     def over(self, piece: int, degrees: Array, speed: int = 0) -> Array:
         """Return the torque in a piece in N m at crank angles (n,) in degrees."""
-        turned = np.radians(np.mod(np.multiply.outer(degrees, self.acting.orders), 360.0))
-        amplitudes = self.torques[piece, speed]
-        wave = np.cos(turned) @ amplitudes.real - np.sin(turned) @ amplitudes.imag
-        return np.asarray(self.means[piece] + wave)
+        return Spectrum(self.means[piece], self.acting.orders, self.torques[piece, speed]).at(degrees)
 
     @cached_property
     def power(self) -> Array:
