@@ -21,7 +21,8 @@ def around(before: Array, after: Array, sides: Array) -> Array:
     if not all(np.isfinite(one).all() for one in (before, after, sides)):
         raise np.linalg.LinAlgError("beyond the range of floats")  # LAPACK itself prints it, or answers with anything
     if count == 1:
-        return np.asarray(np.linalg.lstsq(before[0] + after[0], sides[0], rcond=1e-13)[0][None])
+        # a direction that is open has a singular value of rounding, 1e-13 as it may be; one of 1e-11 has no digit left
+        return np.asarray(np.linalg.lstsq(before[0] + after[0], sides[0], rcond=1e-11)[0][None])
     even, odd = slice(0, count - 1, 2), slice(1, count, 2)
     turn, upper = np.linalg.qr(np.concatenate((after[even], before[odd]), axis=1), mode="complete")
     empty = np.zeros_like(before[odd])
