@@ -31,8 +31,16 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("forces", "--where", "P = 0"),
     ("forces", "--over", "x", "--units", "imperial", "--layout", "rows"),
     ("forces", "-f", "json", "--set", "rotation=under"),
+    ("forces", "--each-cycle"),
+    ("forces", "--cycle", "2", "--key-values"),
     ("flywheel",),
     ("stress",),
+    ("balance",),
+    ("balance", "--orders", "--compare", "-f", "json"),
+    ("balance", "--units", "technical", "-f", "md"),
+    ("bearings",),
+    ("bearings", "-f", "csv", "--units", "imperial"),
+    ("bearings", "-f", "json", "--set", "rotation=under"),
 )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -57,7 +58,7 @@ def mechanism(random: Random) -> tuple[str, Keys]:
 def pressure(random: Random, four: bool) -> Any:
     """Return what stands for one end of an indicator."""
     high, low = number(random, 1, 60), number(random, 0.2, 0.9)
-    kind = random.choice(["card", "constant", "trace", "ideal", "one", "drawn"])
+    kind = random.choice(["card", "constant", "trace", "trace", "ideal", "one", "drawn"])
     if kind == "one":
         return f"{high} bar"
     if kind == "drawn" and not four:
@@ -65,10 +66,7 @@ def pressure(random: Random, four: bool) -> Any:
     if kind == "constant" and not four:
         return {"constant": {"expansion": f"{high} bar", "compression": f"{low} bar"}}
     if kind == "trace":
-        angles = np.linspace(0, 720 if four else 360, int(random.integers(8, 400)))
-        wave = low + (high - low) * np.exp(-((np.minimum(angles, angles[-1] - angles) / number(random, 5, 60)) ** 2))
-        points = [[float(f"{a:.6g}"), float(f"{p:.6g}")] for a, p in zip(angles, wave)]
-        return {"trace": {"unit": "bar", "points": points}}
+        return {"trace": trace(random, four, high, low)}
     if kind == "ideal":
         if four:
             return {
@@ -92,6 +90,37 @@ def pressure(random: Random, four: bool) -> Any:
     return card | ({"intake": line(low, low), "exhaust": line(low, low)[::-1]} if four else {})
 
 
+def trace(random: Random, four: bool, high: float, low: float) -> Keys:
+    """Return a measured trace, one cycle or several turns, with keys of which some are odd, or do not go together."""
+    period = 720 if four else 360
+    angles = np.linspace(0, period, int(random.integers(8, 400)))
+    laps = int(random.choice([1, 1, 1, 2, 3]))
+    wave = low + (high - low) * np.exp(-((np.minimum(angles, angles[-1] - angles) / number(random, 5, 60)) ** 2))
+    wave = np.tile(wave, laps) + maybe_other(random, 0.3, 0.0, [0.01, 0.1, 0.5]) * random.standard_normal(
+        laps * len(wave)
+    )
+    counted = np.tile(angles, laps) * maybe_other(random, 0.05, 1.0, [math.pi / 180, 0.5, 2.0, -1.0, 1e-4])
+    counted = counted + maybe_other(random, 0.2, 0.0, [-180.0, -360.0, 17.3])
+    points = [[float(f"{a:.6g}"), float(f"{p:.6g}")] for a, p in zip(counted, wave)]
+    if random.random() < 0.1:
+        del points[int(random.integers(len(points))) :: int(random.integers(1, 60))]
+    keys: Keys = {"unit": str(maybe_other(random, 0.2, "bar", ["kPa", "psi", "Pa"])), "points": points}
+    keys |= maybe(random, 0.2, {"angle_zero": f"{number(random, -720, 720)} deg"})
+    keys |= maybe(random, 0.1, {"angle_sense": str(random.choice(["with", "against"]))})
+    keys |= maybe(random, 0.1, {"scale": float(random.choice([-1.0, 0.0, 1e-9, 20.0, 1e12]))})
+    keys |= maybe(random, 0.1, {"offset": f"{number(random, -60, 60)} bar"}) | maybe(random, 0.1, {"drift": "linear"})
+    known = {"angle": f"{number(random, -1000, 1000)} deg", "pressure": f"{number(random, -2, 9)} bar"}
+    keys |= maybe(random, 0.2, {"pegging": "ambient" if random.random() < 0.5 else known})
+    keys |= maybe(random, 0.3, {"compression_ratio": 1 + 10 ** number(random, -9, 6)})
+    keys |= maybe(random, 0.1, {"clearance": 10 ** number(random, -7, 3)})
+    return keys | maybe(random, 0.02, {"skip_rows": 1, "angle_step": "1 deg"})
+
+
+def maybe_other(random: Random, share: float, usual: Any, others: list[Any]) -> Any:
+    """Return what is usual, or one of the others."""
+    return others[int(random.integers(len(others)))] if random.random() < share else usual
+
+
 def drawn(random: Random, high: float, low: float) -> Keys:
     """Return a card on paper: its lines in millimetres, or its area or mean height by planimeter."""
     length = number(random, 50, 120)
@@ -109,8 +138,47 @@ def friction(random: Random) -> Keys:
     shoe = {"guide": {"length": size(random, 0.2, "m"), "width": size(random, 0.1, "m")}}
     rings = {"rings": {"count": 3, "height": size(random, 0.01, "m"), "pressure": "2 bar", "coefficient": 0.1}}
     keys = maybe(random, 0.7, crosshead | maybe(random, 0.4, shoe)) | maybe(random, 0.3, rings)
-    keys |= maybe(random, 0.5, {"constant": size(random, 300, "N")})
+    keys |= maybe(random, 0.5, {"constant": size(random, 300, "N")}) | maybe(random, 0.4, rubbing(random))
     return keys or crosshead
+
+
+def rubbing(random: Random) -> Keys:
+    """Return the friction of pins and journals, each with its diameter."""
+    keys: Keys = {}
+    for name, diameter in (("crank_pin",) * 2, ("crosshead_pin",) * 2, ("journals", "journal")):
+        given = {name: number(random, 0, 0.2), f"{diameter}_diameter": size(random, 0.1, "m")}
+        keys |= maybe(random, 0.7, given)
+    return keys | ({"crosshead_pin_length": size(random, 0.1, "m")} if "crosshead_pin" in keys else {})
+
+
+def counterweight(random: Random) -> Keys:
+    """Return a weight by its product, or by mass and radius; now and then without its place."""
+    pair = {"mass": size(random, 20, "kg"), "radius": size(random, 0.2, "m")}
+    keys = pair if random.random() < 0.5 else {"product": size(random, 5, "kg m")}
+    keys |= maybe(random, 0.5, {"angle": f"{number(random, -360, 360)} deg"})
+    return keys | maybe(random, 0.5, {"axial_position": f"{number(random, -2, 2)} m"})
+
+
+def counterweights(random: Random) -> Keys:
+    """Return counterweights: a share, a share in two planes, or some one by one."""
+    if random.random() < 0.4:
+        return {"counterweights": [counterweight(random) for _ in range(int(random.integers(0, 4)))]}
+    planes = {"planes": [f"{number(random, -2, 0)} m", f"{number(random, 0, 2)} m"]}
+    return {"counterweights": {"share": number(random, 0, 1)} | maybe(random, 0.2, planes)}
+
+
+def balancing(random: Random) -> Keys:
+    """Return what is put on a machine to balance it: counterweights, shafts, the wheels of a locomotive."""
+    shafts = [
+        counterweight(random) | {"order": int(random.integers(1, 9)), "sense": str(random.choice(["with", "against"]))}
+        for _ in range(int(random.integers(1, 4)))
+    ]
+    wheels: Keys = {"wheel_distance": size(random, 1.5, "m")} | maybe(random, 0.7, {"wheel_diameter": "1.4 m"})
+    wheels |= maybe(random, 0.7, {"wheel_load": size(random, 7e4, "N")})
+    wheels |= maybe(random, 0.7, {"hammer_limit": size(random, 1e4, "N")})
+    keys = maybe(random, 0.3, counterweights(random)) | maybe(random, 0.2, {"balance_shafts": shafts})
+    keys |= maybe(random, 0.1, {"locomotive": wheels})
+    return keys | maybe(random, 0.1, {"moment_reference": f"{number(random, -2, 2)} m"})
 
 
 def cylinder(random: Random, four: bool) -> Keys:
@@ -123,7 +191,7 @@ def cylinder(random: Random, four: bool) -> Keys:
         ends = {"head_end": pressure(random, four)} | maybe(random, 0.4, {"crank_end": "mirrored"})
         keys |= {"indicator": {"pressures": str(random.choice(["gauge", "absolute"]))} | ends}
         keys |= maybe(random, 0.2, {"crank_end_rod": "20 mm"})
-    if slides and random.random() < 0.7:
+    if slides and random.random() < 0.85:
         masses: Keys = {str(random.choice(["piston", "reciprocating"])): size(random, 100, "kg")}
         if rod and "piston" in masses and random.random() < 0.6:
             exact = {
@@ -134,7 +202,9 @@ def cylinder(random: Random, four: bool) -> Keys:
             masses["connecting_rod"] = (
                 exact if random.random() < 0.5 else {"mass": size(random, 60, "kg"), "share": number(random, 0.2, 0.8)}
             )
+        masses |= maybe(random, 0.3, {"rotating": size(random, 50, "kg")})
         keys |= {"masses": masses} | maybe(random, 0.3, {"inclination": f"{number(random, -180, 180)} deg"})
+        keys |= maybe(random, 0.2, counterweights(random))
     if name == "slider-crank" and "bore" in keys:
         keys |= maybe(random, 0.5, {"friction": friction(random)})
     if slides and "bore" not in keys:
@@ -192,14 +262,22 @@ def cylinders(random: Random, four: bool) -> Keys:
     for _ in range(count - 1):
         keys = {"like": "first"} | maybe(random, 0.3, {"bore": size(random, 0.3, "m")})
         found.append(cylinder(random, four) if kind == "list" else keys)
+    found = [each | maybe(random, 0.7, standing(random)) for each in found]
     if random.random() < 0.5:
         return {"cylinders": found} | order
     return {"cylinders": [each | {"crank_position": f"{number(random, 0, 720)} deg"} for each in found]}
 
 
+def standing(random: Random) -> Keys:
+    """Return where a cylinder stands, at one of few angles and places, so that some share a pin."""
+    places = {"axial_position": f"{int(random.integers(0, 4)) * 300} mm"}
+    return maybe(random, 0.5, {"bank_angle": f"{int(random.integers(-2, 3)) * 45} deg"}) | maybe(random, 0.8, places)
+
+
 EXPECTED = {
     **{"c_max": "6 m/s ± 10 %", "stroke": "0.5 m ± 0.4 m", "T_peak": ["1 N", "90 kN"], "alpha_max": "3 rad/s2 ± 1 %"},
     **{"work": "5 kJ ± 3 kJ", "delta": "1/100 ± 20 %", "S_max": "50 kN ± 50 %"},
+    **{"F_free_max": "5 kN ± 50 %", "load_max": "9 kN ± 50 %", "reversal_angle": "90 deg ± 50 %"},
 }
 
 
@@ -216,6 +294,7 @@ def machine_file(random: Random) -> str:
         keys |= cylinders(random, four) if random.random() < 0.3 else cylinder(random, four)
     overhung = {"overhung": True, "b": "900 mm", "flywheel_position": "-300 mm"} if random.random() < 0.5 else {}
     keys |= turning(random) | maybe(random, 0.2, {"crankshaft": CRANKSHAFT | overhung})
+    keys |= {} if "effort" in keys else {**balancing(random), **keys}
     keys |= maybe(random, 0.2, {"brake_torque": size(random, 2e3, "N m")})
     keys |= maybe(
         random,
@@ -224,6 +303,8 @@ def machine_file(random: Random) -> str:
             "limits": {"stroke": "5 m"}
             | maybe(random, 0.8, {"c_max": "6 m/s"})
             | maybe(random, 0.3, {"delta": 0.01, "P_peak": "50 kN"})
+            | maybe(random, 0.3, {"M_free_max": "1 kN m", "pressure_velocity": "4 N/mm2 m/s"})
+            | maybe(random, 0.3, {"reversal_angle": "15 deg", "reversal_ratio": "3 %", "unloaded_arc": "30 deg"})
         },
     )
     figures = {key: value for key, value in EXPECTED.items() if random.random() < 0.3}

@@ -133,3 +133,18 @@ def test_a_case_answers_by_name() -> None:
     case = Case(loads(V90))
     assert case["counterweight_best"].value == pytest.approx(0.1)
     assert case["F_max"].unit == "N"
+
+
+@pytest.mark.parametrize("width", [40, 80])
+@pytest.mark.parametrize("name", ["boxer", "locomotive-two-cylinders", "v8-cross-plane", "four-in-line"])
+def test_tables_keep_within_the_width_asked_for(name: str, width: int) -> None:
+    """Orders and weights were 89 columns wide; what says the row is said again in every part."""
+    file = str(CONFIGS / f"{name}.yaml")
+    lines = CliRunner().invoke(kurbel, ["balance", file, "--orders", "--width", str(width)]).stdout.splitlines()
+    tables = lines[: next(k for k, text in enumerate(lines) if text.startswith("φ is the angle"))]
+    assert max(map(len, tables)) <= width
+    heads = [text.split() for text in tables if text.split()[:1] == ["n"]]
+    assert len(heads) >= 2
+    columns = [symbol for head in heads for symbol in head[1:]]
+    assert {"F_+", "F_−", "F_a", "M_+", "M_−", "∠M_−"} <= set(columns)
+    assert len(columns) == len(set(columns))

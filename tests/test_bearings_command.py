@@ -55,9 +55,18 @@ def test_one_bearing_alone() -> None:
     text = run("bearings", "-", "--cylinder", "bearing B", "--key-values").stdout
     assert "Lagerkräfte: bearing B" in text
     assert "F_L,max" in text
-    wrong = run("bearings", "-", "--cylinder", "cylinder 1")
+    wrong = run("bearings", "-", "--cylinder", "cylinder 2")
     assert wrong.exit_code == 2
     assert "it has those of crank pin, crosshead pin, bearing A, bearing B" in wrong.stderr
+
+
+@pytest.mark.parametrize(("asked", "name"), [("2", "b"), ("b", "b"), ("1", "a")])
+def test_the_pins_of_one_cylinder_by_its_name_or_its_number(asked: str, name: str) -> None:
+    """`--cylinder 2` was taken for the cylinder's name, of which bearings were said to have no results."""
+    one = "name: a, crank: 0.1 m, rod: 0.4 m, masses: {reciprocating: 9 kg}"
+    two = f"speed: 100 rpm\ncylinders: [{{{one}}}, {{like: a, name: b, crank_position: 90 deg}}]"
+    found = json.loads(run("bearings", "-", "--cylinder", asked, "-f", "json", file=two).stdout)
+    assert [part["name"] for part in found["bearings"]] == [f"crank pin of {name}", f"crosshead pin of {name}"]
 
 
 def test_several_throws_are_said_to_be_statically_determinate() -> None:

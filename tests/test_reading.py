@@ -13,7 +13,8 @@ CODE = [file for folder in ("src", "tests", "docs", "benchmarks") for file in (R
 PAGES = [*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md")]
 FILE = re.compile(r"(?<![\w/.])[\w./-]*\w\.(?:md|py|yaml|svg|csv|json|toml|txt|expected)\b")
 NAME = re.compile(r"\bkurbel(?:\.[A-Za-z_]\w*)+")
-SHOWN = re.compile(r'title="([^"]+)"')
+SHOWN = re.compile(r'(?:title="|-o )([\w./-]+)')
+"""Files that a page shows, or that its commands write."""
 READERS = {
     "engine.yaml",
     "MACHINE.yaml",
@@ -24,9 +25,10 @@ READERS = {
     "indicator.csv",
 }
 READERS |= {"forces.md", "FILE.svg", "kurbel.schema.json"}
-READERS |= {"run8.csv", "motored.csv", "many.yaml", "diagram.csv", "p.csv"}
-ELSEWHERE = READERS | {"examples/ICE_example.py", "kurbel.mechanisms.harmonic_cam"}
-"""Files of the reader's own, one of opentorsion, and the mechanism that the pages add as an example."""
+READERS |= {"k.csv", *(f"part-{number}.csv" for number in (1, 2, 3, 4))}
+READERS |= {"run8.csv", "motored.csv", "many.yaml", "diagram.csv", "p.csv", "before.yaml", "after.yaml", "effort.svg"}
+ELSEWHERE = READERS | {"examples/ICE_example.py", "kurbel.mechanisms.harmonic_cam", "docs/symbols.md"}
+"""Files of the reader's own, one of opentorsion, the mechanism that the pages add as an example, and a page of old."""
 
 
 def docstrings(file: Path) -> Iterator[str]:

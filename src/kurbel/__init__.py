@@ -33,12 +33,14 @@ __all__ = [
     "load",
     "loads",
     "solve",
+    "sweep",
 ]
 
 TYPE_CHECKING = False  # as in typing, whose import an interrupt could hit before anything guards it
 if TYPE_CHECKING:
     from typing import Any
 
+    from kurbel.designs.asked import sweep as sweep
     from kurbel.errors import KurbelError as KurbelError
     from kurbel.machine import Cylinder as Cylinder
     from kurbel.machine import Machine as Machine
@@ -61,6 +63,7 @@ _HOMES = {
     "draw": "kurbel.notebook",
     "load": "kurbel.machine_file",
     "loads": "kurbel.machine_file",
+    "sweep": "kurbel.designs.asked",
 }
 """Public name -> module; nothing is imported before it is used, so that the command line starts quickly."""
 

@@ -50,6 +50,15 @@ class CrankAngle(NamedTuple):
         return where(self.cos >= 0, 1 + abs(self.cos), self.sin * self.sin / (1 + abs(self.cos)))
 
 
+def within_cycle(degrees: Array, cycle: float) -> Array:
+    """Return angles (n,) in degrees as those of a cycle, from 0 on and less than its end."""
+    import numpy as np
+
+    if degrees.size and degrees.min() >= 0 and degrees.max() <= cycle:  # as grids have them: numpy.mod takes its time
+        return np.where(degrees == cycle, 0.0, degrees)
+    return np.asarray(np.mod(degrees, cycle))
+
+
 def jet_angle(degrees: Array, beyond: Array | float = 0.0) -> CrankAngle:
     """Return the crank angles (n,) in degrees, as `CrankAngle.of`, with sine and cosine as jets."""
     from kurbel.numerics.jet import Jet
@@ -75,7 +84,7 @@ def _sin_cos_array(degrees: float | Array, beyond: float | Array) -> tuple[Array
 
     if not np.isfinite(degrees).all():
         raise ValueError("a crank angle must be finite")
-    rest = np.fmod(degrees, 360.0)
+    rest = degrees if np.abs(degrees).max(initial=0.0) <= 720.0 else np.fmod(degrees, 360.0)
     quarter = np.rint(rest / 90.0)
     rest = (rest - 90.0 * quarter + beyond) * _RADIANS_PER_DEGREE
     sin, cos = np.sin(rest), np.cos(rest)

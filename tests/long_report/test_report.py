@@ -20,6 +20,7 @@ from kurbel.machine_file import loads
 from kurbel.machine_file.given import given
 from kurbel.report.pictures import Wish, pictures
 from kurbel.solver.case import Case
+from representative import few
 
 LARGEST = 600_000
 ATTACK = "<script>alert(1)</script> \x1b[31m & \"'"
@@ -64,7 +65,10 @@ def test_the_energy_balance_closes_on_the_page() -> None:
     assert "below 1e-14" in rows.group(1) or re.search(r"e-1[0-9]", rows.group(1))
 
 
-@pytest.mark.parametrize("name", ["gas-engine", "diesel-trace", "crank-rocker", "punch", "coupled-blower"])
+WITHOUT_A_FAULT = ["gas-engine", "diesel-trace", "crank-rocker", "punch", "coupled-blower"]
+
+
+@pytest.mark.parametrize("name", few(WITHOUT_A_FAULT, ["crank-rocker", "punch"]))
 def test_the_page_is_html_without_a_fault(name: str) -> None:
     html5lib.HTMLParser(strict=True).parse(page_of(name))
 

@@ -103,6 +103,13 @@ def test_forms_of_files(tmp_path: Path, form: str) -> None:
         meant(one)
 
 
+def test_a_heading_of_figures(tmp_path: Path) -> None:
+    """Speed and power above the figures are no sample at 1500 deg."""
+    with pytest.raises(MachineFileError, match=r"line 2: the angle begins anew.* a heading\?"):
+        machine(tmp_path, "1500,12.5\n" + rows())
+    meant(machine(tmp_path, "1500,12.5\n" + rows(), ", skip_rows: 1"))
+
+
 def test_gauge_kilopascals(tmp_path: Path) -> None:
     one = machine(tmp_path, rows(pressures=PRESSURES * 100), unit="kPa")
     assert trace_of(one).pressures[:-1] == pytest.approx(PRESSURES * 1e5)
@@ -128,6 +135,38 @@ def test_the_advice_reads_the_file(tmp_path: Path, content: str | bytes, keys: s
     advice = re.findall(r"'([a-z_]+: [a-z0-9]+)'", message.partition("; write")[2])
     assert advice, message
     meant(machine(tmp_path, content, "".join(f", {one}" for one in advice) + keys))
+
+
+PLAIN = "figures are plain numbers, such as 1013.25 or 1.01325e3: export them so"
+UNREADABLE: dict[str, tuple[str, str, str]] = {
+    "times of day": (rows(ANGLES, form="12:00:%s"), "", f"line 1: '12:00:0' is no number; {PLAIN}"),
+    "thousands": (
+        "".join(f"{a:.10g};{p * 1000:,.1f}\n" for a, p in zip(ANGLES, PRESSURES)),
+        ", delimiter: semicolon",
+        f"is no number; {PLAIN}",
+    ),
+    "units in cells": (rows(form="%s u"), "", f"line 1: column 1 holds no number; {PLAIN}"),
+    "exponents of Fortran": (rows(form="%sD0"), "", f"line 1: column 1 holds no number; {PLAIN}"),
+    "another file": ("cycle: four-stroke\nspeed: 1500 rpm\n", "", "line 1 has no column 2; is it a file of figures?"),
+    "too few columns": (rows(), ", pressure_columns: 2-61", "line 1 has no column 61: 0,37.661; it has 2 only"),
+    "no angles": (
+        "".join(f"{p:.3f}\n" for p in PRESSURES),
+        "",
+        "if it has no angles, write 'pressure_column: 1' and 'angle_step: 0.5 deg', say",
+    ),
+    "a last line": (rows() + "\nEnd\n", "", "line 362 has no column 2; leave such lines out, or mend them"),
+    "an empty cell": (rows().replace("\n20,", "\n20,#"), "", "holds no number; leave such lines out, or mend them"),
+}
+
+
+@pytest.mark.parametrize("name", UNREADABLE)
+def test_no_advice_leads_in_a_circle(tmp_path: Path, name: str) -> None:
+    """No heading is seen where the lines below are no better; what stands in the way is named instead."""
+    content, keys, said = UNREADABLE[name]
+    with pytest.raises(MachineFileError) as caught:
+        machine(tmp_path, content, keys)
+    assert said in caught.value.faults[0].message
+    assert "skip_rows" not in caught.value.faults[0].message
 
 
 @pytest.mark.parametrize(
@@ -159,8 +198,13 @@ def test_what_is_no_text_is_named(tmp_path: Path, begin: bytes, said: str) -> No
         (", pressure_columns: 61-2", "runs backward or names a column twice"),
         (", pressure_columns: 1-3", "column 1 is that of the angles"),
         (", pressure_columns: 2-4", "line 1 has no column 4"),
+        (", pressure_columns: [2, 3]", "or in quotation marks '2, 5, 7-9', got a list"),
+        (", angle_unit: s, recorded_speed: 1 rpm", "are 'recorded_speed' and 'angle_unit' (s or ms) right?"),
         (", pressure_column: 2, pressure_columns: 2-4", "say the same thing"),
-        (", pressure_columns: two", "expected the numbers of columns, such as '2-61', got 'two'"),
+        (
+            ", pressure_columns: two",
+            "or in quotation marks '2, 5, 7-9', got 'two'",
+        ),
         (", angle_column: 1, angle_step: 2 deg", "say the same thing"),
         (", pegging: {angle: 5 deg}", "'pressure' is missing"),
         (", angle_zero: {motored: p.csv}", "'loss_angle' is missing"),

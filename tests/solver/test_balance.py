@@ -14,6 +14,8 @@ from kurbel import loads
 from kurbel.errors import UsageError
 from kurbel.numerics.enclosing import smallest_circle
 from kurbel.numerics.fourier import coefficients
+from kurbel.solver.balance.best import least
+from kurbel.solver.balance.circles import Circles, unit_vectors
 from kurbel.solver.balance.machine_balance import MachineBalance
 from kurbel.solver.case import Case
 
@@ -341,6 +343,23 @@ def test_a_locomotive() -> None:
     assert loco.train_speed == pytest.approx(10 * math.pi * 1.7)
 
 
+@pytest.mark.parametrize("speed", ["", "speed: 0 1/s"])
+def test_the_speed_at_which_a_wheel_lifts_does_not_hang_on_that_of_the_machine(speed: str) -> None:
+    """u ω² = Q: at 10 rev/s the hammer blow of u kg m is u (20π)² N."""
+    wheels = (
+        "locomotive={wheel_distance: 1.6 m, wheel_load: 80 kN, wheel_diameter: 1.7 m}",
+        "counterweights={share: 0.6}",
+    )
+    still = balance_of(TWO_CRANKS.replace("speed: 600 rpm", speed), *wheels).locomotive
+    turning = balance_of(TWO_CRANKS, *wheels).locomotive
+    assert still is not None
+    assert turning is not None
+    assert turning.hammer_blow is not None
+    assert still.hammer_speed == pytest.approx(10 * math.sqrt(80e3 / turning.hammer_blow), rel=1e-14)
+    assert still.hammer_train_speed == pytest.approx(still.hammer_speed * math.pi * 1.7, rel=1e-14)
+    assert (still.train_speed, still.hammer_blow, still.share_allowed) == (None, None, None)
+
+
 def test_the_book_beside_the_exact() -> None:
     found = balance_of(FOUR)
     assert found.book is not None
@@ -425,6 +444,32 @@ def test_the_carriers_alone_have_the_same_smallest_circle(seed: int) -> None:
     circle = smallest_circle(points)
     assert max(abs(one - circle.centre) for one in points) == pytest.approx(circle.radius, rel=1e-12)
     assert smallest_circle(list(circle.carriers)).radius == pytest.approx(circle.radius, rel=1e-12)
+
+
+def random_circles(seed: int) -> Circles:
+    random = np.random.default_rng(seed)
+    forward, backward = ((random.normal(size=(5, 2)) @ [1, 1j]) * 0.3 ** np.arange(5) for _ in range(2))
+    return Circles(forward, backward)
+
+
+@pytest.mark.parametrize(
+    "products",
+    [balance_of(TWO_CRANKS).bare.force, balance_of(single(1.2)).bare.force, *map(random_circles, range(6))],
+)
+def test_no_weight_beside_the_best_one_leaves_less(products: Circles, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two cranks at 90° two points carry the circle and the third all but does: to exchange points alone took 17
+    rounds, each through the whole turn."""
+    turned: list[complex] = []
+    plainly = Circles.turned_by
+    monkeypatch.setattr(Circles, "turned_by", lambda self, weight: turned.append(weight) or plainly(self, weight))
+    found = least(products)
+    assert len(turned) <= 5
+    top = found.left.summits[0].value
+    assert np.abs(found.left.at(np.linspace(0, 360, 2001))).max() <= top * (1 + 1e-12)
+    for degrees in np.linspace(3, 318, 8):
+        for way in (1e-3, 1e-6):
+            aside = plainly(products, found.weight + way * top * complex(unit_vectors(degrees)))
+            assert aside.summits[0].value >= top * (1 - 1e-12)
 
 
 def test_wheels_need_to_know_where_the_cylinders_stand() -> None:

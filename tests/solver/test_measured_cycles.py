@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 import statistics
 from functools import cache, partial
 from pathlib import Path
@@ -20,7 +21,9 @@ from indicated import RATIO, Engine, absolute, cycles, fraction, indicated
 from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError, UsageError
 from kurbel.machine_file import load
-from kurbel.machine_file.motored import _vertex
+from kurbel.machine_file.motored import Motored, dead_centre
+from kurbel.machine_file.samples import Layout
+from kurbel.numerics.vertex import vertex
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
@@ -334,9 +337,27 @@ def test_the_dead_centre_of_a_motored_trace(tmp_path: Path, zero: float, noise: 
 
 def test_the_vertex_of_a_parabola_is_exact() -> None:
     angles = np.arange(-10.0, 10.1, 0.5)
-    found = _vertex(angles, 40 - 0.03 * (angles - 1.234) ** 2, 6.0)
-    assert found.degrees == pytest.approx(1.234, abs=1e-12)
+    found = vertex(angles, 40 - 0.03 * (angles - 1.234) ** 2, 1.0, 6.0)
+    assert found is not None
+    assert found.place == pytest.approx(1.234, abs=1e-12)
     assert found.error < 1e-10
+
+
+@pytest.mark.parametrize(("step", "noise"), [(0.1, 0.3), (0.5, 0.3), (1.0, 0.3)])
+def test_noise_is_no_combustion_and_the_stated_uncertainty_covers_it(tmp_path: Path, step: float, noise: float) -> None:
+    """A dead centre at 0.37° under 0.3 bar of noise: no seed is refused, and two in three are within the stated."""
+    angles, rng = np.arange(0.0, 720.0, step), np.random.default_rng(1)
+    smooth, inside = absolute(Engine(heat=0.0), angles - 0.37), 0
+    for _ in range(12):
+        shaken = smooth + noise * rng.standard_normal(len(angles))
+        np.savetxt(tmp_path / "motored.csv", np.column_stack((angles, shaken)), delimiter=",", fmt="%.5f")
+        given = Motored(str(tmp_path / "motored.csv"), 0.0)
+        zero, note = dead_centre(given, Layout(), lambda bar: np.asarray(bar * 1e5), against=False)
+        off = abs((zero - 0.37 + 360) % 720 - 360)
+        stated = float(re.findall(r"uncertain by ([0-9.]+) deg", note)[0])
+        assert off < 5 * stated
+        inside += off <= stated
+    assert inside >= 8
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 COMMANDS = (
     *("table", "motion", "forces", "flywheel", "stress", "bearings", "balance", "harmonics", "torsion"),
-    *("plot", "report", "accuracy"),
+    *("plot", "report", "sweep", "accuracy"),
     *("friction", "check", "example", "keys", "units", "schema"),
 )
 """In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""
@@ -36,8 +36,21 @@ COMMANDS = (
 _DEBUG = "KURBEL_DEBUG"
 
 
+class _Context(click.Context):
+    """The context of a command, which asks for the width of the terminal only where help or usage is written."""
+
+    def make_formatter(self) -> click.HelpFormatter:
+        from shutil import get_terminal_size
+
+        # click itself fills no less than 50 columns
+        self.terminal_width = max(30, min(get_terminal_size().columns, 80))
+        return super().make_formatter()
+
+
 class _Kurbel(click.Group):
     """The group, which imports its commands on need and ends every run with a message instead of a traceback."""
+
+    context_class = _Context
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -48,6 +61,7 @@ class _Kurbel(click.Group):
         from importlib import import_module
 
         command: click.Command = getattr(import_module(f"kurbel.cli.{cmd_name}"), cmd_name)
+        command.context_class = _Context
         return command
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
@@ -59,10 +73,6 @@ class _Kurbel(click.Group):
         raise click.UsageError(f"no command '{name}'{did_you_mean(name, COMMANDS)}", ctx)
 
     def make_context(self, *args: Any, **extra: Any) -> click.Context:
-        from shutil import get_terminal_size
-
-        # click itself fills no less than 50 columns
-        extra.setdefault("terminal_width", max(30, min(get_terminal_size().columns, 80)))
         with _silent_interrupt():
             return super().make_context(*args, **extra)
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import click
 
 from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import Asked, machine_table
+from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option
 from kurbel.cli.row_options import AskedRows, where_option
 
 
 @click.command(short_help="Turning effort, flywheel and speed line of the machine.", epilog=exit_statuses(NO_SOLUTION))
 @machine_table
 @where_option
-def flywheel(asked: Asked, where: str | None) -> None:
+@uncertainty_option
+def flywheel(asked: Asked, where: str | None, spreads: Spreads) -> None:
     """Print the turning effort of the whole machine, its excess work, and what the flywheel makes of it.
 
     Every cylinder counts at the angle of its crank; T is referred to the radius of crank 1, T_b is the share of the
@@ -23,4 +24,4 @@ def flywheel(asked: Asked, where: str | None) -> None:
 
     case = asked.case()
     angles = AskedRows(where).rows(asked, "flywheel") or asked.crank_angles(360.0 * case.machine.revolutions)
-    asked.write(flywheel_report(case, angles, asked.columns, asked.units))
+    asked.write(flywheel_report(case, angles, asked.columns, asked.units), case, spreads)

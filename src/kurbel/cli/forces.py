@@ -5,18 +5,19 @@ from __future__ import annotations
 import click
 
 from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import Asked, machine_table
+from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option
 from kurbel.cli.row_options import AskedRows, row_options
 
 
 @click.command(short_help="Forces, work and friction loss of every cylinder.", epilog=exit_statuses(NO_SOLUTION))
 @machine_table
+@uncertainty_option
 @row_options
 @click.option(
     "--cycle", type=click.IntRange(min=1), metavar="N", help="This measured cycle of a trace, not their mean."
 )
 @click.option("--each-cycle", is_flag=True, help="A line for every measured cycle instead of the table over the angle.")
-def forces(asked: Asked, rows: AskedRows, cycle: int | None, each_cycle: bool) -> None:
+def forces(asked: Asked, rows: AskedRows, cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
     """Print the forces in the crank train over the working cycle, and the key values, for every cylinder of FILE.
 
     P acts along the stroke line, S in the rod, N on the guide, D and T at the crank pin; forces toward the shaft
@@ -35,7 +36,7 @@ def forces(asked: Asked, rows: AskedRows, cycle: int | None, each_cycle: bool) -
         asked.write(cycles_report(case, asked.units))
         return
     angles = rows.rows(asked) or asked.crank_angles(360.0 * case.machine.revolutions, len(case.cylinders))
-    asked.write(forces_report(case, angles, asked.columns, asked.units, rows.columns))
+    asked.write(forces_report(case, angles, asked.columns, asked.units, rows.columns), case, spreads)
 
 
 def _refuse_columns(asked: Asked, rows: AskedRows, cycle: int | None) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -198,10 +198,10 @@ _SUFFIXES = {
 }
 
 
-def format_of(asked: str | None, file_name: str | None) -> str:
+def format_of(asked: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES) -> str:
     """Return the format that is asked for, or that of the suffix of the file; UsageError where the two contradict."""
     dot = (file_name or "").rfind(".")
-    of_suffix = _SUFFIXES.get(file_name[dot:].lower()) if file_name else None
+    of_suffix = suffixes.get(file_name[dot:].lower()) if file_name else None
     if asked and of_suffix and asked != of_suffix:
         raise click.UsageError(
             f"--format {asked} contradicts the name {file_name}, which says {of_suffix}; change one of them."
@@ -277,13 +277,48 @@ class Asked(NamedTuple):
         """Return the crank angles in degrees to print for each part, from 0 to `end` where none are named."""
         return crank_angles(self.step, self.angles, end, parts)
 
-    def write(self, report: Report) -> None:
-        """Write what is asked of the report."""
+    def write(self, report: Report, case: Case | None = None, spreads: Sequence[tuple[str, str]] = ()) -> None:
+        """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""
         if self.key_values_only and self.columns:
             raise click.UsageError("--columns names columns of the table that --key-values leaves out.")
         if self.cylinder is not None:
             report = report.of_cylinder(self.cylinder)
-        self.output.write(report.key_values_alone() if self.key_values_only else report)
+        report = report.key_values_alone() if self.key_values_only else report
+        if case and (spreads or case.machine.uncertainty):
+            from kurbel.designs.uncertainty import with_uncertainty
+
+            report = with_uncertainty(report, case, spreads, self.units)
+        self.output.write(report)
+
+
+Spreads = tuple[tuple[str, str], ...]
+"""Dotted keys, each with its standard uncertainty as a text."""
+
+
+def uncertainty_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command standard uncertainties of inputs, which reach it as pairs of key and text."""
+    option = click.option(
+        "--uncertainty",
+        "spreads",
+        multiple=True,
+        metavar="KEY=SPREAD",
+        help="Standard uncertainty of a value of FILE, such as bore='0.2 mm' or '2 %'; may be repeated.",
+    )
+
+    @wraps(command)
+    def with_spreads(spreads: tuple[str, ...], **others: Any) -> Any:
+        return command(spreads=tuple(_spread(one) for one in spreads), **others)
+
+    return option(with_spreads)
+
+
+def _spread(text: str) -> tuple[str, str]:
+    from kurbel.declared.forms.uncertainties import spread_text
+
+    key, _, spread = text.partition("=")
+    if not (key.strip() and spread_text(spread)):
+        raise click.UsageError(f"--uncertainty {text}: write KEY=SPREAD, above 0, such as bore='0.2 mm'.")
+    return key.strip(), spread_text(spread)
 
 
 def machine_places(command: Callable[..., None]) -> Callable[..., Any]:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import click
 
 from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import Asked, machine_table
+from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option
 
 
 @click.command(short_help="Bearing forces and stresses of the crankshaft.", epilog=exit_statuses(NO_SOLUTION))
 @machine_table
+@uncertainty_option
 @click.option("--places", "places_only", is_flag=True, help="Only the stresses place by place; as csv one line each.")
-def stress(asked: Asked, places_only: bool) -> None:
+def stress(asked: Asked, places_only: bool, spreads: Spreads) -> None:
     """Print the forces on the bearings of a crankshaft with one throw, and the stresses in pin, webs and journals.
 
     Stresses are listed one by one in the dead centre under the full piston force, in the position of the largest
@@ -23,4 +24,4 @@ def stress(asked: Asked, places_only: bool) -> None:
 
     case = asked.case()
     angles = asked.crank_angles(360.0 * case.machine.revolutions)
-    asked.write(stress_report(case, angles, asked.columns, asked.units, places_only))
+    asked.write(stress_report(case, angles, asked.columns, asked.units, places_only), case, spreads)

@@ -41,7 +41,7 @@ BALANCE_VALUES = (
     _balance("traction_variation", "F_z", "force", "Largest variation of the tractive force"),
     _balance("swaying_couple", "M_s", "torque", "Largest swaying couple, about the upright axis"),
     _balance("hammer_blow", "H", "force", "Hammer blow: by how much a counterweight loads and lifts its wheel"),
-    _balance("hammer_speed", "n_H", "speed", "Speed of rotation at which it is the load of the wheel"),
+    _balance("hammer_speed", "n_H", "speed", "Speed of rotation at which the hammer blow is the load of the wheel"),
     _balance("hammer_train_speed", "v_H", "velocity", "Speed of the train at which it is"),
     _balance("share_allowed", "c_H", "ratio", "Largest share of the reciprocating masses within the limit of the blow"),
 )

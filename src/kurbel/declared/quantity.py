@@ -1,6 +1,6 @@
 """What is said of a printed quantity, and the order in which several of them stand."""
 
-from __future__ import annotations
+# annotations are taken as they stand: NamedTuple compiles each postponed one at every start
 
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
@@ -64,7 +64,7 @@ class Quantity(NamedTuple):
         """Whether this value is a residual of rounding alone."""
         return self.residual and abs(value) < 10.0**NOISE_POWER
 
-    def absolute(self) -> Quantity:
+    def absolute(self) -> "Quantity":
         """Return the quantity of a machine whose pressures are absolute."""
         text = self.text.replace("Gauge", "Absolute").replace("gauge", "absolute")
         return self._replace(text=text, mark="abs") if self.gauge else self
@@ -73,7 +73,7 @@ class Quantity(NamedTuple):
         """Return the unit as it is shown."""
         return f"{unit} {self.mark}".rstrip()
 
-    def extreme(self, word: str, end: str, commands: tuple[str, ...]) -> Quantity:
+    def extreme(self, word: str, end: str, commands: tuple[str, ...]) -> "Quantity":
         """Return the key value that is the largest (`max`), smallest (`min`), or largest magnitude of this column.
 
         >>> force = Quantity("F_pin", "F_z", "force", "Force on the pin", called="force")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 from kurbel.errors import Fault, Path, RuleError
 
@@ -35,6 +35,16 @@ class _Refused:
 REFUSED = _Refused()
 
 
+class Birth(NamedTuple):
+    """A record that was read: its form, the mapping at a path, the values of its keys, and what was made of them."""
+
+    form: Any
+    mapping: Tree
+    path: Path
+    values: Tree
+    born: Any
+
+
 class StopReading(Exception):
     """The rest of the file cannot be read, or has so many faults that reading on would help nobody."""
 
@@ -49,6 +59,8 @@ class Reading:
         self.folder = folder
         self._places = places
         self.faults: list[Fault] = []
+        self.births: list[Birth] | None = None
+        """The records that were made, those inside others first; None where nobody wants to know."""
         self.alike: dict[Path, Path] = {}
         """Of what takes over the values of another mapping: its path and that of the other."""
 

@@ -192,6 +192,7 @@ def _normal(unit: str) -> str:
     return re.sub(r"\s*/\s*", "/", " ".join(unit.split()))
 
 
+@cache
 def unit_factor(unit: str, kind: str) -> Factor:
     """Return multiplier and divisor that turn a value in `unit` into the base of `kind`.
 

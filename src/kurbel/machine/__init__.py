@@ -25,6 +25,7 @@ from kurbel.declared.forms import (
     Physical,
     Record,
     Text,
+    Uncertainties,
 )
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, RuleError, refuse
@@ -87,7 +88,8 @@ class Machine(Described):
     speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
     pressure in Pa; efficiency η multiplies the turning effort of the whole machine, or divides it where the machine is
     driven; brake_power: measured, in W; limits: key-value id -> bound in SI; expect: key-value id -> the smallest and
-    the largest value in SI that are met; rotation: `over` or `under`, the sense in which it turns, None where it is
+    the largest value in SI that are met; uncertainty: dotted key -> its standard
+    uncertainty as a text; rotation: `over` or `under`, the sense in which it turns, None where it is
     not told; moment_reference: place along the shaft in m about which free moments are taken, None for the middle.
     """
 
@@ -110,6 +112,7 @@ class Machine(Described):
     shaft: ShaftLine | None = None
     limits: tuple[tuple[str, float], ...] = ()
     expect: tuple[tuple[str, Expected], ...] = ()
+    uncertainty: tuple[tuple[str, str], ...] = ()
     rotation: str | None = None
     origin: Origin | None = field(default=None, repr=False)
 
@@ -209,6 +212,12 @@ class Machine(Described):
         "limits": Key(Limits(_key_values), "Bounds for key values, checked by `kurbel check`", absent="none"),
         "expect": Key(
             Expectations(_key_values), "Figures that key values are to meet, compared by `kurbel check`", absent="none"
+        ),
+        "uncertainty": Key(
+            Uncertainties(),
+            "Standard uncertainties of values of this file, by dotted key: forces, flywheel and stress tell what they "
+            "make of the key values",
+            absent="none told",
         ),
     }
 

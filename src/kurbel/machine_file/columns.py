@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 MOST_NUMBERS = 5_000_000
 """Numbers that are taken from one file."""
-_FIGURES = re.compile(r"[-+.,;:%0-9eE \t]*[0-9][-+.,;:%0-9eE \t]*")
+FIGURES = re.compile(r"[-+.,;:%0-9eE \t]*[0-9][-+.,;:%0-9eE \t]*")
+"""What could be the figures of a file: nothing else of it is shown, since any other file may hold secrets."""
 _QUOTED = re.compile(r'"([^"\n]*)"')
 
 
@@ -148,8 +149,8 @@ def _first_fault(text: str, columns: Columns) -> Fault:
 
 
 def _quoted(text: str) -> str:
-    """Return a piece of a file for a message, if figures could look like it: any other file may hold secrets."""
-    if not _FIGURES.fullmatch(text):
+    """Return a piece of a file for a message, if figures could look like it."""
+    if not FIGURES.fullmatch(text):
         return ""
     return " ".join(text.split()) if len(text) <= 40 else f"{' '.join(text[:40].split())}…"
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 
-from kurbel.machine_file.columns import Columns, is_number
+from kurbel.machine_file.columns import FIGURES, Columns, is_number
 
 _SIGNS = {";": "semicolon", "\t": "tab", ",": "comma", " ": "space"}
+_PLAIN = "; figures are plain numbers, such as 1013.25 or 1.01325e3: export them so"
+_NO_FIGURES = "; is it a file of figures?"
 _TRIED = 200
 """Lines that are looked at: headings are no longer."""
 
@@ -20,9 +22,9 @@ def advice(text: str, number: int, line: str, columns: Columns, cell: str = "") 
     lines = list(itertools.islice(text.split("\n", _TRIED), _TRIED))
     found = min(_layouts(lines, columns), key=lambda one: one.skip_rows, default=None)
     written = _written(found, columns) if found else ()
-    if not written:
-        return _guess(number, line, columns, cell)
     alone = len(written) == 1 and "skip_rows" in written[0]
+    if not written or (alone and FIGURES.fullmatch(cell)):  # of headings no cell is one of figures
+        return _guess(lines, number, line, columns, cell)
     return f"; write {' and '.join(written)}{' if it is a heading' if alone else ''}"
 
 
@@ -70,11 +72,27 @@ def _written(found: Columns, given: Columns) -> tuple[str, ...]:
     return tuple(text for differs, text in keys if differs)
 
 
-def _guess(number: int, line: str, columns: Columns, cell: str) -> str:
-    """Return what the first bad line itself hints at."""
-    if is_number(cell.replace(",", ".")) and columns.decimal == ".":
-        return "; write 'decimal: comma'"
-    joined = [word for sign, word in _SIGNS.items() if sign in (cell or line).strip() and sign != columns.delimiter]
-    if any(c.isdigit() for c in line) and joined:
-        return f"; write 'delimiter: {joined[0]}' if that stands between its columns"
-    return f"; write 'skip_rows: {number}' if it is a heading" if number == columns.skip_rows + 1 else ""
+def _guess(lines: Sequence[str], number: int, line: str, columns: Columns, cell: str) -> str:
+    """Return what the first bad line itself hints at: signs by which it is a row, or what stands in the way."""
+    signs, decimals = dict.fromkeys((columns.delimiter, *_SIGNS)), dict.fromkeys((columns.decimal, ".", ","))
+    tried = (columns._replace(delimiter=sign, decimal=decimal) for sign in signs for decimal in decimals)
+    found = next((one for one in tried if one.delimiter != one.decimal and _is_row(line, one)), None)
+    if found:
+        return f"; write {' and '.join(_written(found, columns))}"
+    rows = [index for index, text in enumerate(lines, 1) if index > columns.skip_rows and _is_row(text, columns)]
+    if rows and number < rows[0] and not FIGURES.fullmatch(cell):
+        return f"; write 'skip_rows: {rows[0] - 1}' if it is a heading"
+    if rows and rows[0] < number:
+        return "; leave such lines out, or mend them"
+    return _of_cells(columns.cells(line), columns, cell)
+
+
+def _of_cells(cells: Sequence[str], columns: Columns, cell: str) -> str:
+    """Return what the cells of a line hint at that no layout makes a row."""
+    if len(cells) >= max(columns.wanted):
+        return _PLAIN if any(one.isdigit() for one in cell) else _NO_FIGURES
+    if not any(is_number(one.strip()) for one in cells):
+        return _NO_FIGURES
+    if len(cells) > 1 or columns.angle is None:
+        return f"; it has {len(cells)} only"
+    return "; if it has no angles, write 'pressure_column: 1' and 'angle_step: 0.5 deg', say"

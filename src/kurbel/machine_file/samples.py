@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.declared.forms import Choice, Count, Physical
 from kurbel.declared.keys import Key, Keys
-from kurbel.errors import Fault, refuse
+from kurbel.errors import Fault, RuleError, refuse
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
 """Word in the machine file -> what stands between two columns."""
 _DECIMALS = {"point": ".", "comma": ","}
+_BY_TIME = "; are 'recorded_speed' and 'angle_unit' (s or ms) right?"
 _SECONDS = {"s": 1.0, "ms": 1e-3}
 
 
@@ -107,7 +108,14 @@ def samples_of(file: str, layout: Layout, what: str, base: Callable[[Array], Arr
     def named(index: int) -> Fault:
         return Fault(("file",), table.line(index))
 
-    return whole_cycle(*turned(angles, values, named, against), what)
+    try:
+        return whole_cycle(*turned(angles, values, named, against), what)
+    except RuleError as error:
+        if layout.recorded_speed is None:
+            raise
+        (fault,) = error.faults
+        asked = "" if "angle_unit" in fault.message else _BY_TIME
+        raise RuleError(fault._replace(message=fault.message + asked)) from None
 
 
 def turned(

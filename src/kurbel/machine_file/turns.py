@@ -82,6 +82,7 @@ def _refuse_other_turns(angles: Array, named: Named) -> None:
         span = float(np.ptp(angles))
         message = (
             f"the angle begins anew after {span:.10g} deg; a turn has 360, a four-stroke cycle 720 deg: other units?"
+            f"{' Or is the first row a heading? Then skip it' if back[0] == 0 else ''}"
         )
         raise RuleError(said(named(int(back[0]) + 1), message))
 

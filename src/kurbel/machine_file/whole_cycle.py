@@ -53,7 +53,8 @@ def whole_cycle(angles: Array, values: Array, named: Named, kind: str = "pressur
 def _begun_at_its_start(angles: Array, values: Array, named: Named) -> tuple[Array, Array, Named, tuple[str, ...]]:
     """Return the samples of one cycle that begins within it from its smallest angle on, others as they are."""
     back = np.flatnonzero(np.diff(angles) < 0)
-    once = len(back) == 1 and angles[back[0]] - angles[back[0] + 1] > 180 and angles[-1] <= angles[0]
+    falls = len(back) == 1 and 180 < angles[back[0]] - angles[back[0] + 1] <= PERIODS[-1]
+    once = falls and angles[-1] <= angles[0]
     if not once:
         return angles, values, named, ()
     first, count = int(back[0]) + 1, len(angles)

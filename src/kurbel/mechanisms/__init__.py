@@ -15,6 +15,7 @@ from kurbel.declared.keys import Described, Keys
 from kurbel.declared.quantities import Lists
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, UsageError, refuse
+from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -294,14 +295,17 @@ def check_lengths(**lengths: float) -> None:
     refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
 
 
-def fan(centre: float, width: float) -> tuple[float, ...]:
+def fan(centre: Any, width: Any) -> tuple[Any, ...]:
     """Return angles in degrees that stand ever wider on both sides of a bend of this half width (degrees) at `centre`.
+
+    Of arrays, angles of which some have fewer are nan there.
 
     >>> fan(180.0, 10.0)
     (180.0, 170.0, 190.0, 150.0, 210.0)
     """
     angles = [centre]
-    while 0 < width < 45:
-        angles += [centre - width, centre + width]
-        width *= 3
+    while some(narrow := (width > 0) & (width < 45)):
+        apart = where(narrow, width, float("nan"))
+        angles += [centre - apart, centre + apart]
+        width = width * 3
     return tuple(angles)

@@ -13,7 +13,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from kurbel.numerics.arithmetic import sqrt, where
+from kurbel.numerics.arithmetic import arcsin, bearing, every, sqrt, ulp, where
+from kurbel.numerics.arithmetic import sin as sine
 
 
 def cos_rod_angle(sin: Any, cos: Any, rho: Any) -> Any:
@@ -107,17 +108,17 @@ def first_order_acceleration(sin: Any, cos: Any, lam: Any) -> Any:
 class Peak(NamedTuple):
     """Where a factor is largest or smallest: sine and cosine of the crank angle, and the value there."""
 
-    sin: float
-    cos: float
-    value: float
+    sin: Any
+    cos: Any
+    value: Any
 
     @property
-    def degrees(self) -> float:
+    def degrees(self) -> Any:
         """The crank angle in degrees, between 0 and 180."""
-        return math.degrees(math.atan2(self.sin, self.cos))
+        return bearing(self.sin, self.cos)
 
 
-def velocity_peak(lam: float, rho: float) -> Peak:
+def velocity_peak(lam: Any, rho: Any) -> Peak:
     """Return the place and value of c_max/v, where the exact acceleration is zero.
 
     With q = sin²ψ the condition is q³ − q² − q + λ² = 0, and cos φ = λ sin²φ cos ψ, c_max = v sin φ (1 + sin²ψ).
@@ -128,36 +129,42 @@ def velocity_peak(lam: float, rho: float) -> Peak:
     1.0198331
     """
     square = lam * lam
-    angle = (2 / 3) * math.asin(math.sqrt(27 * rho / 32))
-    cos2_psi = (4 / 3) * math.sin(angle / 2) ** 2 + (2 / math.sqrt(3)) * math.sin(angle)
-    eta = math.asin(27 * square / (math.sqrt(27) * math.sqrt(5 + 27 * square) + math.sqrt(135 * rho))) / 3
-    sin2_psi = (8 / 3) * math.sin(eta) * math.sin((2 / 3) * math.asin(math.sqrt(27 / 32)) + math.pi / 3 - eta)
-    sin2_phi = sin2_psi / square if square > 1e-290 else 1.0  # λ² underflows: the peak is at 90°
-    sin2_phi = min(sin2_phi, 1.0)
-    sin = math.sqrt(sin2_phi)
-    return Peak(sin, lam * sin2_phi * math.sqrt(cos2_psi), sin * (1 + sin2_psi))
+    angle = (2 / 3) * arcsin(sqrt(27 * rho / 32))
+    half = sine(angle / 2)
+    cos2_psi = (4 / 3) * (half * half) + (2 / math.sqrt(3)) * sine(angle)
+    eta = arcsin(27 * square / (math.sqrt(27) * sqrt(5 + 27 * square) + sqrt(135 * rho))) / 3
+    sin2_psi = (8 / 3) * sine(eta) * sine((2 / 3) * math.asin(math.sqrt(27 / 32)) + math.pi / 3 - eta)
+    tiny = square <= 1e-290  # λ² underflows: the peak is at 90°
+    sin2_phi = where(tiny, 1.0, sin2_psi / where(tiny, 1.0, square))
+    sin2_phi = where(sin2_phi > 1.0, 1.0, sin2_phi)
+    sin = sqrt(sin2_phi)
+    return Peak(sin, lam * sin2_phi * sqrt(cos2_psi), sin * (1 + sin2_psi))
 
 
-def acceleration_dip(lam: float, rho: float) -> Peak | None:
+def acceleration_dip(lam: Any, rho: Any) -> Peak | None:
     """Return the smallest b R/v² inside the stroke, or None where b is smallest at the outer dead centre.
 
     It exists for λ > (√21 − 3)/6 = 0.263763 (the first-order formula says 1/4). With y = −λ cos φ/cos ψ the condition
-    is 3y(1 − y)(1 + y)² = ρ, which has exactly one root in (0, λ).
+    is 3y(1 − y)(1 + y)² = ρ, which has exactly one root in (0, λ). Of an array, what has no dip is nan.
     """
-    if 3 * lam * (1 + lam) <= 1:
+    none = 3 * lam * (1 + lam) <= 1
+    if every(none):
         return None
-    low, high, y = 0.0, lam, rho / 3
+    # what has no dip is searched as if it had one
+    lam, rho = where(none, 0.5, lam), where(none, 0.75, rho)
+    low, high, y = 0.0 * lam, lam, rho / 3
     for _ in range(60):
         excess = 3 * y * (1 - y) * (1 + y) ** 2 - rho
-        low, high = (y, high) if excess < 0 else (low, y)
+        below = excess < 0
+        low, high = where(below, y, low), where(below, high, y)
         slope = 3 * (1 + y) * ((1 - 2 * y) * (1 + y) + 2 * y * (1 - y))
-        following = y - excess / slope if slope > 0 else low
-        if not low < following < high:
-            following = (low + high) / 2
-        if abs(following - y) <= 4 * math.ulp(y):
+        rises = slope > 0
+        following = where(rises, y - excess / where(rises, slope, 1.0), low)
+        following = where((low < following) & (following < high), following, (low + high) / 2)
+        if every(abs(following - y) <= 4 * ulp(y)):
             break
         y = following
-    kappa = math.sqrt(rho / ((1 - y) * (1 + y)))
+    kappa = sqrt(rho / ((1 - y) * (1 + y)))
     cos = -y * kappa / lam
-    sin = math.sqrt((1 - cos) * (1 + cos))
-    return Peak(sin, cos, acceleration_factor(sin, cos, lam, rho))
+    sin = sqrt((1 - cos) * (1 + cos))
+    return Peak(sin, cos, where(none, math.nan, acceleration_factor(sin, cos, lam, rho)))

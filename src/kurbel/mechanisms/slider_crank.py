@@ -16,7 +16,7 @@ from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
 from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
-from kurbel.numerics.arithmetic import sqrt, where
+from kurbel.numerics.arithmetic import bearing, every, sqrt, total, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -130,6 +130,11 @@ class SliderCrank(Mechanism):
         return f"{rod} {relation} the crank ({crank}); the crank turns fully only with a longer rod"
 
     @property
+    def has_rod(self) -> bool:
+        """Always."""
+        return True
+
+    @property
     def rod_length(self) -> float:
         """L in m, `math.inf` for the infinite rod."""
         return self.rod
@@ -137,33 +142,37 @@ class SliderCrank(Mechanism):
     @property
     def rho(self) -> float:
         """ρ = 1 − λ², from the lengths."""
-        if math.isinf(self.rod):
+        if self._endless:
             return 1.0
         return (self.rod - self.crank) / self.rod * ((self.rod + self.crank) / self.rod)
 
     @property
+    def _endless(self) -> bool:
+        return every(self.rod == math.inf)
+
+    @property
     def _straight(self) -> bool:
-        return self.offset == 0 or math.isinf(self.rod)
+        return every(self.offset == 0) or self._endless
 
     @property
     def _gaps(self) -> tuple[float, float]:
         """(L − R + e)/L and (L − R − e)/L: how far sin ψ stays from 1 and from −1."""
-        if math.isinf(self.rod):
+        if self._endless:
             return 1.0, 1.0
         return (
-            math.fsum((self.rod, -self.crank, self.offset)) / self.rod,
-            math.fsum((self.rod, -self.crank, -self.offset)) / self.rod,
+            total(self.rod, -self.crank, self.offset) / self.rod,
+            total(self.rod, -self.crank, -self.offset) / self.rod,
         )
 
     @property
     def _reaches(self) -> tuple[float, float]:
         """√((L+R)² − e²)/L and √((L−R)² − e²)/L: the crosshead's distances from the shaft at the dead centres."""
-        if math.isinf(self.rod):
+        if self._endless:
             return 1.0, 1.0
         beyond, within = self._gaps
         # from the lengths: with a short crank and a large offset L + R − e nearly cancels
-        above, below = (math.fsum((self.rod, self.crank, sign * self.offset)) / self.rod for sign in (1, -1))
-        return math.sqrt(above * below), math.sqrt(beyond * within)
+        above, below = (total(self.rod, self.crank, sign * self.offset) / self.rod for sign in (1, -1))
+        return sqrt(above * below), sqrt(beyond * within)
 
     @property
     def stroke(self) -> float:
@@ -176,7 +185,7 @@ class SliderCrank(Mechanism):
             return 0.0, 180.0
         outer, inner = self._reaches
         eps = self.offset / self.rod
-        return math.degrees(math.atan2(eps, outer)), 180.0 + math.degrees(math.atan2(eps, inner))
+        return bearing(eps, outer), 180.0 + bearing(eps, inner)
 
     def rod_angle(self, angle: CrankAngle) -> tuple[Any, Any]:
         """Return (sin ψ, cos ψ) with sin ψ = (R sin φ − e)/L."""
@@ -266,22 +275,23 @@ class SliderCrank(Mechanism):
         import numpy as np
 
         lam, way = self.lam, displacement / self.crank
-        eps = 0.0 if self._straight else self.offset / self.rod
-        outer, inner = self._reaches if eps else (1 + lam, 1 - lam)
-        total = self.stroke / self.crank
+        straight = self._straight
+        eps = 0.0 if straight else self.offset / self.rod
+        outer, inner = (1 + lam, 1 - lam) if straight else self._reaches
+        whole = self.stroke / self.crank
         distance = outer - lam * way  # of the crosshead from the foot of the shaft axis, over L
-        line = np.hypot(distance, eps) if eps else distance
+        line = distance if straight else np.hypot(distance, eps)
         # over λ: L + R − line, and line + R − L, from differences of squares
         before = way * (2 * outer - lam * way) / (1 + lam + line)
-        after = (total - way) * (distance + inner) / (line + 1 - lam)
+        after = (whole - way) * (distance + inner) / (line + 1 - lam)
         half = np.arctan2(np.sqrt(before * (1 + line - lam)), np.sqrt(after * (line + lam + 1)))
         sweep = np.degrees(2 * half)
-        bearing = np.degrees(np.arctan2(eps, distance)) if eps else 0.0
+        bearing = 0.0 if straight else np.degrees(np.arctan2(eps, distance))
         return bearing + sweep if outstroke else 360.0 + bearing - sweep
 
     def landmarks(self) -> tuple[float, ...]:
         """Return 90°, 270° and the velocity peaks, with a fan round 90° and 270° where the rod barely reaches."""
-        beyond, within = (math.degrees(math.sqrt(2 * gap)) for gap in self._gaps)
+        beyond, within = (sqrt(2 * gap) * (180 / math.pi) for gap in self._gaps)
         marks = (*fan(90.0, beyond), *fan(270.0, within))
         if not self._straight:
             return marks

@@ -20,7 +20,7 @@ def sqrt(value: Any) -> Any:
 
 def where(condition: Any, value: Any, otherwise: Any) -> Any:
     """Return `value` where the condition holds and `otherwise` elsewhere; shapes as for numpy.where."""
-    if isinstance(condition, bool):
+    if not getattr(condition, "ndim", 0):
         return value if condition else otherwise
     for branch in (value, otherwise):
         if hasattr(branch, "where"):  # a Jet chooses value and slope together
@@ -43,6 +43,55 @@ def bearing(sin: Any, cos: Any) -> Any:
     import numpy as np
 
     return np.degrees(np.arctan2(sin, cos))
+
+
+def sin(value: Any) -> Any:
+    """Return the sine of a float or an array in radians."""
+    return _of(value, "sin")
+
+
+def arcsin(value: Any) -> Any:
+    """Return the arc of a sine, a float or an array, in radians."""
+    return _of(value, "asin", "arcsin")
+
+
+def ulp(value: Any) -> Any:
+    """Return the unit in the last place of a positive float or array."""
+    return _of(value, "ulp", "spacing")
+
+
+def _of(value: Any, name: str, in_numpy: str = "") -> Any:
+    if isinstance(value, (float, int)):
+        return getattr(math, name)(value)
+    import numpy as np
+
+    return getattr(np, in_numpy or name)(value)
+
+
+def every(condition: Any) -> bool:
+    """Return whether a condition holds: of an array, everywhere."""
+    return condition if isinstance(condition, bool) else bool(condition.all())
+
+
+def some(condition: Any) -> bool:
+    """Return whether a condition holds: of an array, anywhere."""
+    return condition if isinstance(condition, bool) else bool(condition.any())
+
+
+def total(*terms: Any) -> Any:
+    """Return the sum of floats, rounded once; with arrays among them, as good as that (Ogita, Rump, Oishi 2005).
+
+    >>> total(1e16, 1.0, -1e16)
+    1.0
+    """
+    if all(isinstance(term, (float, int)) for term in terms):
+        return math.fsum(terms)
+    whole, missed = terms[0], 0.0
+    for term in terms[1:]:
+        before, whole = whole, whole + term
+        of_term = whole - before
+        missed = missed + ((before - (whole - of_term)) + (term - of_term))
+    return whole + missed
 
 
 def running_sums(terms: Iterable[float]) -> Iterator[float]:

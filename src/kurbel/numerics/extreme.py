@@ -2,11 +2,35 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+from kurbel.numerics.arithmetic import where
 
 
 class Extreme(NamedTuple):
-    """A value and the angle in degrees at which it stands."""
+    """A value and the angle in degrees at which it stands.
+
+    Of many variants of a machine both are arrays (v,), which type checkers are not told: who asks for one has
+    floats.
+    """
 
     value: float
     degrees: float
+
+
+def largest(first: Extreme, *others: Extreme) -> Extreme:
+    """Return the one with the largest value, the first of equal ones; one that is nan counts for nothing."""
+    for other in others:
+        first = _chosen(other.value > first.value, other, first)
+    return first
+
+
+def smallest(first: Extreme, *others: Extreme) -> Extreme:
+    """Return the one with the smallest value, the first of equal ones; one that is nan counts for nothing."""
+    for other in others:
+        first = _chosen(other.value < first.value, other, first)
+    return first
+
+
+def _chosen(condition: Any, extreme: Extreme, otherwise: Extreme) -> Extreme:
+    return Extreme(*(where(condition, one, other) for one, other in zip(extreme, otherwise, strict=True)))

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from kurbel.numerics.gauss import GAUSS, LOBATTO_4, LOBATTO_16, Rule
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Flags
+    from kurbel.arrays import Array, Flags, Indices
 
 _MANY = 300  # jumps; where there are fewer, sixteen points a piece cost nothing
 _PARTS = 23  # of a smooth piece, 2° of 45°; on each four points integrate as exactly as sixteen on the whole
-_SAME = 1e-10  # degrees; two angles that differ by rounding only would leave a piece without width
+SAME = 1e-10  # degrees; two angles that differ by rounding only would leave a piece without width
 _HALVES = np.array([0.0, 0.5, 1.0])
 _CUTS = np.linspace(0.0, 1.0, 9)
 _ROUNDS = 12  # of cuts into eight: enough for a kink
@@ -27,7 +27,10 @@ class Pieces:
 
     degrees, within: angles of the nodes and the middles of their pieces, (pieces, nodes). beyond: what the
     rounding of `degrees` took from the nodes; with R/L near 1 the rod swings round within a hair of 90°, and it counts.
+    variant: of which machine each piece is, (pieces,), where they are of many side by side.
     """
+
+    variant: Indices | None = None
 
     def __init__(self, low: Array, high: Array, rule: Rule) -> None:
         self.low, self.high = low, high
@@ -47,7 +50,7 @@ class Pieces:
         return np.asarray(np.radians(self.high - self.low) / 2)
 
     def integral(self, value: Array) -> float:
-        """Return ∫ value dφ (φ in radians) over all pieces by the rule; value (pieces, nodes)."""
+        """Return ∫ value dφ (φ in radians) over all pieces by the rule, of every variant; value (pieces, nodes)."""
         return float(self.half_widths @ (value @ self.weights))
 
     def integrals(self, value: Array) -> Array:
@@ -65,15 +68,38 @@ class Grid(Pieces):
         super().__init__(breaks[:-1], breaks[1:], rule)
         self.breaks = breaks
         self.rule = rule
+        self.cycle = float(breaks[-1])
 
-    def slopes(self, value: Array) -> Array:
-        """Return the derivative by φ of the polynomials through values (…, pieces, nodes), of the same shape."""
+    @property
+    def first(self) -> Indices:
+        """The first piece of every variant, (v,)."""
+        return np.zeros(1, dtype=np.intp)
+
+    def told(self, values: Array) -> Any:
+        """Return what was found of every variant (v,), or of the only machine as a number."""
+        return float(values[0])
+
+    def piece_at(self, angles: Array, variant: Indices | None) -> Indices:
+        """Return the pieces (n,) that hold angles (n,) of these variants, or begin there."""
+        return np.searchsorted(self.low, angles, side="right") - 1
+
+    def in_order(self, angles: Array, rows: Indices) -> Any:
+        """Return angles (n,) found in the pieces of these rows, ascending; of many variants as `Flat`."""
+        return np.sort(angles)
+
+    @property
+    def widest(self) -> float:
+        """The largest distance between two nodes of a piece, over half its width."""
+        return float(np.diff(self.nodes).max())
+
+    def slopes(self, value: Array, rows: Indices) -> Array:
+        """Return the derivatives by φ of the polynomials through values (k, nodes) on these pieces (k,)."""
         gaps = self.nodes[:, None] - self.nodes + np.eye(len(self.nodes))
         products = gaps.prod(axis=1)
         matrix = products[:, None] / products / gaps
         np.fill_diagonal(matrix, 0.0)
         np.fill_diagonal(matrix, -matrix.sum(axis=1))
-        return np.asarray((value @ matrix.T) / self.half_widths[:, None])
+        return np.asarray((value @ matrix.T) / self.half_widths[rows, None])
 
     def other(self) -> Grid:
         """Return the same cycle in other pieces: each cut in two unequal ones."""
@@ -180,9 +206,9 @@ class Cuts(NamedTuple):
 
 def _cycle(*angles: Array) -> Array:
     """Return all angles, those of a whole cycle first, without those that differ by rounding only."""
-    kept = ascending(np.concatenate(angles), apart=_SAME)
+    kept = ascending(np.concatenate(angles), apart=SAME)
     end = angles[0][-1]
-    return np.append(kept[kept < end - _SAME], end)
+    return np.append(kept[kept < end - SAME], end)
 
 
 def ascending(angles: Array, apart: float = 0.0) -> Array:

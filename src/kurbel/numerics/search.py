@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.brackets import (
+    Brackets,
+    Worth,
+    at_brackets,
+    may_be_extreme,
+    may_be_zero,
+    roots,
+    slope_brackets,
+    slopes_worth,
+)
+from kurbel.numerics.brackets import Evaluate as Evaluate
+from kurbel.numerics.brackets import Sampled as Sampled
+from kurbel.numerics.extreme import Extreme, largest
 from kurbel.numerics.grid import Grid
-from kurbel.numerics.roots import bracketed_roots
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Flags
+    from kurbel.arrays import Array, Flags, Indices
 
 _ROUNDING = 8 * np.finfo(float).eps
 """What is no larger than this beside the largest value of its quantity is rounding and has no sign."""
@@ -20,32 +30,40 @@ _REPEATED = 64 * np.finfo(float).eps
 """By which, beside the largest value, equal summits of a curve differ that is summed over cylinders and the cycle."""
 
 
-class Sampled(NamedTuple):
-    """Values and slopes by φ (per radian) of one quantity at the same angles, of one shape."""
-
-    value: Array
-    slope: Array
-
-    @classmethod
-    def of(cls, jet: Any, shape: tuple[int, ...]) -> Sampled:
-        """Return value and slope of a jet, or of what does not change, at angles of this shape."""
-        value, slope = getattr(jet, "value", jet), getattr(jet, "slope", 0.0)
-        return cls(np.broadcast_to(value, shape), np.broadcast_to(slope, shape))
-
-
-Evaluate = Callable[["Array", "Array"], "dict[str, Sampled]"]
-"""Quantities at any (degrees, within), each (n,)."""
-
-
 class Curve(NamedTuple):
     """One quantity over the cycle, each (n,): nodes of a grid, and every angle between them where it turns round.
 
-    Between neighbouring angles of one piece it only rises or only falls.
+    They stand in order; between neighbouring angles of one piece, told by its row, it only rises or only falls.
+    first: (v,) where each variant begins; turning: (k,) which of them are no nodes.
     """
 
     degrees: Array
-    within: Array
+    row: Indices
     value: Array
+    first: Indices
+    grid: Grid
+    turning: Indices
+
+    @property
+    def within(self) -> Array:
+        """The middles of the pieces, (n,)."""
+        return np.asarray(self.grid.within[self.row, 0])
+
+    @property
+    def peaks(self) -> tuple[Array, Array]:
+        """Angles (k,) between the nodes at which it turns round, and the middles of their pieces."""
+        return self.degrees[self.turning], self.within[self.turning]
+
+    @property
+    def following(self) -> Indices:
+        """Which one follows each, (n,), round the cycle of its variant."""
+        after = np.arange(1, len(self.value) + 1)
+        after[np.append(self.first[1:], len(after))[: len(self.first)] - 1] = self.first
+        return after
+
+    def of_each(self, found: Array) -> Array:
+        """Return what was found of every variant, (v,), spread over its angles, (n,)."""
+        return np.repeat(found, np.diff(np.append(self.first, len(self.value))))
 
 
 class Extremes(NamedTuple):
@@ -57,22 +75,7 @@ class Extremes(NamedTuple):
     @property
     def peak(self) -> Extreme:
         """The largest magnitude, whichever sign the quantity has there."""
-        return max(self.largest, Extreme(-self.smallest.value, self.smallest.degrees), key=lambda one: one.value)
-
-
-class _Brackets(NamedTuple):
-    """Intervals that hold one root each: number of the quantity, ends in degrees, piece, values at the ends; (n,)."""
-
-    owner: Any
-    low: Array
-    high: Array
-    within: Array
-    f_low: Array
-    f_high: Array
-
-    @classmethod
-    def joined(cls, parts: Iterable[_Brackets]) -> _Brackets:
-        return cls(*map(np.concatenate, zip(*parts, strict=True)))
+        return largest(self.largest, Extreme(-self.smallest.value, self.smallest.degrees))
 
 
 def extremes(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dict[str, Extremes]:
@@ -80,123 +83,93 @@ def extremes(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dic
 
     samples: the quantities on the grid, (pieces, nodes).
     """
-    return {name: extremes_of(curve) for name, curve in curves(grid, samples, evaluate).items()}
+    worth = {name: may_be_extreme(grid, sampled) for name, sampled in samples.items()}
+    return {name: extremes_of(curve) for name, curve in curves(grid, samples, evaluate, worth).items()}
 
 
-def zeros(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, size: float | None = None) -> dict[str, Array]:
+def zeros(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
     """Return the angles of `sign_changes` of quantities of which no extremes are wanted."""
-    near = np.stack([_near_zero(grid, sampled) for sampled in samples.values()])
-    return sign_changes(grid, curves(grid, samples, evaluate, near), evaluate, size)
+    worth = {name: may_be_zero(grid, sampled) for name, sampled in samples.items()}
+    return sign_changes(grid, curves(grid, samples, evaluate, worth), evaluate, size)
 
 
-def curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, worth: Any = True) -> dict[str, Curve]:
-    """Return several quantities as curves; what they do between two nodes is searched where `worth` holds.
+def curves(
+    grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, worth: dict[str, Worth] | None = None
+) -> dict[str, Curve]:
+    """Return several quantities as curves; of pieces that are not worth a search only their ends.
 
-    samples: the quantities on the grid, (pieces, nodes); worth: (quantities, pieces, nodes − 1).
+    samples: the quantities on the grid, (pieces, nodes).
     """
-    brackets = _slope_brackets(grid, np.stack([sampled.slope for sampled in samples.values()]), evaluate, worth)
-    peaks = _roots(brackets, evaluate, "slope")
-    heights = _of_owners(evaluate(peaks, brackets.within), "value", brackets.owner) if len(peaks) else peaks
+    asked = [slopes_worth(grid, sampled, worth[name] if worth else None) for name, sampled in samples.items()]
+    brackets = slope_brackets(grid, asked, evaluate)
+    peaks = roots(grid, brackets, evaluate, "slope")
+    heights = at_brackets(grid, brackets, evaluate, "value")(peaks) if len(peaks) else peaks
     return {
-        name: Curve(
-            np.concatenate((grid.degrees.ravel(), peaks[brackets.owner == k])),
-            np.concatenate((grid.within.ravel(), brackets.within[brackets.owner == k])),
-            np.concatenate((sampled.value.ravel(), heights[brackets.owner == k])),
-        )
+        name: _with_peaks(grid, sampled.value, asked[k].rows, brackets, peaks, heights, brackets.owner == k)
         for k, (name, sampled) in enumerate(samples.items())
     }
 
 
-def _slope_brackets(grid: Grid, slope: Array, evaluate: Evaluate, worth: Any) -> _Brackets:
-    """Return where slopes (quantities, pieces, nodes) pass zero between two nodes, once or to and fro."""
-    ends = slope[..., :-1], slope[..., 1:]
-    # a zero at a node counts for the interval that it ends, so that it is found once
-    once = np.nonzero((((ends[0] < 0) & (ends[1] >= 0)) | ((ends[0] > 0) & (ends[1] <= 0))) & worth)
-    owner, rows, nodes = twice = np.nonzero(_dips(grid, slope) & worth)
-    plain = _between(grid, once, *(end[once] for end in ends))
-    if not len(owner):
-        return plain
-    bends = grid.slopes(slope)
-    share = bends[twice] / (bends[twice] - bends[owner, rows, nodes + 1])
-    over = _between(grid, twice, *(end[twice] for end in ends))
-    middle = over.low + share * (over.high - over.low)
-    f_middle = _of_owners(evaluate(middle, over.within), "slope", owner)
-    crossed = f_middle * over.f_low < 0
-    halves = over._replace(high=middle, f_high=f_middle), over._replace(low=middle, f_low=f_middle)
-    return _Brackets.joined((plain, *(_Brackets(*(part[crossed] for part in half)) for half in halves)))
+def _with_peaks(
+    grid: Grid, value: Array, rows: Indices, brackets: Brackets, peaks: Array, heights: Array, own: Flags
+) -> Curve:
+    """Return the values (pieces, nodes) as a curve with those of the peaks (n,) that are its own, each in its place.
 
-
-def _dips(grid: Grid, slope: Array) -> Flags:
-    """Return the intervals between nodes in which the tangents to a slope of one sign at both ends meet beyond zero."""
-    bends = grid.slopes(slope)
-    width = np.radians(np.diff(grid.degrees))
-    low, high, bend, next_bend = slope[..., :-1], slope[..., 1:], bends[..., :-1], bends[..., 1:]
-    toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0)
-    gap = np.where(toward, bend - next_bend, 1.0)
-    lowest = low + bend * (high - low - next_bend * width) / gap
-    return np.asarray(toward & (lowest * low <= 0))
-
-
-def _between(grid: Grid, index: tuple[Any, ...], f_low: Array, f_high: Array) -> _Brackets:
-    owner, rows, nodes = index
-    return _Brackets(
-        owner, grid.degrees[rows, nodes], grid.degrees[rows, nodes + 1], grid.within[rows, nodes], f_low, f_high
-    )
-
-
-def _near_zero(grid: Grid, sampled: Sampled) -> Flags:
-    """Return the intervals (pieces, nodes − 1) in which a quantity may reach zero and turn back.
-
-    Slope times width is four times what a parabola with these slopes rises above its ends.
+    rows: of the pieces of which all nodes stand in it; of the others their ends do.
     """
-    value, slope = np.abs(sampled.value), np.abs(sampled.slope)
-    reach = np.maximum(slope[:, :-1], slope[:, 1:]) * np.radians(np.diff(grid.degrees))
-    return np.asarray(np.minimum(value[:, :-1], value[:, 1:]) <= reach)
+    kept = np.zeros(value.shape, dtype=bool)
+    kept[:, 0] = kept[:, -1] = True
+    kept[rows] = True
+    standing = np.flatnonzero(kept)
+    nodes = value.shape[1]
+    place = np.searchsorted(standing, brackets.row[own] * nodes + brackets.node[own]) + 1
+    order = np.lexsort((peaks[own], place))
+    into = place[order]
+    parts = (
+        (grid.degrees.ravel()[standing], peaks),
+        (standing // nodes, brackets.row),
+        (value.ravel()[standing], heights),
+    )
+    degrees, row, values = (np.insert(at_nodes, into, at_peaks[own][order]) for at_nodes, at_peaks in parts)
+    first = np.searchsorted(standing, grid.first * nodes)
+    first = first + np.searchsorted(into, first, side="right")
+    return Curve(degrees, row, values, first, grid, into + np.arange(len(into)))
 
 
-def _of_owners(found: dict[str, Sampled], part: str, owner: Any) -> Array:
-    stacked = np.stack([getattr(sampled, part) for sampled in found.values()])
-    return np.asarray(stacked[owner, np.arange(len(owner))])
-
-
-def _roots(brackets: _Brackets, evaluate: Evaluate, part: str) -> Array:
-    """Return the roots in degrees of values or slopes in their brackets."""
-    owner, low, high, within, f_low, f_high = brackets
-    if not len(low):
-        return low
-    return bracketed_roots(lambda degrees: _of_owners(evaluate(degrees, within), part, owner), low, high, f_low, f_high)
-
-
-def sign_changes(
-    grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: float | None = None
-) -> dict[str, Array]:
+def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
     """Return the angles (n,) in degrees, ascending, at which several quantities take the other sign, round the cycle.
 
     What is zero but for rounding, beside `size` or its own largest value, has no sign: +, 0, − is one change, where the
     piece begins in which the new sign is met; +, 0, + is none. At a jump it is the angle of the jump.
     """
-    parts = [_turns(grid, k, curve, size) for k, curve in enumerate(found.values())]
-    brackets = _Brackets.joined(part for part, _ in parts)
-    roots = _roots(brackets, evaluate, "value")
-    return {
-        name: np.sort(np.mod(np.concatenate((roots[brackets.owner == k], parts[k][1])), grid.breaks[-1]))
-        for k, name in enumerate(found)
-    }
+    parts = [_turns(k, curve, size) for k, curve in enumerate(found.values())]
+    brackets = Brackets.joined(part for part, _ in parts)
+    zeros_inside = roots(grid, brackets, evaluate, "value")
+    changes = {}
+    for k, name in enumerate(found):
+        own, jumped = brackets.owner == k, parts[k][1]
+        angles = np.mod(np.concatenate((zeros_inside[own], grid.low[jumped])), grid.cycle)
+        changes[name] = grid.in_order(angles, np.concatenate((brackets.row[own], jumped)))
+    return changes
 
 
-def _turns(grid: Grid, owner: int, curve: Curve, size: float | None) -> tuple[_Brackets, Array]:
-    """Return the brackets of the changes of sign inside pieces, and the angles of those at breaks."""
-    noise = _ROUNDING * (np.abs(curve.value).max() if size is None else size)
-    order = np.lexsort((curve.degrees, curve.within))
-    degrees, within, value = (part[order[np.abs(curve.value[order]) > noise]] for part in curve)
-    following = np.roll(np.arange(len(value)), -1)
+def _turns(owner: int, curve: Curve, size: float | None) -> tuple[Brackets, Indices]:
+    """Return the brackets of the changes of sign inside pieces, and the rows of the pieces that begin with one."""
+    magnitude = np.abs(curve.value)
+    noise = _ROUNDING * (
+        np.maximum.reduceat(magnitude, curve.first) if size is None else np.full(len(curve.first), size)
+    )
+    kept = np.flatnonzero(magnitude > curve.of_each(noise))
+    beginning = np.searchsorted(kept, curve.first)
+    begun = beginning[np.diff(np.append(beginning, len(kept))) > 0]  # of what has any sign at all
+    signed = Curve(curve.degrees[kept], curve.row[kept], curve.value[kept], begun, curve.grid, kept[:0])
+    value, row, following = signed.value, signed.row, signed.following
     last = np.flatnonzero(value * value[following] < 0)
     first = following[last]
-    inside = (within[last] == within[first]) & (first > last)
-    at_breaks = grid.breaks[np.searchsorted(grid.breaks, within[first[~inside]]) - 1]
+    inside = (row[last] == row[first]) & (first > last)
     low, high = last[inside], first[inside]
-    owners = np.full(len(low), owner)
-    return _Brackets(owners, degrees[low], degrees[high], within[low], value[low], value[high]), at_breaks
+    ends = signed.degrees[low], signed.degrees[high], row[low], np.zeros_like(low), value[low], value[high]
+    return Brackets(np.full(len(low), owner), *ends), row[first[~inside]]
 
 
 def lasting(curve: Curve, changes: Array, noise: float) -> Array:
@@ -219,18 +192,27 @@ def lasting(curve: Curve, changes: Array, noise: float) -> Array:
 
 
 def extremes_of(curve: Curve) -> Extremes:
-    """Return the largest and smallest value of a curve."""
-    return Extremes(_first_at(curve, 1.0), _first_at(curve, -1.0))
+    """Return the largest and smallest value of a curve, of every variant."""
+    ends = np.maximum.reduceat(curve.value, curve.first), np.minimum.reduceat(curve.value, curve.first)
+    size = np.maximum(np.abs(ends[0]), np.abs(ends[1]))
+    return Extremes(_first_at(curve, ends[0], size, 1.0), _first_at(curve, ends[1], size, -1.0))
 
 
-def _first_at(curve: Curve, sign: float) -> Extreme:
+def _first_at(curve: Curve, best: Array, size: Array, sign: float) -> Extreme:
     """Return the extreme and the first angle that reaches it but for rounding: plateaus answer alike everywhere."""
-    values = curve.value * sign
-    best, size = values.max(), np.abs(values).max()
     # a summit that comes back in every part of the cycle differs by the rounding of the sums that make the curve, ...
-    high = values >= best - _REPEATED * size
+    level = curve.of_each(best * sign - _REPEATED * size)
+    high = np.flatnonzero(curve.value * sign >= level)
     # ... and what only lies beside a summit, as high but for that, is none
-    summit = values >= np.maximum(np.roll(values, 1), np.roll(values, -1)) - 4 * np.finfo(float).eps * abs(best)
+    owner = np.searchsorted(curve.first, high, side="right") - 1
+    first, end = curve.first[owner], np.append(curve.first[1:], len(curve.value))[owner]
+    following = np.where(high + 1 == end, first, high + 1)
+    preceding = np.where(high == first, end - 1, high - 1)
+    value, slack = curve.value[high] * sign, 4 * np.finfo(float).eps * np.abs(best)[owner]
+    beside = np.maximum(curve.value[following] * sign, curve.value[preceding] * sign)
+    summit = high[value >= beside - slack]
+    degrees = np.full(len(best), np.inf)
+    np.minimum.at(degrees, owner[value >= beside - slack], curve.degrees[summit])
     # beside the values of the other sign this is the rounding of a dead centre, which is no float
-    exact = abs(best) > _ROUNDING * size
-    return Extreme(float(best * sign) + 0.0 if exact else 0.0, float(curve.degrees[high & summit].min()))
+    exact = np.abs(best) > _ROUNDING * size
+    return Extreme(curve.grid.told(np.where(exact, best + 0.0, 0.0)), curve.grid.told(degrees))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import Line, Piece, line
 from kurbel.render.numbers import Scale, alone, angle, cell, scale_of
+from kurbel.render.prose import folded
 
 if TYPE_CHECKING:
     from kurbel.render import Look
@@ -22,6 +23,37 @@ class Cells(NamedTuple):
     names: tuple[tuple[str, ...], ...]
     heads: tuple[tuple[str, str], ...]
     rows: tuple[tuple[str, ...], ...]
+
+    def name_widths(self, over: tuple[str, ...]) -> list[int]:
+        """Return the widths of the names and of what stands over them; of rows without a name there are none."""
+        return [max(map(width, names)) for names in zip(over or ("",) * len(self.names[0]), *self.names)]
+
+    @property
+    def widths(self) -> list[int]:
+        """The widths of the columns."""
+        return [max(map(width, texts)) for texts in zip(*zip(*self.heads), *self.rows)]
+
+    def fitting(self, room: int | None, over: tuple[str, ...]) -> Iterator[Cells]:
+        """Yield the table in parts that fit into so many columns; without names the first column says again which row.
+
+        A part has one column more than what says the row, however narrow it must be.
+        """
+        first = 0 if self.names[0] else 1
+        beside = sum(one + _GAP for one in (*self.name_widths(over), *self.widths[:first]))
+        chosen: list[int] = []
+        for number, wide in enumerate(self.widths[first:], first):
+            if room and chosen and beside + sum(self.widths[k] + _GAP for k in chosen) + wide > room:
+                yield self._of(*range(first), *chosen)
+                chosen = []
+            chosen.append(number)
+        yield self._of(*range(first), *chosen)
+
+    def _of(self, *columns: int) -> Cells:
+        return Cells(
+            self.names,
+            tuple(self.heads[k] for k in columns),
+            tuple(tuple(row[k] for k in columns) for row in self.rows),
+        )
 
 
 def cells_of(table: PlaceTable, look: Look) -> Cells:
@@ -64,17 +96,17 @@ def place_tables(report: Report, look: Look) -> Iterator[list[Line]]:
     """Yield the lines of every table of places, each with its title."""
     for part in report.all_parts:
         for table in part.place_tables:
-            yield [
-                line(look.charset.text(table.title), "name"),
-                *_lines(cells_of(table, look), look, table.heads if table.headed else ()),
-            ]
+            over = table.heads if table.headed else ()
+            found = [line(one, "name") for one in folded(look.charset.text(table.title), look.width)]
+            for cells in cells_of(table, look).fitting(look.width, over):
+                found += _lines(cells, look, over)
+            yield found
 
 
 def _lines(cells: Cells, look: Look, name_heads: tuple[str, ...]) -> Iterator[Line]:
-    over = name_heads or ("",) * len(cells.names[0])  # of rows without a name there are none
-    name_widths = [max(map(width, names)) for names in zip(over, *cells.names)]
+    over = name_heads or ("",) * len(cells.names[0])
+    name_widths, widths = cells.name_widths(name_heads), cells.widths
     symbols, units = zip(*cells.heads)
-    widths = [max(map(width, texts)) for texts in zip(symbols, units, *cells.rows)]
     side = sum(cells_ + _GAP for cells_ in name_widths)
     ruled = line(look.charset.rule * (side + sum(cells_ + _GAP for cells_ in widths) - _GAP), "rule")
     yield _line([left(name, wide) for name, wide in zip(over, name_widths)], symbols, widths, "head")

@@ -109,9 +109,9 @@ def _weights(balance: MachineBalance, system: str) -> Iterator[PlaceTable]:
         )
     if balance.locomotive:
         wheels = [Weight(one, 1, place) for one, place in zip(balance.locomotive.unbalanced, balance.wheels)]
-        assert balance.omega
-        blows = shown_column(WEIGHTS["hammer_blow"], [abs(one.product) * balance.omega**2 for one in wheels], system)
-        columns = (*_of_weights(wheels, system), blows)
+        columns = _of_weights(wheels, system)
+        if square := (balance.omega or 0.0) ** 2:
+            columns += (shown_column(WEIGHTS["hammer_blow"], [abs(one.product) * square for one in wheels], system),)
         yield PlaceTable("wheels", "Beyond what turns, in the wheels", ("wheel",), (("A",), ("B",)), columns)
 
 

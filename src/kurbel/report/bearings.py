@@ -37,7 +37,13 @@ def subjects(case: Case) -> Iterable[Subject]:
 
 
 def _subject(part: Bearing) -> Subject:
-    return Subject(part.name, (part,), part.at, left_out=lambda: _left_out(part))
+    return Subject(
+        part.name,
+        (part,),
+        part.at,
+        left_out=lambda: _left_out(part),
+        of=part.followed[0].drive.name if part.of_rod else "",
+    )
 
 
 _FRAMES = (

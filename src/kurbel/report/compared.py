@@ -95,12 +95,18 @@ def _kept(quantity: Quantity, bound: float, value: float) -> tuple[str, str, boo
     """Judge by a bound, from below or from above; of a residual the size counts."""
     unit = getattr(bound, "unit", "")
     lower, bars = quantity.bounded_below, "|" if quantity.id.endswith("_residual") else ""
-    excess = bound - value if lower else (abs(value) if bars else value) - bound
-    broken = excess > _ROUNDING * abs(bound)
+    broken = breaks(quantity, bound, value)
     relation = ("<" if broken else "≥") if lower else (">" if broken else "≤")
     size = f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else f"{bars}{_shown(value, quantity.kind, unit)}{bars}"
     text = f"{size} {relation} {_shown(bound, quantity.kind, unit)}"
     return text, "BROKEN" if broken else "kept", not broken
+
+
+def breaks(quantity: Quantity, bound: float, value: float) -> bool:
+    """Return whether a key value breaks its bound: falls below one from below, exceeds any other."""
+    magnitude = abs(value) if quantity.id.endswith("_residual") else value
+    excess = bound - value if quantity.bounded_below else magnitude - bound
+    return excess > _ROUNDING * abs(bound)
 
 
 def _met(quantity: Quantity, figure: Expected, value: float) -> tuple[str, str, bool]:

@@ -29,7 +29,7 @@ class Subject(NamedTuple):
     results: what answers its key values, the first that knows one; at: takes crank angles (n,) in degrees and returns
     the state whose attributes are its columns, (n,) in SI or None; lists: the quantities that it may have. left_out,
     warnings, place_tables: are made when they are read; source: where its columns are told of, `angles_where`, None for
-    what has no rows.
+    what has no rows; of: the cylinder that a pin belongs to.
     """
 
     name: str
@@ -40,6 +40,7 @@ class Subject(NamedTuple):
     warnings: Callable[[], Iterable[str]] = tuple
     place_tables: tuple[PlaceTable, ...] = ()
     source: Any = None
+    of: str = ""
 
     def says(self, quantity: Quantity) -> bool:
         """Whether a quantity says something new here."""
@@ -137,6 +138,7 @@ class Frame(NamedTuple):
             self._later(subject.warnings),
             subject.place_tables,
             nowhere,
+            subject.of,
         )
 
     def _later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:

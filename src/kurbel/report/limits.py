@@ -24,13 +24,13 @@ def limited_values(machine: Machine, names: Iterable[str]) -> dict[str, list[Fou
     with np.errstate(all="ignore"):
         for name in names:
             try:
-                found[name] = [one for command in _commands(machine, name) for one in _values(case, command, name)]
+                found[name] = [one for command in commands_for(machine, name) for one in _values(case, command, name)]
             except KurbelError as error:
                 found[name] = error
     return found
 
 
-def _commands(machine: Machine, name: str) -> tuple[str, ...]:
+def commands_for(machine: Machine, name: str) -> tuple[str, ...]:
     """Return the commands whose value the limit is for; one cylinder has it as the machine, but for the efficiency."""
     first, *others = every_quantity().commands_of(name)
     alike = len(machine.cylinders) == 1 and machine.efficiency == 1

@@ -1,6 +1,6 @@
 """What a report is made of, whatever it will be rendered as."""
 
-from __future__ import annotations
+# annotations are taken as they stand: NamedTuple compiles each postponed one at every start
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cached_property
@@ -97,7 +97,8 @@ class PlaceTable(NamedTuple):
 class Part(NamedTuple):
     """The results of one cylinder, L/R or scene, or of the whole machine; the first column is the crank angle.
 
-    `name` is the cylinder's name or the L/R as a number. nowhere: why it has no row, where rows are sought.
+    `name` is the cylinder's name or the L/R as a number; of: the cylinder that a pin belongs to. nowhere: why it has no
+    row, where rows are sought.
     """
 
     name: str | float
@@ -107,6 +108,7 @@ class Part(NamedTuple):
     warnings: Collection[str] = ()
     place_tables: tuple[PlaceTable, ...] = ()
     nowhere: str = ""
+    of: str = ""
 
 
 class Input(NamedTuple):
@@ -151,25 +153,25 @@ class Report(NamedTuple):
         """The parts, and the whole machine after them."""
         return self.parts if self.whole is None else (*self.parts, self.whole)
 
-    def of_cylinder(self, name: str) -> Report:
-        """Return the results of one cylinder alone, by its name or its number.
+    def of_cylinder(self, name: str) -> "Report":
+        """Return the results of one part alone, or of all that belong to a cylinder, by its name or its number.
 
         Raises UsageError where there are none, and where one is called by the number of another; NoSolutionError where
         no row of it is found.
         """
         name = cylinder_meant(name, self.cylinders)
-        names = tuple(str(part.name) for part in self.parts)
-        if name not in names:
-            there = ", ".join(names) or "the whole machine only"
+        found = tuple(part for part in self.parts if name in (part.name, part.of))
+        if not found:
+            there = ", ".join(str(part.name) for part in self.parts) or "the whole machine only"
             raise UsageError(
                 f"--cylinder: kurbel {self.command} has no results of '{shown(name)}'; it has those of {there}"
             )
-        if nowhere := self.parts[names.index(name)].nowhere:
+        if nowhere := found[0].nowhere:
             raise NoSolutionError(nowhere)
         title = f"{self.title}: {name}" if len(self.all_parts) > 1 else self.title
-        return self._replace(title=title, parts=(self.parts[names.index(name)],), whole=None)
+        return self._replace(title=title, parts=found, whole=None)
 
-    def key_values_alone(self) -> Report:
+    def key_values_alone(self) -> "Report":
         """Return the report without its tables."""
         parts = [part._replace(columns=(), place_tables=()) for part in self.all_parts]
         return self._replace(whole=parts.pop() if self.whole else None, parts=tuple(parts))

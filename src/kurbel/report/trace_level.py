@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from itertools import pairwise
 
+import numpy as np
+
 from kurbel.report.trace_readings import ENGINE, Reading, in_bar, zero_text
 from kurbel.solver.pressure.exponents import AS_GIVEN, COMPRESSION, Supposed, exponent
 
@@ -19,6 +21,10 @@ _SMALLEST_PEAK = 1e5
 _TO_COMPRESSION = 0.25, 8.0
 """Peak over what the compression from the ambient gives: throttled by three quarters, or supercharged and fired."""
 _USUAL_PEAK = 60e5
+_BELOW = 0.8
+"""Share of the ambient by which gauge pressures of an engine lie below it at most; what is lower has no level."""
+_LEAST_SWING = 1e3
+"""Pa; what varies less is flat."""
 _POWERS = 0.001, 0.01, 0.1, 10.0, 100.0, 1000.0
 _LATEST = 10.0
 """Degrees by which a dead centre is found wrong; beyond, other notes speak."""
@@ -26,10 +32,23 @@ _LATEST = 10.0
 
 def level_notes(reading: Reading) -> Iterable[str]:
     """Yield the one note on level, unit or compression of a trace, if any."""
-    for judge in (_of_unit, _of_level, _of_compression):
+    for judge in (_of_sign, _of_unit, _of_level, _of_compression):
         if found := judge(reading):
             yield found
             return
+
+
+def _of_sign(reading: Reading) -> str:
+    """Judge whether the trace stands on its head, as of a charge amplifier with the wrong polarity."""
+    trace, p = reading.pressure.trace, reading.pressure.pressures
+    middle = float(np.median(p))
+    if middle - float(p.min()) < ENGINE * max(float(p.max()) - middle, _LEAST_SWING):
+        return ""
+    other = reading.otherwise(samples=-trace.samples)
+    return (
+        f"its swing from {in_bar(middle)} goes down to {in_bar(float(p.min()))}: does it stand on its head? write "
+        f"'scale: {-trace.scale:g}'; {reading.against(other)}"
+    )
 
 
 def _of_unit(reading: Reading) -> str:
@@ -93,10 +112,12 @@ def _of_level(reading: Reading) -> str:
     setting, low = reading.pressure.setting, reading.low
     said = f"for 15 % of the cycle the pressure lies below {in_bar(low)}"
     stays = f"p_i stays, P changes by {in_bar(setting.ambient)} times the area"
-    if setting.absolute and low < 0.1 * setting.ambient:
+    vacuum = 0.0 if setting.absolute else -setting.ambient
+    if setting.absolute and -_BELOW * setting.ambient <= low < 0.1 * setting.ambient:
         return f"{said} absolute: these look like gauge pressures; write 'pressures: gauge'; {stays}"
-    if not setting.absolute and low < -setting.ambient:
-        return f"{said}, the perfect vacuum being at {in_bar(-setting.ambient)}; write 'pegging: ambient'; {stays}"
+    if low < vacuum:
+        way = "mend 'pegging'" if reading.pressure.trace.pegging else "write 'pegging: ambient'"
+        return f"{said}, the perfect vacuum being at {in_bar(vacuum)}; {way}; {stays}"
     known = "" if reading.pressure.trace.clearance else "; a 'compression_ratio' would tell by the compression"
     near = _NEAR_AMBIENT[0] < low / max(setting.ambient, 1.0) < _NEAR_AMBIENT[1]
     if not setting.absolute and near and not _sensible(reading):

@@ -19,7 +19,10 @@ _USUAL = 8.0
 """Degrees after the dead centre at which fired engines peak, more or less."""
 _MOTORED_LEAD = 1.5  # deg; heat loss and leakage put a motored peak up to about 1° before the dead centre
 _MOTORED_SEARCH = 10.0, 30.0  # deg before and after the dead centre; what peaks elsewhere is a compressor or pump
+_SURE = 3.0  # standard errors of the place of the peak, beside what a crooked peak may be off
+_OFF = 0.1  # deg
 _MOTORED_SIDES = 10.0, 20.0, 30.0, 45.0, 60.0, 75.0, 90.0  # deg from the peak at which both its sides are compared
+_AROUND = 2.5  # deg on either side of such a place over which the pressures are a mean: one sample is noise
 _MOTORED_RATIO = 0.6, 1.1  # of the pressures after and before the peak: what heat loss and leakage take, and noise
 _MOTORED_RISE = 3.0  # least pressure of the peak over that at its feet; what is flat has no peak
 
@@ -60,7 +63,7 @@ def _elsewhere(reading: Reading) -> str:
     where = "firing dead centre" if reading.pressure.setting.cycle == 720 else "dead centre"
     gas_exchange = abs(reading.peak_at) > 180
     return (
-        f"the peak stands {abs(reading.peak_at):.4g} deg {away} the {where}"
+        f"the peak stands {abs(reading.top_at):.4g} deg {away} the {where}"
         f"{', in the gas exchange' if gas_exchange else ''}: write {zero_text(other)}; {reading.against(other)}"
     )
 
@@ -78,14 +81,15 @@ def _brought_back(reading: Reading) -> Reading:
 
 
 def _motored_off(reading: Reading) -> str:
-    before, later = _MOTORED_SEARCH
-    after, step = reading.peak_at, reading.step
-    off = -before <= after < -_MOTORED_LEAD - step or step < after <= later
-    if not off or not motored(reading.pressure, reading.top):
+    peak, after = reading.vertex, reading.peak_at
+    if peak is None or not -_MOTORED_SEARCH[0] <= after <= _MOTORED_SEARCH[1]:
+        return ""
+    sure = _OFF + _SURE * peak.error
+    if -_MOTORED_LEAD - sure <= after <= sure or not motored(reading.pressure, reading.top):
         return ""
     other = reading.put_at(reading.pressure.trace.angle_zero + after)
     return (
-        f"no combustion shows, and the peak stands {abs(after):.3g} deg {'after' if after > 0 else 'before'} "
+        f"no combustion shows, and the peak stands {abs(after):.2g} deg {'after' if after > 0 else 'before'} "
         f"the dead centre; that of a motored engine stands at it or just before: check angle_zero; with "
         f"{zero_text(other)} {reading.against(other).replace('is then', 'is')}"
     )
@@ -97,9 +101,10 @@ def motored(pressure: TracePressure, top: int) -> bool:
     The sign of the work tells nothing, since a motored trace that stands too late does work.
     """
     trace, lift, sides = pressure.trace, pressure.setting.lift, np.array(_MOTORED_SIDES)
+    around = trace.angles[top] + np.linspace(-_AROUND, _AROUND, 21)
     before, after = (
-        lift + np.interp(trace.angles[top] + side, trace.angles, pressure.pressures, period=trace.period)
-        for side in (-sides, sides)
+        lift + np.interp(np.add.outer(way, around), trace.angles, pressure.pressures, period=trace.period).mean(axis=1)
+        for way in (-sides, sides)
     )
     low, high = _MOTORED_RATIO
     alike = bool(np.all((low * before <= after) & (after <= high * before)))

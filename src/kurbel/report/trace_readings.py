@@ -8,11 +8,14 @@ from typing import Any
 import numpy as np
 
 from kurbel.declared.unit_systems import convert
+from kurbel.numerics.vertex import vertex
 from kurbel.solver.pressure.exponents import COMPRESSION, Exponent, exponent, from_dead_centre
 from kurbel.solver.pressure.trace import TracePressure
 
 _LOW = 0.15
 """Share of the cycle below the low level: a noisy sample, or a few, are no level."""
+_PARABOLA = 6.0
+"""Degrees on either side of the top sample through which a parabola goes."""
 ENGINE = 8.0
 """Peak over low level, absolute, from which on something is compressed, or burns, in a small space."""
 _NARROW = 90.0
@@ -31,9 +34,20 @@ class Reading:
         self.low = float(p[order][np.searchsorted(passed, _LOW * passed[-1])])
         self.top = int(np.argmax(p))
         self.peak = float(p[self.top])
-        self.peak_at = float(from_dead_centre(pressure)[self.top])
+        # the closing sample stands there once
+        self.vertex = vertex(from_dead_centre(pressure)[:-1], p[:-1], self.top_at, _PARABOLA)
         self.half_width = float(widths[p > (self.peak + self.low) / 2].sum()) / 2
         self.step = float(np.diff(angles)[max(0, self.top - 1) : self.top + 1].max())
+
+    @property
+    def top_at(self) -> float:
+        """Where the largest sample stands."""
+        return float(from_dead_centre(self.pressure)[self.top])
+
+    @property
+    def peak_at(self) -> float:
+        """Where the peak stands: the top sample of a flat and noisy one may stand degrees away."""
+        return self.vertex.place if self.vertex else self.top_at
 
     @property
     def absolute_low(self) -> float:

@@ -9,14 +9,18 @@ import numpy as np
 from kurbel.report.trace_readings import Reading, in_bar
 from kurbel.solver.pressure.corrected import LAST, drift_of
 
-_RANGE = 0.02
-"""Share of the range of a trace that the ends of its cycle may differ by."""
+_RANGE = 0.06
+"""Share of the pressure where the cycle closes, above the low level, that one cycle and the next may differ by."""
+_LEAST = 0.2
+"""Share of the ambient by which the ends of a cycle differ from one to the next in any gas exchange."""
 _WORK = 0.01
 """Share of p_i below which a drift is not worth a word."""
 _SURE = 6.0
 """Standard deviations of the noise that a drift must stand out by."""
 _WANDERED = 10.0
 """Degrees by which the cycles of one engine never move from the first to the last."""
+_LAPPED = 0.05
+"""Share of a cycle by which each may wander against the one before; beyond, others lie over it."""
 _TWICE = 0.25
 """Share of samples that stand at the angle of the one before, from which on angles are rounded."""
 _OTHER = 0.2
@@ -32,18 +36,29 @@ def sample_notes(reading: Reading) -> Iterable[str]:
 
 
 def _of_turns(reading: Reading) -> Iterable[str]:
-    """A four-stroke record of which only the angle of one turn is told may be meant for two strokes by mistake."""
+    """Laps that differ by twos are the turns of a four-stroke cycle, taken for two strokes, or each for a cycle."""
     pressure = reading.pressure
-    each = pressure.each
-    if pressure.setting.cycle != 360 or len(each) < 2:
+    each, trace = pressure.each, pressure.trace
+    if len(each) < 2 or len(each) % 2:
         return
     odd, even = each[0::2].mean(axis=0), each[1::2].mean(axis=0)
-    if np.abs(odd - even).max() > _OTHER * max(np.ptp(odd), np.ptp(even)) and len(each) % 2 == 0:
+    if np.abs(odd - even).max() <= _OTHER * max(np.ptp(odd), np.ptp(even)):
+        return
+    peaks = f"differ by twos, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
+    if pressure.setting.cycle == 360:
         yield (
-            f"its turns differ by twos, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}: a four-stroke "
-            f"cycle? write 'cycle: four-stroke' at the top; p_i is then {in_bar(2 * pressure.area)} instead of "
-            f"{in_bar(pressure.area)}"
+            f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; p_i is then "
+            f"{in_bar(2 * pressure.area)} instead of {in_bar(pressure.area)}"
         )
+        return
+    step = trace.period / (len(trace.angles) - 1) / 2
+    angles = np.arange(2 * len(trace.angles) - 1) * step
+    joined = np.concatenate((each[0::2, :-1], each[1::2, :-1], each[0::2, :1]), axis=1)
+    other = reading.otherwise(angles=angles, samples=joined, pegging=None, level=False)
+    yield (
+        f"its cycles {peaks}: does the angle number the samples of one turn? write 'angle_step: {step:g} deg'; "
+        f"{reading.against(other)}"
+    )
 
 
 def _of_speed(reading: Reading) -> Iterable[str]:
@@ -58,11 +73,13 @@ def _of_speed(reading: Reading) -> Iterable[str]:
     if abs(wandered) <= _WANDERED:
         return
     off = wandered / (trace.period * (len(each) - 1))
+    change = f"{abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'}"
+    told = f" If it is told by time: a 'recorded_speed' about {change} brings both together"
+    way = told if abs(off) < _LAPPED else ""
     first, last = (float(pressure.weights @ one) for one in (each[0], each[-1]))
     yield (
         f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last, "
-        f"and p_i goes from {in_bar(first)} to {in_bar(last)}: was the speed another, or not constant? A "
-        f"'recorded_speed' about {abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'} brings both together"
+        f"and p_i goes from {in_bar(first)} to {in_bar(last)}: was the speed another, or not constant?{way}"
     )
 
 
@@ -85,7 +102,8 @@ def _of_drift(reading: Reading) -> Iterable[str]:
     pressure = reading.pressure
     trace, p = pressure.trace, pressure.pressures
     jump = float(drift_of(trace, p[np.newaxis])[0])
-    if abs(jump) <= max(_RANGE * float(np.ptp(p)), _doubt(reading)):
+    closes = abs(float(p[0]) - reading.low)
+    if abs(jump) <= max(_RANGE * closes, _LEAST * reading.pressure.setting.ambient, _doubt(reading)):
         return
     other = reading.otherwise(level=True)
     change = abs(other.pressure.area - pressure.area)
@@ -104,4 +122,6 @@ def _doubt(reading: Reading) -> float:
     p = pressure.pressures[:-1]
     bends = np.sort(np.abs(np.concatenate((np.diff(p[-4:], 2), np.diff(p[:4], 2)))))
     coarse = pressure.trace.angles[-1] - pressure.trace.angles[-4] > LAST
-    return max(_SURE * pressure.noise, 3.0 * float(bends[-1] if coarse else bends[len(bends) // 2]))
+    steps = np.abs(np.diff(pressure.pressures))
+    resolution = 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0
+    return max(_SURE * pressure.noise, resolution, 3.0 * float(bends[-1] if coarse else bends[len(bends) // 2]))

@@ -10,6 +10,7 @@ from kurbel.declared.forms.points import Points
 from kurbel.declared.forms.records import Inline, Record, Variant
 from kurbel.declared.forms.scalars import Choice, Count, FilePath, Number, Physical, Text, Truth, UnitName
 from kurbel.declared.forms.structures import Keyed, Listing, OneOf
+from kurbel.declared.forms.uncertainties import Uncertainties
 
 __all__ = [
     "Alike",
@@ -30,6 +31,7 @@ __all__ = [
     "Record",
     "Text",
     "Truth",
+    "Uncertainties",
     "UnitName",
     "Variant",
 ]

@@ -27,13 +27,13 @@ class ColumnRange(Scalar):
         return found if len(found) <= _MOST else refused(f"{text} are {len(found)} columns; at most {_MOST} are read")
 
     def expected(self) -> str:
-        return "the numbers of columns, such as '2-61'"
+        return "the numbers of columns, such as '2-61', or in quotation marks '2, 5, 7-9'"
 
     def example(self) -> str:
         return "2-61"
 
     def written(self) -> str:
-        return "`2-61`, or `2, 5, 7-9`"
+        return "`2-61`, or in quotation marks `'2, 5, 7-9'`"
 
     def schema(self, definitions: Schema) -> Schema:
         return {"type": ["string", "integer"], "pattern": rf"^\s*{_COLUMNS}\s*$"}

@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 from kurbel.declared.forms.scalars import Choice, reference, refused
 from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, none_of, required
-from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, glued_hint, kind_of
+from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, glued_hint, kind_of
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.near_words import near
 
@@ -25,14 +25,16 @@ class Record(Form):
 
     def __init__(self, target: str, inline_too: bool = False) -> None:
         self.target, self.inline_too = target, inline_too
+        self._class: type[Described] | None = None
 
     def load(self) -> type[Described]:
         """Import and return the class."""
-        from importlib import import_module
+        if self._class is None:
+            from importlib import import_module
 
-        module, name = self.target.split(":")
-        found: type[Described] = getattr(import_module(module), name)
-        return found
+            module, name = self.target.split(":")
+            self._class = getattr(import_module(module), name)
+        return self._class
 
     @property
     def keys(self) -> Keys:
@@ -99,17 +101,27 @@ class Record(Form):
                 where = (*path, beside) if beside else path
                 values[name] = reading.fault(where, _missing(name, key, beside), bool(beside))
         try:
-            return self._born(reading, values, path)
+            born = self._born(reading, values, path)
         except RuleError as error:
-            return reading.refuse(path, RuleError(*(self._flat(fault, mapping) for fault in error.faults)))
+            return reading.refuse(path, self.flattened(error, mapping))
+        if reading.births is not None:
+            reading.births.append(Birth(self, mapping, path, values, born))
+        return born
+
+    def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
+        """Return the faults of the record as those of its mapping."""
+        return RuleError(*(self._flat(fault, mapping) for fault in error.faults))
 
     def _born(self, reading: Reading, values: Tree, path: Path) -> Any:
         """Make the record, or note what it has to say of single keys where others could not be read."""
-        cls = self.load()
         if REFUSED in values.values():
-            return reading.refuse(path, RuleError(*cls.faults_of_keys(values)))
+            return reading.refuse(path, RuleError(*self.load().faults_of_keys(values)))
+        return self.born(values)
+
+    def born(self, values: Tree) -> Any:
+        """Return the record of these values of its keys; raises RuleError."""
         try:
-            born = cls.from_keys(**values)
+            born = self.load().from_keys(**values)
         except ArithmeticError:
             refused(_TOO_EXTREME)
         return born if _finite(born, values) else refused(_TOO_EXTREME)

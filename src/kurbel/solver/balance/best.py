@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kurbel.numerics.enclosing import smallest_circle
-from kurbel.solver.balance.circles import Circles, unit_vectors
+from kurbel.numerics.enclosing import Circle, PlaneCurve, carried, smallest_circle
+from kurbel.solver.balance.circles import Circles
 from kurbel.solver.balance.weights import Weight
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, ComplexArray
 
 _SETTLED = 1e-13  # the radius, relatively
 _AT_ONCE = 6  # summits; of a curve that is a circle all points are
@@ -28,23 +31,44 @@ def least(products: Circles) -> Least:
     """Return the counterweight u on the crank that leaves the least largest |P(φ) + u e^{iφ}|.
 
     In the frame of the crank P is the curve P(φ) e^{−iφ}, and −u the centre of the smallest circle round it. That round
-    its farthest points grows, point by point, until nothing of the curve stands beyond it. With even orders alone the
-    curve is its own image about 0, where the centre then is.
+    its farthest points grows, point by point, until nothing of the curve stands beyond it; Newton's method tells where
+    those that carry it are to be sought. With even orders alone the curve is its own image about 0, where the centre
+    then is.
     """
     if not (products.forward[::2].any() or products.backward[::2].any()):
         return Least(0j, products)
-    points: list[complex] = []
-    weight, radius = -complex(products.forward[0]), 0.0
+    curve = _in_crank_frame(products)
+    angles, circle = np.array([]), Circle(complex(products.forward[0]), 0.0, ())
     for _ in range(_ROUNDS):
-        left = products.turned_by(weight)
-        far = [one for one in left.summits[:_AT_ONCE] if one.value > radius * (1 + _SETTLED)]
+        left = products.turned_by(-circle.centre)
+        far = [one.degrees for one in left.summits[:_AT_ONCE] if one.value > circle.radius * (1 + _SETTLED)]
         if not far:
             break
-        angles = np.array([one.degrees for one in far])
-        points += (products.at(angles) * unit_vectors(-angles)).tolist()
-        centre, radius, carriers = smallest_circle(points)
-        points, weight = list(carriers), -centre
-    return Least(weight, left)
+        circle, angles = _enclosed(curve, np.concatenate((angles, np.radians(far))))
+        if len(angles) > 1:
+            circle, angles = _enclosed(curve, np.concatenate((angles, carried(curve, angles, circle))))
+    return Least(-circle.centre, left)
+
+
+def _enclosed(curve: PlaneCurve, angles: Array) -> tuple[Circle, Array]:
+    """Return the smallest circle round the points of a curve at these angles, and the angles of those that carry it."""
+    points = curve(angles)[0].tolist()
+    circle = smallest_circle(points)
+    return circle, angles[[points.index(one) for one in circle.carriers]]
+
+
+def _in_crank_frame(products: Circles) -> PlaneCurve:
+    """Return P(φ) e^{−iφ} with its first and second derivatives, each (n,), at angles (n,) in radians."""
+    orders = np.arange(1, len(products.forward) + 1)
+    turns = np.concatenate((orders - 1, -orders - 1))
+    sizes = np.concatenate((products.forward, products.backward))
+    turns, sizes = turns[sizes != 0], sizes[sizes != 0]
+
+    def curve(angles: Array) -> tuple[ComplexArray, ...]:
+        turned = np.exp(1j * np.multiply.outer(angles, turns))
+        return tuple(turned @ (sizes * (1j * turns) ** derivative) for derivative in range(3))
+
+    return curve
 
 
 def in_planes(force: complex, moment: complex, planes: Sequence[float]) -> tuple[Weight, Weight]:

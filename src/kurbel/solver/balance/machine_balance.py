@@ -251,9 +251,9 @@ class MachineBalance(Results):
 
     @cached_property
     def locomotive(self) -> LocomotiveBalance | None:
-        """What of it concerns the wheels of a locomotive; None of another machine, or at rest."""
+        """What of it concerns the wheels of a locomotive; None of another machine."""
         given = self.machine.locomotive
-        return LocomotiveBalance(self, given) if given and self.omega else None
+        return LocomotiveBalance(self, given) if given else None
 
 
 class BookBalance:

@@ -54,13 +54,15 @@ class Bearing(Results):
     """A pin or a main bearing at the angles of crank 1. Attributes are named by the ids of the key values, in SI.
 
     name: as it is printed; followed: the cylinders that load it; size; journal, shell: the frames in which its two
-    surfaces stand still; contact: degrees from the direction of the load to where they touch.
+    surfaces stand still; contact: degrees from the direction of the load to where they touch; of_rod: whether a rod
+    of a cylinder turns on it.
     """
 
     command = "bearings"
     journal: str
     shell: str
     contact = 180.0
+    of_rod = False
 
     def __init__(self, name: str, followed: Sequence[Following], size: Size, speed: float | None) -> None:
         self.name = name
@@ -177,7 +179,8 @@ class Bearing(Results):
     def _unloaded(self, frame: str) -> Unloaded | None:
         """Return the arc of the surface that stands still in a frame; None where it is loaded nowhere."""
         points = [self._curves[name] for name in (frame, "load")]
-        degrees, within = (np.concatenate([one[part] for one in points]) for part in (0, 1))
+        degrees = np.concatenate([one.degrees for one in points])
+        within = np.concatenate([one.within for one in points])
         order = np.lexsort((degrees, within))
         degrees, within = degrees[order], within[order]
         found = self._evaluate(degrees, within)

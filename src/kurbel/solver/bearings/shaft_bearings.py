@@ -31,6 +31,7 @@ class _RodPin(Bearing):
 
     what: str
     shell = "rod"
+    of_rod = True
 
     def __init__(self, name: str, followed: Following, size: Size, speed: float | None, turns: int) -> None:
         super().__init__(name, (followed,), size, speed)

@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kurbel.crank_angle import CrankAngle, jet_angle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
+from kurbel.machine.variants import taken
 from kurbel.mechanisms import fan
-from kurbel.numerics.grid import Cuts
+from kurbel.numerics.arithmetic import some, sqrt, where
+from kurbel.numerics.grid import Cuts, Grid
 from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
+    from kurbel.arrays import Array, Indices
     from kurbel.machine.resistance import RamForce
     from kurbel.solver.cylinder.gas import PistonGas
     from kurbel.solver.cylinder.pins import PinFriction
@@ -26,15 +28,27 @@ class Drive:
     """A cylinder of a machine: masses, weights, pressures and friction as the state needs them.
 
     revolutions, cycle: turns and degrees of crank angle per working cycle of this cylinder; omega: rad/s or None.
+    count: how many variants of a machine it is, whose numbers are then arrays (v,); None for one machine.
     """
 
-    def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
+    variant: Indices | None = None
+    """Which variants its numbers are of, of the shape of the angles that it is asked for."""
+
+    def __init__(self, machine: Machine, cylinder: Cylinder, count: int | None = None) -> None:
         self.machine = machine
+        self.count = count
         self.cylinder = cylinder
         self.name = cylinder.name
         self.mechanism = cylinder.mechanism
         self.revolutions = CYCLES[machine.cycle_of(cylinder)]
         self.cycle = 360.0 * self.revolutions
+
+    def taken(self, index: Indices) -> Drive:
+        """Return these of the variants, with numbers of the shape of the index."""
+        other = Drive(taken(self.machine, index), taken(self.cylinder, index))
+        other.variant = index
+        other.gas = tuple(gas.taken(index) for gas in self.gas)
+        return other
 
     @cached_property
     def omega(self) -> float | None:
@@ -71,7 +85,7 @@ class Drive:
         return rod.mass * (1 - rod.share) * self.mechanism.crank * self.omega * self.omega
 
     @cached_property
-    def pin_inertia(self) -> float:
+    def pin_inertia(self) -> Any:
         """Moment of inertia m R² in kg m² of what turns with the crank pin."""
         masses = self.cylinder.masses
         return masses.at_pin(self.mechanism.rod_length) * self.mechanism.crank**2 if masses else 0.0
@@ -92,7 +106,7 @@ class Drive:
         return self.cylinder.masses is not None and self.omega is not None
 
     @cached_property
-    def weight(self) -> tuple[float, float] | None:
+    def weight(self) -> tuple[Any, Any] | None:
         """Weight of the reciprocating masses in N along the stroke line and on the guide; None where it is left out."""
         return self.weight_of(self.mass) if self.cylinder.masses else None
 
@@ -102,7 +116,7 @@ class Drive:
         return None if incline is None else (mass * GRAVITY * incline.sin, mass * GRAVITY * incline.cos)
 
     @property
-    def guide_weight(self) -> float:
+    def guide_weight(self) -> Any:
         """Weight on the guide in N."""
         return self.weight[1] if self.weight else 0.0
 
@@ -122,7 +136,8 @@ class Drive:
     @property
     def own_gas(self) -> PistonGas | None:
         """Pressures on the cylinder's own piston."""
-        return next((gas for gas in self.gas if gas.piston is self.cylinder.pistons[0]), None)
+        pistons = self.cylinder.pistons
+        return self.gas[0] if pistons and pistons[0].indicator else None
 
     @cached_property
     def has_force(self) -> bool:
@@ -135,7 +150,7 @@ class Drive:
         return self.cylinder.ram_force or self.cylinder.moment
 
     @cached_property
-    def resistance_work(self) -> float | None:
+    def resistance_work(self) -> Any:
         """Work in J per cycle that the resistance takes out, negative; None without one."""
         if self.resistance is None:
             return None
@@ -143,19 +158,24 @@ class Drive:
         return -strokes * self.mechanism.stroke * self.revolutions
 
     @cached_property
-    def crosshead_friction(self) -> float:
+    def crosshead_friction(self) -> Any:
         """f of the crosshead; 0 without one."""
         friction = self.cylinder.friction
-        return (friction.crosshead or 0.0) if friction else 0.0
+        return 0.0 if friction is None or friction.crosshead is None else friction.crosshead
 
     @property
-    def guide_area(self) -> float | None:
+    def rubs(self) -> bool:
+        """Whether the crosshead rubs on its guide."""
+        return some(self.crosshead_friction != 0)
+
+    @property
+    def guide_area(self) -> Any:
         """Area in m² of the crosshead's shoe; None where its size is not given."""
         guide = self.cylinder.friction.guide if self.cylinder.friction else None
         return guide.length * guide.width if guide else None
 
     @cached_property
-    def ring_force(self) -> float:
+    def ring_force(self) -> Any:
         """Friction force of the piston rings in N; 0 without them."""
         friction = self.cylinder.friction
         if not (friction and friction.rings):
@@ -165,10 +185,10 @@ class Drive:
         return ring_force(friction.rings, self.cylinder.pistons[0].bore)
 
     @cached_property
-    def steady_friction(self) -> float:
+    def steady_friction(self) -> Any:
         """Friction in N that is the same over the stroke: of the piston rings, and what is given as a force."""
         friction = self.cylinder.friction
-        return self.ring_force + ((friction.constant or 0.0) if friction else 0.0)
+        return self.ring_force + (0.0 if friction is None or friction.constant is None else friction.constant)
 
     @cached_property
     def pin_friction(self) -> PinFriction | None:
@@ -196,17 +216,34 @@ class Drive:
     @cached_property
     def cuts(self) -> Cuts:
         """The crank angles in degrees that cut the cycle into smooth pieces."""
-        smooth = [*self.mechanism.cuts(), *self._near_locking(), *(angle for gas in self.gas for angle in gas.bends)]
-        return Cuts.of_turns(smooth, self.cycle, [gas.starts for gas in self.gas])
+        return Cuts.of_turns(self._smooth, self.cycle, self._jumps)
 
-    def _near_locking(self) -> Iterator[float]:
+    @cached_property
+    def pieces(self) -> Grid:
+        """The cycle in smooth pieces, or the cycles of all variants."""
+        if self.count is None:
+            return self.cuts.grid()
+        from kurbel.numerics.cycles import cycles_of_turns
+
+        return cycles_of_turns(self._smooth, self.cycle, self._jumps, self.count)
+
+    @property
+    def _jumps(self) -> list[Any]:
+        return [starts for gas in self.gas for starts in gas.starts]
+
+    @property
+    def _smooth(self) -> list[Any]:
+        return [*self.mechanism.cuts(), *self._near_locking(), *(angle for gas in self.gas for angle in gas.bends)]
+
+    def _near_locking(self) -> Iterator[Any]:
         """Yield angles, ever denser, round those at which a driven crosshead comes nearest to locking itself.
 
         There 1/(cos ψ − f |sin ψ|) of D 3 has a pole beside the real axis, at √(2 left/((tan ψ + f) λ)) from it.
         """
-        for centre in (90.0, 270.0) if self.crosshead_friction else ():
+        for centre in (90.0, 270.0) if self.rubs else ():
             sin_psi, cos_psi = self.mechanism.rod_angle(CrankAngle.of(centre)) or (0.0, 1.0)
             left = cos_psi - self.crosshead_friction * abs(sin_psi)
-            if left > 0 and sin_psi:
+            near = (left > 0) & (sin_psi != 0)
+            if some(near):
                 bend = (abs(sin_psi) / cos_psi + self.crosshead_friction) * self.mechanism.lam
-                yield from fan(centre, math.degrees(math.sqrt(2 * left / bend)))
+                yield from fan(centre, sqrt(where(near, 2 * left, 0.0) / where(near, bend, 1.0)) * (180 / math.pi))

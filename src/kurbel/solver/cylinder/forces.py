@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -11,39 +10,35 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
-from kurbel.numerics.extreme import Extreme
-from kurbel.numerics.grid import Grid, Pieces, integral
-from kurbel.numerics.search import Curve, Evaluate, Extremes, Sampled, curves, extremes_of, lasting, sign_changes, zeros
+from kurbel.numerics.arithmetic import every, some, total, where
+from kurbel.numerics.extreme import Extreme, largest, smallest
+from kurbel.numerics.grid import Pieces, integral
+from kurbel.solver.cylinder.assembled import Assembled
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.searched import Searched
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.figures import Results, answered, crank_angles
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.declared.quantities import Lists
-    from kurbel.numerics.where import Where
     from kurbel.solver.cylinder.brake import Brake
     from kurbel.solver.cylinder.indicated import Indicated
     from kurbel.solver.cylinder.pin_works import PinWorks
     from kurbel.solver.cylinder.rod_load import RodLoad
 
 
-_SURE = 4.0
-"""Standard deviations that the noise of thousands of samples does not reach."""
-
-
-class CylinderForces(Results):
+class CylinderForces(Searched, Results):
     """What `kurbel forces` answers for one cylinder. Attributes are named by the ids of the key values, in SI.
 
-    A key value that the machine does not have is None. `at(degrees)` gives the columns.
+    A key value that the machine does not have is None. `at(degrees)` gives the columns. count: of how many variants the
+    numbers of machine and cylinder are, (v,), as `side_by_side` makes them; then so are all key values.
     """
 
-    def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
-        self.drive = Drive(machine, cylinder)
-        self.motion = Motion(cylinder.mechanism, machine.speed)
+    def __init__(self, machine: Machine, cylinder: Cylinder, count: int | None = None) -> None:
+        super().__init__(Drive(machine, cylinder, count), Motion(cylinder.mechanism, machine.speed))
 
     command = "forces"
 
@@ -119,86 +114,20 @@ class CylinderForces(Results):
         return self.grid.breaks
 
     @cached_property
-    def grid(self) -> Grid:
-        """The cycle in smooth pieces, cut also where the guide force changes sides, if friction makes that a kink."""
-        return self._cut_at_turns(self.drive.cuts.grid())
-
-    def _cut_at_turns(self, grid: Grid) -> Grid:
-        """Return the grid cut where the guide force changes sides, and where a force on a pin all but vanishes."""
-        pins = self.drive.pin_friction
-        if self.drive.crosshead_friction:
-            turns = zeros(grid, self._sides(grid.degrees, grid.within), self._sides)
-            grid = grid.split_at(np.concatenate(tuple(turns.values())))
-        return grid.split_at(pins.bends(grid)) if pins and self.drive.has_force else grid
-
-    def _sides(self, degrees: Array, within: Array) -> dict[str, Sampled]:
-        """Return what tells the sides of the guide force; what makes pins rub has it where they do not yet."""
-        state = self.drive.jets_at(degrees, within)
-        every = (state, state.unrubbed) if self.drive.pin_friction else (state,)
-        return {str(number): _sampled(one, ("guide_sense",))["guide_sense"] for number, one in enumerate(every)}
-
-    def _quantities(self, *names: str) -> Evaluate:
-        return lambda degrees, within: _sampled(self.drive.jets_at(degrees, within), names)
-
-    @cached_property
-    def _samples(self) -> State:
-        return self.drive.jets_at(self.grid.degrees, self.grid.within, self.grid.beyond)
-
-    @cached_property
-    def _curves(self) -> dict[str, Curve]:
-        declared = quantities_of(self.drive.mechanism).all_columns
-        return self.searched(*(one.id for one in declared if "forces" in one.extremes))
-
-    def searched(self, *columns: str) -> dict[str, Curve]:
-        """Return the curves over the cycle of those of these columns that there are."""
-        names = [name for name in columns if getattr(self._samples, name) is not None]
-        return curves(self.grid, _sampled(self._samples, names), self._quantities(*names)) if names else {}
-
-    def extremes_of(self, column: str) -> Extremes | None:
-        """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
-        if column == "S" and self.drive.rod:
-            # S of an exact rod stands between the masses at its ends: what it must bear is the force at its pins
-            return self._at_pins
-        curve = self._curves.get(column) if self.drive.has_force else None
-        return extremes_of(curve) if curve else self.motion.extremes_of(column)
-
-    def refuse_locking(self) -> None:
-        """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
-        if may_lock(self.drive.cylinder):
-            self.extremes_of("N")
-
-    @property
-    def _at_pins(self) -> Extremes | None:
-        """Largest and smallest force in N along an exact rod, of both pins."""
-        found = [one for end in ("S_crosshead", "S_crank") if (one := self.extremes_of(end))]
-        if not found:
-            return None
-        largest, smallest = zip(*found, strict=True)
-        return Extremes(max(largest, key=lambda one: one.value), min(smallest, key=lambda one: one.value))
-
-    def angles_where(self, column: str, value: float) -> Where | None:
-        """Return where in the cycle a column has a value in SI; None for a column that is left out."""
-        if getattr(self._samples, column) is None:
-            return None
-        from kurbel.numerics.where import where
-
-        samples, evaluate = _sampled(self._samples, (column,))[column], self._quantities(column)
-        return where(self.grid, samples, lambda *place: evaluate(*place)[column], value)
-
-    @cached_property
     def p_max(self) -> Extreme | None:
         """Largest pressure in Pa at either end of the cylinder's own piston, counted as in the machine file."""
         if not self.drive.own_gas:
             return None
-        found = [extremes_of(curve).largest for curve in self.searched("p_head", "p_crank").values()]
-        return max(found, key=lambda one: one.value)
+        gas = self.drive.own_gas
+        highest = largest(*(end.highest for end in (gas.head, gas.crank) if end))
+        return Extreme(highest.value + gas.base, highest.degrees)
 
     def offered(self, id: str) -> Any:
         """Return a key value that the mechanism offers."""
         return self.drive.mechanism.offered(id, self)
 
     @property
-    def omega(self) -> float | None:
+    def omega(self) -> Any:
         """Angular velocity in rad/s."""
         return self.drive.omega
 
@@ -210,12 +139,12 @@ class CylinderForces(Results):
     @cached_property
     def P_inertia_max(self) -> Extreme | None:
         """Largest inertia force −m b in N, R 298."""
-        return max(self._inertia, default=None)
+        return largest(*self._inertia) if self._inertia else None
 
     @cached_property
     def P_inertia_min(self) -> Extreme | None:
         """Smallest inertia force in N."""
-        return min(self._inertia, default=None)
+        return smallest(*self._inertia) if self._inertia else None
 
     @property
     def _inertia(self) -> list[Extreme]:
@@ -223,96 +152,55 @@ class CylinderForces(Results):
         turns = (self.motion.b_max, self.motion.b_min) if self.drive.has_inertia else ()
         return [Extreme(-self.drive.mass * one.value, one.degrees) for one in turns if one]
 
-    @cached_property
-    def phi_reversal(self) -> tuple[float, ...] | None:
-        """Druckwechsel: crank angles in degrees at which P takes the other sign, through zero or by a jump.
-
-        Of those that are the noise of a trace alone the middle one stands for all.
-        """
-        return self.reversals_of("P", self._curves.get("P") if self.drive.has_force else None)
-
-    def reversals_of(self, column: str, curve: Curve | None) -> tuple[float, ...] | None:
-        """Return the crank angles in degrees at which a force of the gas takes the other sign for longer than noise."""
-        changes = self._changes(column, curve)
-        if changes is None or curve is None:
-            return None
-        return tuple(lasting(curve, changes, _SURE * self._noise).tolist())
-
-    def _changes(self, column: str, curve: Curve | None) -> Array | None:
-        return None if curve is None else sign_changes(self.grid, {column: curve}, self._quantities(column))[column]
-
-    @property
-    def reversals_in_noise(self) -> int:
-        """How many changes of the sign of P are the noise of a trace alone, and not told."""
-        # without noise nothing is within it, and no reversal need be searched to tell so
-        return len(self._reversals) - len(self.phi_reversal or ()) if self._noise and self._reversals is not None else 0
-
-    @cached_property
-    def _reversals(self) -> Array | None:
-        return self._changes("P", self._curves.get("P") if self.drive.has_force else None)
-
-    @property
-    def _noise(self) -> float:
-        """Standard deviation in N of the noise that traces bring into P."""
-        return math.hypot(*(gas.noise for gas in self.drive.gas))
-
-    @cached_property
-    def lifted(self) -> tuple[tuple[float, float], ...]:
-        """Stretches of crank angle in degrees on which N presses on the upper guide, R p. 602.
-
-        Empty, too, where there is no guide, no N, or no inclination that says which guide is the lower one.
-        """
-        down, side = self.drive.down, self._curves.get("N") if self.drive.has_force else None
-        if side is None or not down or not (self.drive.mechanism.guided and self.drive.mechanism.has_rod):
-            return ()
-        turns = sign_changes(self.grid, {"N": side}, self._quantities("N"))["N"].tolist() or [0.0]
-        stretches = list(zip(turns, [*turns[1:], turns[0] + self.drive.cycle]))
-        pressing = np.asarray(self.at([(start + end) / 2 for start, end in stretches]).N) * down
-        return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
-
     @property
     def p_guide_max(self) -> Extreme | None:
         """Largest pressure of the crosshead's shoe on its guide in Pa."""
         area, found = self.drive.guide_area, self.extremes_of("N")
-        if not area or found is None:
+        if area is None or found is None:
             return None
-        most = max(found, key=lambda extreme: abs(extreme.value))
-        return Extreme(abs(most.value) / area, most.degrees)
+        most = largest(*(Extreme(abs(one.value), one.degrees) for one in found))
+        return Extreme(most.value / area, most.degrees)
 
     @property
-    def p_guide_mean(self) -> float | None:
+    def p_guide_mean(self) -> Any:
         """Mean pressure in Pa of the shoe on its guide over the way there and back; None without friction there."""
         area, f = self.drive.guide_area, self.drive.crosshead_friction
-        return self.crosshead_work / (f * area * self._way) if self.crosshead_work and area and f else None
+        return None if area is None or not self._rubs_off else self.crosshead_work / (f * area * self._way)
+
+    @property
+    def _rubs_off(self) -> bool:
+        """Whether any work is lost at the crosshead."""
+        return self.drive.rubs and self.crosshead_work is not None and some(self.crosshead_work != 0)
 
     @property
     def wear_max(self) -> Extreme | None:
         """Largest value of the wear line f |N| |c| in W."""
         if self.drive.guide_area is None:
             return None
-        return max((extremes_of(curve).largest for curve in self.searched("wear").values()), default=None)
+        found = self.extremes_over(("wear",))
+        return found["wear"].largest if found else None
 
     @property
-    def wear_mean(self) -> float | None:
+    def wear_mean(self) -> Any:
         """Mean of the wear line over time in W."""
         speed = self.drive.machine.speed
-        lost = self.crosshead_work if self.drive.guide_area else None
+        lost = self.crosshead_work if self.drive.guide_area is not None else None
         return None if lost is None or speed is None else lost * speed / self.drive.revolutions
 
     @property
-    def A_head(self) -> float | None:
+    def A_head(self) -> Any:
         """Area in m² of the cylinder's own piston at the head end."""
         pistons = self.drive.cylinder.pistons
         return pistons[0].head_area if pistons else None
 
     @property
-    def A_crank(self) -> float | None:
+    def A_crank(self) -> Any:
         """Area in m² of the cylinder's own piston at the crank end."""
         pistons = self.drive.cylinder.pistons
         return pistons[0].crank_area if pistons else None
 
     @property
-    def m(self) -> float | None:
+    def m(self) -> Any:
         """Reciprocating mass in kg; None where no masses are given."""
         return self.drive.mass if self.drive.cylinder.masses else None
 
@@ -324,33 +212,35 @@ class CylinderForces(Results):
         return not (self.work_driving and self.work_driven)
 
     @cached_property
-    def piston_works(self) -> tuple[float, ...] | None:
+    def piston_works(self) -> tuple[Any, ...] | None:
         """Indicated work in J per cycle of each piston that has an indicator, in the order of the machine file."""
         return tuple(gas.work for gas in self.drive.gas) if self.drive.gas else None
 
     @cached_property
-    def work(self) -> float | None:
+    def work(self) -> Any:
         """Indicated work in J per cycle of all pistons on the rod."""
-        return None if self.piston_works is None else math.fsum(w for gas in self.drive.gas for w in gas.works)
+        return None if self.piston_works is None else total(*(w for gas in self.drive.gas for w in gas.works))
 
     @cached_property
-    def work_driving(self) -> float | None:
+    def work_driving(self) -> Any:
         """Sum in J of the positive indicated works: what the driving pistons give."""
-        return None if self.piston_works is None else math.fsum(work for work in self.piston_works if work > 0)
+        return None if self.piston_works is None else total(*(where(work > 0, work, 0.0) for work in self.piston_works))
 
     @cached_property
-    def work_driven(self) -> float | None:
+    def work_driven(self) -> Any:
         """Sum in J of the negative indicated works: what the driven pistons take."""
-        return None if self.piston_works is None else math.fsum(work for work in self.piston_works if work < 0)
+        return None if self.piston_works is None else total(*(where(work < 0, work, 0.0) for work in self.piston_works))
 
     @cached_property
-    def power(self) -> float | None:
+    def power(self) -> Any:
         """Indicated power in W; None without a speed or at rest."""
         speed = self.drive.machine.speed
-        return None if self.work is None or not speed else self.work * speed / self.drive.revolutions
+        if self.work is None or speed is None or every(speed == 0):
+            return None
+        return self.work * speed / self.drive.revolutions
 
     @cached_property
-    def mean_pressure(self) -> float | None:
+    def mean_pressure(self) -> Any:
         """Mean indicated pressure p_i of the cylinder's own piston in Pa: its work over the volume it sweeps."""
         gas = self.drive.own_gas
         return None if gas is None else gas.work / gas.swept_volume
@@ -372,13 +262,13 @@ class CylinderForces(Results):
         return math.radians(0.1) * math.fsum(by_angle for _, by_angle in traced) / work if work else None
 
     @cached_property
-    def crosshead_work(self) -> float | None:
+    def crosshead_work(self) -> Any:
         """∮ f |N| |dx| in J per cycle."""
-        if not self.drive.has_force or not self.drive.crosshead_friction:
+        if not self.drive.has_force or not self.drive.rubs:
             return 0.0 if self._has_crosshead else None
         if self.drive.pin_friction:  # whose couple bends N where a load all but vanishes
             return float(integral(self.grid, lambda pieces: np.asarray(self._on(pieces).crosshead_power)))
-        return self.grid.integral(self._samples.crosshead_power.value)
+        return self.grid.integral(self.samples.crosshead_power.value)
 
     @property
     def _has_crosshead(self) -> bool:
@@ -386,7 +276,7 @@ class CylinderForces(Results):
         return self.drive.has_force and friction is not None and friction.crosshead is not None
 
     @cached_property
-    def ring_work(self) -> float | None:
+    def ring_work(self) -> Any:
         """Work of ring friction in J per cycle: the ring force over every stroke."""
         friction = self.drive.cylinder.friction
         if friction is None or friction.rings is None:
@@ -394,39 +284,42 @@ class CylinderForces(Results):
         return self.drive.ring_force * self._way
 
     @cached_property
-    def constant_work(self) -> float | None:
+    def constant_work(self) -> Any:
         """Work of the friction that is given as a force, in J per cycle."""
         friction = self.drive.cylinder.friction
         return None if friction is None or friction.constant is None else friction.constant * self._way
 
     @property
-    def _way(self) -> float:
+    def _way(self) -> Any:
         """The way in m of what slides, there and back, per cycle."""
         return 2 * self.drive.mechanism.stroke * self.drive.revolutions
 
     @cached_property
-    def friction_work(self) -> float | None:
+    def friction_work(self) -> Any:
         """Work of all friction in J per cycle."""
         if not self.drive.has_force:
             return None
         every = (self.crosshead_work, self.ring_work, self.constant_work, *self.pin_works.all)
         given = [work for work in every if work is not None]
-        return math.fsum(given) if given else None
+        return total(*given) if given else None
 
     @cached_property
-    def resistance_work(self) -> float | None:
+    def resistance_work(self) -> Any:
         """Work in J per cycle of what the ram, or a swinging output, works against; negative."""
         return self.drive.resistance_work
 
     @cached_property
-    def work_left(self) -> float | None:
+    def work_left(self) -> Any:
         """Work in J per cycle that reaches the shaft: indicated, less friction and what the output works against."""
         if not self.drive.has_force:
             return None
-        return math.fsum((self.work or 0.0, -(self.friction_work or 0.0), self.resistance_work or 0.0))
+        work, lost, resisted = (
+            0.0 if one is None else one for one in (self.work, self.friction_work, self.resistance_work)
+        )
+        return total(work, -lost, resisted)
 
     @cached_property
-    def W(self) -> float | None:
+    def W(self) -> Any:
         """Mean tangential force in N over the cycle: what is left of the indicated work over the way of the pin."""
         if self.work_left is None:
             return None
@@ -434,12 +327,12 @@ class CylinderForces(Results):
         return self.work_left / way
 
     @cached_property
-    def loss_crosshead(self) -> float | None:
+    def loss_crosshead(self) -> Any:
         """Work lost at the crosshead over that of the driving pistons."""
-        return None if self.crosshead_work is None or not self.work_driving else self.crosshead_work / self.work_driving
+        return self._of_driving(self.crosshead_work)
 
     @cached_property
-    def loss_crosshead_redtenbacher(self) -> float | None:
+    def loss_crosshead_redtenbacher(self) -> Any:
         """½ λ f, D 7."""
         if not self._has_crosshead:
             return None
@@ -448,9 +341,16 @@ class CylinderForces(Results):
         return redtenbacher_loss(self.drive.mechanism.lam, self.drive.crosshead_friction)
 
     @cached_property
-    def loss_rings(self) -> float | None:
+    def loss_rings(self) -> Any:
         """Work lost at the rings over that of the driving pistons."""
-        return None if self.ring_work is None or not self.work_driving else self.ring_work / self.work_driving
+        return self._of_driving(self.ring_work)
+
+    def _of_driving(self, lost: Any) -> Any:
+        """Return work lost in J over that of the driving pistons; of variants that have none it is nan."""
+        driving = self.work_driving
+        if lost is None or driving is None or every(driving == 0):
+            return None
+        return lost / where(driving == 0, math.nan, driving)
 
     @cached_property
     def energy_residual(self) -> float | None:
@@ -464,8 +364,10 @@ class CylinderForces(Results):
         """
         if self.work_left is None:
             return None
-        turnover = self.grid.integral(np.abs(self._samples.M.value))
-        pieces = self._cut_at_turns(self.drive.cuts.grid().other())
+        turnover = self.grid.integral(np.abs(self.samples.M.value))
+        pieces = self.drive.pieces.other()
+        if self._is_cut:
+            pieces = self.cut_at_bends(Assembled(self.drive, pieces))
         return float(integral(pieces, self._torque) - self.work_left) / turnover if turnover else 0.0
 
     def _torque(self, pieces: Pieces) -> Array:
@@ -473,7 +375,3 @@ class CylinderForces(Results):
 
     def _on(self, pieces: Pieces) -> State:
         return State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond))
-
-
-def _sampled(state: State, names: Iterable[str]) -> dict[str, Sampled]:
-    return {name: Sampled.of(getattr(state, name), state.phi.shape) for name in names}

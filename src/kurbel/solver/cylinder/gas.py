@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.piston import Piston
+from kurbel.machine.variants import taken
 from kurbel.mechanisms import Mechanism
+from kurbel.numerics.arithmetic import total
+from kurbel.numerics.cycles import later
 from kurbel.solver.pressure import Setting, pressure_in
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
+    from kurbel.arrays import Array, Indices
 
 
 class PistonGas:
@@ -39,14 +41,22 @@ class PistonGas:
         self.crank = None if crank is None else pressure_in(crank, at_crank)
         self.stroke = mechanism.stroke
 
-    @property
-    def starts(self) -> Array:
-        """The crank angles (n,) in degrees in the cylinder's cycle at which a pressure bends or jumps."""
-        ends = [end.starts for end in (self.head, self.crank) if end]
-        return np.concatenate([starts + turn * self._cycle for turn in range(self.repeats) for starts in ends])
+    def taken(self, index: Indices) -> PistonGas:
+        """Return the gas of these variants, at angles of the shape of the index."""
+        other = copy(self)
+        other.piston, other.stroke = taken(self.piston, index), taken(self.stroke, index)
+        other.base = taken(self.base, index)
+        other.head, other.crank = (end and end.taken(index) for end in (self.head, self.crank))
+        return other
 
     @property
-    def bends(self) -> tuple[float, ...]:
+    def starts(self) -> list[Any]:
+        """The crank angles (n,) in degrees of the cylinder's cycle at which each pressure bends or jumps, or `Flat`."""
+        ends = [end.starts for end in (self.head, self.crank) if end]
+        return [later(starts, turn * self._cycle) for turn in range(self.repeats) for starts in ends]
+
+    @property
+    def bends(self) -> tuple[Any, ...]:
         """Crank angles in degrees of a turn at which quadratures should split."""
         return tuple(angle for end in (self.head, self.crank) if end for angle in end.bends)
 
@@ -62,7 +72,7 @@ class PistonGas:
         return force
 
     @cached_property
-    def works(self) -> tuple[float, float]:
+    def works(self) -> tuple[Any, Any]:
         """Indicated work in J per cycle of the cylinder of head end and crank end: A s ∮ p dz."""
         way = self.stroke * self.repeats
         return (
@@ -73,7 +83,8 @@ class PistonGas:
     @property
     def work(self) -> float:
         """Indicated work in J per cycle."""
-        return math.fsum(self.works)
+        work: float = total(*self.works)
+        return work
 
     @cached_property
     def traced(self) -> tuple[float, float] | None:
@@ -89,7 +100,8 @@ class PistonGas:
     def noise(self) -> float:
         """Standard deviation in N of the noise that traces bring into the force."""
         ends = ((self.head, self.piston.head_area), (self.crank, self.piston.crank_area))
-        return math.hypot(*(getattr(end, "noise", 0.0) * area for end, area in ends))
+        noises = [getattr(end, "noise", None) for end, _ in ends]
+        return math.hypot(*(noise * area for noise, (_, area) in zip(noises, ends) if noise))
 
     @cached_property
     def clearance_volumes(self) -> tuple[float, float]:
@@ -103,4 +115,4 @@ class PistonGas:
     def swept_volume(self) -> float:
         """Volume in m³ swept in the chambers that have pressures."""
         head = self.piston.head_area if self.head else 0.0
-        return float((head + (self.piston.crank_area if self.crank else 0.0)) * self.stroke)
+        return (head + (self.piston.crank_area if self.crank else 0.0)) * self.stroke

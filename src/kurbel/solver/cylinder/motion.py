@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cached_property, partial
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle, jet_angle
+from kurbel.machine.variants import count_of, taken
 from kurbel.mechanisms import Mechanism
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.arithmetic import every, where
+from kurbel.numerics.cycles import cycles_of_turns
+from kurbel.numerics.extreme import Extreme, largest, smallest
 from kurbel.numerics.grid import Grid, ascending
-from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
+from kurbel.numerics.search import Extremes, Sampled, extremes, zeros
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, Indices
 
 
 class Motion:
@@ -33,52 +40,52 @@ class Motion:
         return None if self.speed is None else 2 * math.pi * self.speed
 
     @cached_property
-    def stroke(self) -> float | None:
+    def stroke(self) -> Any:
         """s in m."""
         return self.mechanism.stroke if self.mechanism.slides else None
 
     @cached_property
-    def phi_idc(self) -> float | None:
+    def phi_idc(self) -> Any:
         """Inner dead centre in degrees, from 0 to 360; None where there is none."""
         return _within_turn(self.mechanism.dead_centres()[0]) if self.mechanism.has_dead_centres else None
 
     @cached_property
-    def phi_odc(self) -> float | None:
+    def phi_odc(self) -> Any:
         """Outer dead centre in degrees, from 0 to 360; None where there is none."""
         return _within_turn(self.mechanism.dead_centres()[1]) if self.mechanism.has_dead_centres else None
 
     @cached_property
-    def phi_work(self) -> float:
+    def phi_work(self) -> Any:
         """Crank rotation in degrees of the outstroke, or of the working stroke."""
         return self.mechanism.phi_work
 
     @cached_property
-    def phi_return(self) -> float:
+    def phi_return(self) -> Any:
         """Crank rotation in degrees of the return stroke."""
         return self.mechanism.phi_return
 
     @cached_property
-    def time_ratio(self) -> float:
+    def time_ratio(self) -> Any:
         """Time of the outstroke (working stroke) over that of the return stroke."""
         return self.mechanism.time_ratio
 
     @cached_property
-    def v(self) -> float | None:
+    def v(self) -> Any:
         """Crank-pin speed Rω in m/s."""
         return None if self.omega is None else self.mechanism.crank * self.omega
 
     @cached_property
-    def c_m(self) -> float | None:
+    def c_m(self) -> Any:
         """Mean piston speed 2 s n in m/s, R 290."""
         return None if self.speed is None or self.stroke is None else 2 * self.stroke * self.speed
 
     @property
-    def c_work_m(self) -> float | None:
+    def c_work_m(self) -> Any:
         """Mean speed in m/s of the outstroke, or of the working stroke: s n · 360°/φ_w (R p. 617)."""
         return None if self.c_m is None else self.c_m * (180.0 / self.phi_work)
 
     @property
-    def c_return_m(self) -> float | None:
+    def c_return_m(self) -> Any:
         """Mean speed in m/s of the return stroke, positive."""
         return None if self.c_m is None else self.c_m * (180.0 / self.phi_return)
 
@@ -86,7 +93,13 @@ class Motion:
     def _turn(self) -> Grid:
         """One revolution, cut at the landmarks of the mechanism only."""
         landmarks = (*self.mechanism.dead_centres(), *self.mechanism.landmarks(), *range(0, 361, 45))
+        if self._count is not None:
+            return cycles_of_turns(landmarks, 360.0, (), self._count)
         return Grid(ascending(np.array([angle if angle == 360 else angle % 360.0 for angle in landmarks])))
+
+    @cached_property
+    def _count(self) -> int | None:
+        return count_of(self.mechanism)
 
     @property
     def _moves(self) -> bool:
@@ -95,30 +108,28 @@ class Motion:
 
     @cached_property
     def _velocity(self) -> Extremes:
-        return self._extremes(self.mechanism.slope, 1, self.mechanism.velocity_extremes())
+        return self._extremes(lambda one, angle: one.slope(angle), 1, self.mechanism.velocity_extremes())
 
     @cached_property
     def _acceleration(self) -> Extremes:
-        return self._extremes(self.mechanism.curvature, 2, self.mechanism.acceleration_extremes())
+        return self._extremes(_curvature, 2, self.mechanism.acceleration_extremes())
 
-    def _extremes(
-        self, function: Callable[[CrankAngle], Any], order: int, closed: tuple[Extreme, ...] = ()
-    ) -> Extremes:
+    def _extremes(self, function: Kinematic, order: int, closed: tuple[Extreme, ...] = ()) -> Extremes:
         """Return the extremes over a turn of a function of the crank angle times ω^order; closed: where it has them."""
         # a power would raise where a product is inf, which is refused by name
-        scale = math.prod((self.omega or 0.0,) * order)
+        scale = math.prod((0.0 if self.omega is None else self.omega,) * order)
         found = _of_closed(closed) if closed else self._searched(function)
         return Extremes(*(Extreme(one.value * scale, one.degrees) for one in found))
 
-    def _searched(self, function: Callable[[CrankAngle], Any]) -> Extremes:
+    def _searched(self, function: Kinematic) -> Extremes:
         """Search the extremes of a kinematic quantity over one revolution by the roots of its slope."""
-        evaluate = _evaluated(function)
-        return extremes(self._turn, evaluate(self._turn.degrees, self._turn.within), evaluate)["it"]
+        evaluate = _Evaluated(self.mechanism, function)
+        return extremes(self._turn, evaluate.on(self._turn), evaluate)["it"]
 
     @cached_property
     def _offered_extremes(self) -> dict[str, Extremes]:
         return {
-            offer.quantity.id: self._extremes(partial(offer.factor, self.mechanism), len(offer.times))
+            offer.quantity.id: self._extremes(offer.factor, len(offer.times))
             for offer in self.mechanism.OFFERS
             if "motion" in offer.quantity.extremes and self.omega is not None
         }
@@ -126,7 +137,7 @@ class Motion:
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes over a turn of a column that the mechanism offers; None for what does not vary."""
         found = self._offered_extremes.get(column)
-        return None if found is None or found.largest.value == found.smallest.value else found
+        return None if found is None or every(found.largest.value == found.smallest.value) else found
 
     def offered(self, id: str) -> Any:
         """Return a key value that the mechanism offers."""
@@ -135,7 +146,7 @@ class Motion:
     @property
     def equal_strokes(self) -> bool:
         """Whether the strokes take equal times, so that nothing need be said of each."""
-        return abs(self.time_ratio - 1) <= 1e-12
+        return every(abs(self.time_ratio - 1) <= 1e-12)
 
     @property
     def has_no_c_min(self) -> bool:
@@ -175,26 +186,51 @@ class Motion:
         return self._acceleration.smallest if self._moves else None
 
     @cached_property
-    def phi_b_zero(self) -> tuple[float, ...] | None:
+    def phi_b_zero(self) -> tuple[Any, ...] | None:
         """Crank angles in degrees at which the acceleration is zero."""
         if not self.mechanism.slides:
             return None
         closed = self.mechanism.velocity_extremes()
         if closed:
-            return tuple(sorted(extreme.degrees for extreme in closed))
-        evaluate = _evaluated(self.mechanism.curvature)
-        found = zeros(self._turn, evaluate(self._turn.degrees, self._turn.within), evaluate)["it"]
-        return tuple(found.tolist())
+            angles = np.sort(np.stack([extreme.degrees for extreme in closed], axis=-1))
+            return tuple(angles.tolist() if angles.ndim == 1 else map(tuple, angles.tolist()))
+        evaluate = _Evaluated(self.mechanism, _curvature)
+        found = zeros(self._turn, evaluate.on(self._turn), evaluate)["it"]
+        return tuple(found.tolist()) if self._count is None else found.of_each(self._count)
 
 
-def _evaluated(function: Callable[[CrankAngle], Any]) -> Evaluate:
-    return lambda degrees, within: {"it": Sampled.of(function(jet_angle(degrees)), degrees.shape)}
+Kinematic = Callable[[Any, CrankAngle], Any]
+"""What a mechanism does at a crank angle, by ω or ω²."""
+
+
+def _curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
+    return mechanism.curvature(angle)
+
+
+@dataclass(frozen=True)
+class _Evaluated:
+    """A function of the mechanism with its slope; see `search.Evaluate`."""
+
+    mechanism: Mechanism
+    function: Kinematic
+
+    def __call__(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+        return {"it": Sampled.of(self.function(self.mechanism, jet_angle(degrees)), degrees.shape)}
+
+    def of(self, variant: Indices) -> _Evaluated:
+        """Return the same of these variants."""
+        return replace(self, mechanism=taken(self.mechanism, variant))
+
+    def on(self, grid: Grid) -> dict[str, Sampled]:
+        """Return it at the nodes of a grid."""
+        asked = self if grid.variant is None else self.of(grid.variant[:, None])
+        return asked(grid.degrees, grid.within)
 
 
 def _of_closed(found: tuple[Extreme, ...]) -> Extremes:
-    return Extremes(max(found, key=lambda e: e.value), min(found, key=lambda e: e.value))
+    return Extremes(largest(*found), smallest(*found))
 
 
-def _within_turn(degrees: float) -> float:
+def _within_turn(degrees: Any) -> Any:
     """Return an angle between −360° and 720° as one from 0 to 360."""
-    return degrees + 360.0 if degrees < 0 else degrees - 360.0 if degrees >= 360.0 else degrees
+    return where(degrees < 0, degrees + 360.0, where(degrees >= 360.0, degrees - 360.0, degrees))

@@ -103,7 +103,7 @@ class PinFriction:
 
         found: list[float] = []
         for number, curve in enumerate(curves(grid, squares(grid.degrees, grid.within), squares).values()):
-            degrees, within = (part[grid.degrees.size :] for part in (curve.degrees, curve.within))
+            degrees, within = curve.peaks
             (x, dx), (y, dy) = self._forces(degrees, within)[number]
             with np.errstate(all="ignore"):
                 beside = np.hypot(x, y) / np.hypot(dx, dy)

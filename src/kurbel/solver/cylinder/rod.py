@@ -26,12 +26,10 @@ class ExactRod:
     square to it onto the guide; None where weights are left out.
     """
 
-    def __init__(
-        self, rod: ConnectingRod, length: float, crank: float, omega: float | None, incline: CrankAngle | None
-    ) -> None:
+    def __init__(self, rod: ConnectingRod, length: Any, crank: Any, omega: Any, incline: CrankAngle | None) -> None:
         self.length = length
         self.crank = crank
-        self.omega = omega or 0.0
+        self.omega = 0.0 if omega is None else omega
         self.pin_mass = rod.at_pin(length)
         self.excess_inertia = rod.excess_inertia(length)
         self.crosshead_mass = rod.at_crosshead(length)
@@ -42,7 +40,7 @@ class ExactRod:
         self.crosshead_weight = None if incline is None else (weight * incline.sin, weight * incline.cos)
 
     @cached_property
-    def pull(self) -> float:
+    def pull(self) -> Any:
         """Centrifugal force m R ω² of the mass at the pin in N, away from the shaft."""
         # a float squared by ** raises where the product is infinite
         return self.pin_mass * self.crank * self.omega * self.omega

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kurbel.numerics.extreme import Extreme
-from kurbel.numerics.search import Curve, Extremes, extremes_of
+from kurbel.numerics.search import Extremes
 
 if TYPE_CHECKING:
     from kurbel.solver.cylinder.forces import CylinderForces
@@ -48,12 +48,11 @@ class RodLoad:
         return work is None or work >= 0 or drive.revolutions > 1 or not drive.mechanism.has_rod
 
     @cached_property
-    def _curves(self) -> dict[str, Curve]:
-        return self._forces.searched("P_gas", "P_rod", "P_piston_rod")
+    def _every(self) -> dict[str, Extremes]:
+        return self._forces.extremes_over(("P_gas", "P_rod", "P_piston_rod"))
 
     def _extremes(self, column: str) -> Extremes | None:
-        curve = self._curves.get(column)
-        return extremes_of(curve) if curve else None
+        return self._every.get(column)
 
     def compression_max(self, column: str) -> Extreme | None:
         """Return the largest force in N toward the shaft; 0, where it comes nearest, if none."""
@@ -68,7 +67,7 @@ class RodLoad:
     @cached_property
     def phi_rod_reversal(self) -> tuple[float, ...] | None:
         """Crank angles in degrees at which the rod load takes the other sign; within the noise of a trace, once."""
-        return self._forces.reversals_of("P_rod", self._curves.get("P_rod"))
+        return self._forces.reversals_of("P_rod")
 
     @cached_property
     def _reversed(self) -> tuple[float, ...]:

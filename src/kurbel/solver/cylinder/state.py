@@ -12,7 +12,8 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
 from kurbel.errors import NoSolutionError
 from kurbel.mechanisms import every_quantity
-from kurbel.numerics.arithmetic import bearing
+from kurbel.numerics.arithmetic import bearing, some
+from kurbel.numerics.cycles import Unlike
 from kurbel.numerics.jet import once_each
 from kurbel.solver.cylinder.chamber import OfChamber
 from kurbel.solver.cylinder.rod_load import rod_load
@@ -55,7 +56,7 @@ class State(OfPoint, OfChamber):
         return reduce(mul, found) * factor if found else factor
 
     @property
-    def omega(self) -> float | None:
+    def omega(self) -> Any:
         """Angular velocity in rad/s."""
         return self.drive.omega
 
@@ -201,7 +202,7 @@ class State(OfPoint, OfChamber):
     def _after_steady_friction(self) -> Any:
         """Force left for crosshead and rod after friction that is the same over the stroke, in N."""
         steady = self.drive.steady_friction
-        return self.P - self.direction * steady if steady else self.P
+        return self.P - self.direction * steady if some(steady != 0) else self.P
 
     @cached_property
     def guide_sense(self) -> Any:
@@ -254,7 +255,7 @@ class State(OfPoint, OfChamber):
         if self._rod is None:
             alone = self.drive.weight if self.drive.mechanism.known_across else None
             return alone and np.full_like(self.within, alone[1])
-        if not self.drive.crosshead_friction:
+        if not self.drive.rubs:
             return self._after_steady_friction * (self._rod[0] / self._rod[1]) + self._guide_load
         return self.guide_sense / self._below
 
@@ -267,9 +268,11 @@ class State(OfPoint, OfChamber):
     def _below(self) -> Any:
         sin_psi, cos_psi = self._rod
         below = cos_psi + sin_psi * (self._guide_side * self.direction * self.drive.crosshead_friction)
-        locked = self.phi[getattr(below, "value", below) <= 0]
-        if locked.size:
-            raise NoSolutionError(self._locks(float(locked[0])))
+        locked = getattr(below, "value", below) <= 0
+        if locked.any():
+            if self.drive.variant is not None:
+                raise Unlike(np.broadcast_to(self.drive.variant, locked.shape)[locked])
+            raise NoSolutionError(self._locks(float(self.phi[locked][0])))
         return below
 
     def _locks(self, degrees: float) -> str:
@@ -283,7 +286,7 @@ class State(OfPoint, OfChamber):
     @cached_property
     def _crosshead_drag(self) -> Any:
         """Crosshead friction f |N| in N, against the motion."""
-        return self.N * (self._guide_side * self.drive.crosshead_friction) if self.drive.crosshead_friction else 0.0
+        return self.N * (self._guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
 
     @cached_property
     def p_guide(self) -> Any:

@@ -11,13 +11,12 @@ from typing import Any
 
 from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam, after_polytrope
 from kurbel.solver.pressure import Setting
-from kurbel.solver.pressure.card import ProcessPressure
 from kurbel.solver.pressure.segments import Process, Segment, Stroke
 
 
-def ideal_pressure(card: IdealCard, setting: Setting) -> ProcessPressure:
-    """Return the pressure of an ideal card."""
-    return ProcessPressure(ideal_process(card, setting.lift, round(setting.cycle / 360)), setting)
+def process_in(card: IdealCard, setting: Setting) -> Process:
+    """Return the process of an ideal card, where it stands."""
+    return ideal_process(card, setting.lift, round(setting.cycle / 360))
 
 
 def ideal_process(card: IdealCard, lift: float = 0.0, revolutions: int = 1) -> Process:

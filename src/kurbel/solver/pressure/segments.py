@@ -4,20 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from kurbel.machine.variants import count_of
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Indices
+    from kurbel.solver.pressure import Setting
 
 
 class Segment(NamedTuple):
-    """Part of a line between two stroke fractions z, where the pressures p (Pa) are given.
+    """Part of a line between two stroke fractions z, where the pressures p (Pa) are given;
+    numbers, or those of many segments (n,).
 
     exponent: n of p V^n = const between them, with absolute pressures; 0 for a straight line.
     """
 
-    z: float
-    p: float
-    next_z: float
-    next_p: float
-    exponent: float = 0.0
+    z: Any
+    p: Any
+    next_z: Any
+    next_p: Any
+    exponent: Any = 0.0
 
 
 Stroke = tuple[Segment, ...]
@@ -51,6 +60,50 @@ class Process(NamedTuple):
         u = (1 - segment.exponent) * growth
         mean = math.expm1(u) / u if u else 1.0
         return (segment.p + self.lift) * volume * growth * mean, -self.lift * way
+
+
+class Processes(NamedTuple):
+    """The process of a chamber; of many variants the different ones, and which one each has, (v,), not None."""
+
+    each: tuple[Process, ...]
+    which: Indices | None = None
+
+    def variants(self, setting: Setting) -> int | None:
+        """Return of how many variants they are in this setting; None where all have the same."""
+        return count_of(setting.mechanism) if self.which is None else len(self.which)
+
+    def _spread(self, values: list[float]) -> Any:
+        return values[0] if self.which is None or len(set(values)) == 1 else np.array(values)[self.which]
+
+    @property
+    def lift(self) -> Any:
+        """What makes the pressures absolute, in Pa: a number, or of every variant, (v,)."""
+        return self._spread([one.lift for one in self.each])
+
+    @property
+    def clearance(self) -> Any:
+        """Smallest volume over the stroke volume: a number, or of every variant, (v,)."""
+        return self._spread([one.clearance for one in self.each])
+
+    @property
+    def area(self) -> Any:
+        """∮ p dz in Pa: a number, or of every variant, (v,)."""
+        return self._spread([one.area for one in self.each])
+
+    def segments(self, count: int | None) -> tuple[Indices, Indices, Segment]:
+        """Return whose each segment is, of which stroke, and the segments, (n,), in the order of the process."""
+        rows = [
+            [(number, *segment) for number, stroke in enumerate(process.strokes) for segment in stroke]
+            for process in self.each
+        ]
+        lengths = np.array([len(one) for one in rows])
+        which = np.zeros(count or 1, dtype=np.intp) if self.which is None else self.which
+        begun = (np.cumsum(lengths) - lengths)[which]
+        whose = np.repeat(np.arange(len(which)), lengths[which])
+        ends = np.cumsum(lengths[which])
+        place = np.arange(len(whose)) + np.repeat(begun - ends + lengths[which], lengths[which])
+        stroke, *columns = np.array([row for one in rows for row in one])[place].T
+        return whose, stroke.astype(np.intp), Segment(*columns)
 
 
 def polytropic_exponent(z: float, p: float, next_z: float, next_p: float, clearance: float) -> float:

@@ -17,7 +17,7 @@ from kurbel.solver.pressure import Setting
 from kurbel.solver.pressure.corrected import corrected
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
+    from kurbel.arrays import Array, Indices
 
 
 _OF_MEDIAN = 1.4826
@@ -72,6 +72,18 @@ class TracePressure:
         since = np.mod(turned - self.starts[segment], self.setting.cycle) + (angle.degrees - meant)
         value = self._segments.p[segment] + self._gradients[segment] * since
         return Jet(value, self._gradients[segment] * (180 / math.pi)) if isinstance(x, Jet) else value
+
+    def taken(self, index: Indices) -> TracePressure:
+        """Return itself: a trace is of one machine."""
+        return self
+
+    @property
+    def highest(self) -> Extreme:
+        """The highest gauge pressure in Pa, and the first crank angle that has it: at a sample."""
+        starts, ends, p, next_p = self._segments
+        best = float(max(p.max(), next_p.max()))
+        reached = np.where(p == best, self.starts, np.where(next_p == best, self.starts + (ends - starts), np.inf))
+        return Extreme(best, float(reached.min()))
 
     def rise(self, degrees: Array) -> Array:
         """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each."""

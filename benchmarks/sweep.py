@@ -1,0 +1,81 @@
+"""Key values of many designs at once, against a loop over single machines in the same run.
+
+    python benchmarks/sweep.py [ROWS]
+
+Times are of the processor; rows are designs of the waterworks machine, whose one cylinder has four chambers.
+"""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from kurbel.designs.answers import AT_ONCE, answers_of
+from kurbel.designs.binding import Binder
+from kurbel.designs.columns import Answer, answered_alone, asked_answers
+from kurbel.designs.sweep import Spec, Sweep
+from kurbel.designs.workers import rows_of
+from kurbel.machine import Machine
+from kurbel.machine_file import source
+from kurbel.render import Look
+from kurbel.render.sweep_rows import Titles, csv_rows
+
+WATERWORKS = source.read(Path(__file__).parent.parent / "configs" / "waterworks.yaml")
+SINGLE = 30
+
+
+def seconds(task: Callable[[], object]) -> float:
+    """Processor time of a task, the less of two runs."""
+    times = []
+    for _ in range(2):
+        begin = time.process_time()
+        task()
+        times.append(time.process_time() - begin)
+    return min(times)
+
+
+def designs(count: int) -> list[Machine]:
+    """Machines with rods and speeds of every length and size."""
+    binder = Binder(WATERWORKS, (), ("rod_ratio", "speed"), ("5", "50 rpm"))
+    return [binder.bound((f"{ratio:.6f}", f"{40 + ratio:.6f} rpm")) for ratio in np.linspace(3, 6, count)]
+
+
+def told(name: str, many: float, count: int, single: float | None = None) -> None:
+    """Print a line: microseconds a design, and how often faster than alone."""
+    ratio = "" if single is None else f"{single / (many / count):>8.0f} x"
+    print(f"{name:<44}{many / count * 1e6:>10.0f} us{ratio}")
+
+
+def beside_alone(name: str, machines: list[Machine], asked: list[Answer]) -> None:
+    """Compare machines side by side with the same ones alone."""
+    with np.errstate(all="ignore"):
+        single = seconds(lambda: [answered_alone(machine, asked) for machine in machines[:SINGLE]]) / SINGLE
+    told(name, seconds(lambda: answers_of(machines, asked)), len(machines), single)
+
+
+def main() -> None:
+    """Print the table."""
+    rows = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
+    machines = designs(AT_ONCE)
+    every = list(asked_answers(machines[0], ()))
+    motion = [one for one in every if one.quantity.id in ("c_m", "c_max", "b_max", "b_min", "phi_b_zero")]
+    beside_alone("all key values of forces", machines, every)
+    beside_alone("motion alone", machines, motion)
+    told("binding to the file", seconds(lambda: designs(AT_ONCE)), AT_ONCE)
+    vary = ("rod_ratio=uniform(3, 6)", "speed=uniform(40, 60 rpm)")
+    begin = time.process_time()
+    sweep = Sweep(Spec(WATERWORKS, vary=vary, sample=rows))
+    titles = Titles(tuple((one.id, one.unit) for one in sweep.heads))
+    size = sum(map(len, csv_rows(titles, rows_of(sweep, range(rows)), Look("csv"))))
+    told(f"{rows} rows with {len(sweep.heads)} columns as csv", time.process_time() - begin, rows)
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"{size / 1e6:.1f} MB written, {memory:.0f} MB of memory at most")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,203 @@
+"""`kurbel sweep`: key values over a grid, a list or a sample of machines."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+from kurbel.cli.completion import complete_override
+from kurbel.cli.exit_status import exit_statuses
+from kurbel.cli.output_options import Words, format_of, machine_file, stacked, units_option
+
+if TYPE_CHECKING:
+    from kurbel.designs.chosen import Aim
+    from kurbel.designs.sweep import Row, Spec, Sweep
+    from kurbel.render import Look
+    from kurbel.render.sweep_output import SweepOutput
+
+_SUFFIXES = {".csv": "csv", ".json": "json", ".jsonl": "json", ".md": "markdown", ".parquet": "parquet"}
+_FORMATS = ("table", "csv", "json", "markdown", "parquet")
+
+_what_varies = stacked(
+    click.option(
+        "--vary",
+        multiple=True,
+        required=True,
+        metavar="KEY=VALUES",
+        shell_complete=complete_override,
+        help="rod_ratio=3:6:0.25, speed=40,50,60 rpm, bore=normal(450 mm, 0.2 mm) or uniform(...); may be repeated.",
+    ),
+    click.option("--zip", "side_by_side", is_flag=True, help="First values with first values; else all combinations."),
+    click.option("--sample", type=click.IntRange(1), metavar="N", help="Points of a Latin hypercube of distributions."),
+    click.option("--seed", type=click.IntRange(0), default=0, help="Of the sample; 0 if not given."),
+    click.option("--sobol", is_flag=True, help="The sequence of Sobol instead of a Latin hypercube."),
+)
+_what_is_told = stacked(
+    click.option("--columns", type=Words(), metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
+    click.option("--angles", "with_angles", is_flag=True, help="Beside every extreme the crank angle where it stands."),
+    click.option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only rows with 'c_max < 5 m/s'."),
+    click.option("--sort", metavar="ID", help="The smallest of this column first; -ID: the largest."),
+    click.option("--top", type=click.IntRange(1), metavar="N", help="Only the first N rows of --sort."),
+    click.option(
+        "--pareto", type=Words(), metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."
+    ),
+    click.option("--summary", is_flag=True, help="Quantiles, and rank correlation with every input, instead of rows."),
+)
+_where_it_goes = stacked(
+    click.option("--format", "-f", "format", type=click.Choice(_FORMATS), help="By the suffix of --output, or table."),
+    click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."),
+    click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign."),
+    click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4, and all in csv and json."),
+    click.option("--resume", is_flag=True, help="Go on where the --output file of an interrupted run ends."),
+)
+_who_computes = stacked(
+    click.option(
+        "--shard", metavar="K/N", help="Only this part of the rows; all parts one after another are the whole."
+    ),
+    click.option("--jobs", "-j", type=click.IntRange(1), default=1, metavar="N", help="Processes; 1 if not given."),
+    click.option(
+        "--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster that computes, such as tcp://node:8786."
+    ),
+    click.option("--yes", is_flag=True, help="Compute more than ten million rows."),
+)
+
+
+@click.command(short_help="Key values of many designs of a machine.", epilog=exit_statuses())
+@machine_file
+@_what_varies
+@_what_is_told
+@units_option
+@_where_it_goes
+@_who_computes
+def sweep(**options: Any) -> None:
+    """Compute key values for many designs of the machine in FILE: one row each, inputs and answers.
+
+    Any dotted key of the file that holds a value may vary. A design that fails stays, with its reason; where the file
+    gives 'limits', each row says whether it keeps them, and which is the first that it breaks.
+    """
+    asked = _Asked(**options)
+    asked.refuse_contradictions()
+    asked.run()
+
+
+class _Asked(NamedTuple):
+    """The options, by the names above."""
+
+    file: str
+    overrides: tuple[str, ...]
+    vary: tuple[str, ...]
+    side_by_side: bool
+    sample: int | None
+    seed: int
+    sobol: bool
+    columns: tuple[str, ...] | None
+    with_angles: bool
+    conditions: tuple[str, ...]
+    sort: str | None
+    top: int | None
+    pareto: tuple[str, ...] | None
+    summary: bool
+    units: str | None
+    format: str | None
+    file_name: str | None
+    decimal: str
+    digits: int | None
+    resume: bool
+    shard: str | None
+    jobs: int
+    dask: str | None
+    yes: bool
+
+    @property
+    def _look(self) -> Look:
+        from kurbel.render import Look
+
+        return Look(self._written, comma=self.decimal == "comma", digits=self.digits)
+
+    @property
+    def _written(self) -> str:
+        """The format of the output."""
+        return format_of(self.format, self.file_name, _SUFFIXES)
+
+    @property
+    def _in_order(self) -> bool:
+        """Whether rows are told as they come."""
+        return not (self.sort or self.pareto or self.summary)
+
+    def refuse_contradictions(self) -> None:
+        """Raise click.UsageError for options that do not go together."""
+        named = self.file_name not in (None, "-")
+        for wrong, message in (
+            (self.top and not self.sort, "--top N takes the first rows of --sort ID; give --sort too."),
+            (self.resume and not named, "--resume goes on in a file; give --output FILE."),
+            (self.resume and self._written not in ("csv", "json"), "--resume goes on in csv or json lines."),
+            (self.resume and not self._in_order, "--resume cannot go on where rows are sorted, chosen or summed up."),
+            (self._written == "parquet" and not named, "Parquet is a file; give --output FILE.parquet."),
+            (self.summary and self._written == "parquet", "--summary is a table, csv, json or markdown."),
+            (self.summary and self.shard, "--summary is of all rows; leave --shard out."),
+            (self.dask and self.jobs > 1, "--dask and --jobs both say who computes; leave one of them out."),
+            (self.decimal == "comma" and self._written in ("json", "parquet"), "--decimal comma: not in this format."),
+        ):
+            if wrong:
+                raise click.UsageError(message)
+
+    def run(self) -> None:
+        """Compute and write the rows."""
+        from kurbel.designs.chosen import read_aim, read_condition, summary
+        from kurbel.designs.plan import MOST_ROWS, shard
+        from kurbel.designs.sweep import Sweep
+        from kurbel.designs.workers import rows_of
+        from kurbel.errors import UsageError
+
+        found = Sweep(self._spec())
+        if found.rows > MOST_ROWS and not self.yes:
+            raise UsageError(f"these are {found.rows} rows; --yes computes more than {MOST_ROWS}")
+        rows = shard(self.shard, found.rows) if self.shard else range(found.rows)
+        out = self._out(found, rows)
+        conditions = [read_condition(one, found.heads) for one in self.conditions]
+        aims = [read_aim(one, found.heads, "--pareto") for one in self.pareto or ()]
+        order = read_aim(self.sort, found.heads, "--sort") if self.sort else None
+        told = _counted(rows_of(found, out.rows, self.jobs, self.dask or ""), len(out.rows), self.file_name)
+        kept: Iterable[Row] = (row for row in told if all(one.holds(row) for one in conditions))
+        out.write(summary(kept, found.heads) if self.summary else self._chosen(kept, aims, order))
+
+    def _spec(self) -> Spec:
+        from kurbel.designs.sweep import Spec
+        from kurbel.machine_file import source
+        from kurbel.render.output import refuse_overwriting
+
+        refuse_overwriting(self.file_name, (self.file,))
+        system = self.units or ("si" if self._written in ("csv", "json", "parquet") else "metric")
+        plan = self.vary, self.side_by_side, self.sample, self.seed, self.sobol
+        return Spec(source.read(self.file), self.overrides, *plan, self.columns or (), self.with_angles, system)
+
+    def _out(self, found: Sweep, rows: range) -> SweepOutput:
+        from kurbel.designs.chosen import summary_heads
+        from kurbel.render.sweep_output import SweepOutput
+        from kurbel.render.sweep_rows import Titles
+
+        titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.limited)
+        if self.summary:
+            titles = Titles(summary_heads(found.heads), row="column", failing=False)
+        return SweepOutput(titles, self._look, self.file_name, rows, self.resume)
+
+    def _chosen(self, rows: Iterable[Row], aims: Sequence[Aim], order: Aim | None) -> Iterable[Row]:
+        from kurbel.designs.chosen import sorted_rows, unbettered
+
+        if aims:
+            rows = unbettered(rows, aims)
+        if order:
+            rows = sorted_rows(rows, order)[: self.top]
+        return rows
+
+
+def _counted(rows: Iterable[Row], count: int, file_name: str | None) -> Iterator[Row]:
+    """Yield the rows, with a bar on the terminal where they do not go there themselves."""
+    if not sys.stderr.isatty() or (file_name is None and sys.stdout.isatty()):
+        yield from rows
+        return
+    with click.progressbar(rows, length=count, file=sys.stderr, label="designs", update_min_steps=100) as bar:
+        yield from bar

@@ -1,0 +1,92 @@
+"""`kurbel.sweep`: what Python asks of many designs of a machine, as arrays."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kurbel.declared.unit_systems import SI
+from kurbel.designs.binding import Binder, written_texts
+from kurbel.designs.sweep import Row, Spec, Sweep, kind_of_form
+from kurbel.designs.workers import rows_of
+from kurbel.errors import UsageError
+from kurbel.machine import Machine
+from kurbel.machine_file.source import Source, decode
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array
+
+
+def sweep(
+    machine: Machine, inputs: Mapping[str, Any], columns: Sequence[str] = (), with_angles: bool = False
+) -> dict[str, Any]:
+    """Return key values of many designs of a machine as arrays (n,), in SI, by their ids.
+
+    machine: as `load` or `loads` returned it; inputs: dotted key of its file -> numbers (n,) in SI (angles in degrees,
+    speeds in revolutions per second), or texts as the file would have them. columns: ids or symbols of key values, all
+    of `kurbel forces` where none are named. Numbers are nan, and `failure` (n,) tells why, where a design fails; a list
+    of angles is a tuple. With limits in the file `keeps` tells whether they are kept.
+
+    >>> import kurbel
+    >>> found = sweep(kurbel.loads("{stroke: 1 m, rod_ratio: 5, speed: 60 rpm}"), {"rod_ratio": [4, 5]}, ["b_max"])
+    >>> found["b_max"].round(3).tolist()
+    [24.674, 23.687]
+
+    Raises UsageError for inputs of different lengths, keys without a value, and columns that the machine has not.
+    """
+    source, overrides = _origin(machine)
+    keys = tuple(inputs)
+    texts = _texts(source, overrides, keys, inputs)
+    spec = Spec(source, overrides, given=(keys, texts), columns=tuple(columns), with_angles=with_angles)
+    found = Sweep(spec)
+    return _arrays(found, list(rows_of(found, range(found.rows))))
+
+
+def _origin(machine: Machine) -> tuple[Source, tuple[str, ...]]:
+    origin = machine.origin
+    if origin is None:
+        raise UsageError("only a machine that was read can vary by its keys: take it from kurbel.load or kurbel.loads")
+    return decode(origin.name, origin.content, os.path.dirname(origin.name)), origin.overrides
+
+
+def _texts(
+    source: Source, overrides: Sequence[str], keys: Sequence[str], inputs: Mapping[str, Any]
+) -> tuple[tuple[str, ...], ...]:
+    """Return the inputs as texts of the machine file, row by row."""
+    columns = [np.atleast_1d(np.asarray(values)) for values in inputs.values()]
+    lengths = {key: len(column) for key, column in zip(keys, columns)}
+    if len(set(lengths.values())) != 1 or any(column.ndim != 1 for column in columns):
+        each = ", ".join(f"{key} has {count}" for key, count in lengths.items())
+        raise UsageError(f"give as many values of every key, one or more of them; {each or 'there is none'}")
+    binder = Binder(source, overrides, keys, written_texts(source, overrides, keys))
+    units = [SI.get(kind_of_form(binder.form(number)), "") for number in range(len(keys))]
+    texts = [_column(column, unit) for column, unit in zip(columns, units)]
+    return tuple(zip(*texts))
+
+
+def _column(values: Array, unit: str) -> list[str]:
+    if values.dtype.kind not in "fiu":
+        return [str(one) for one in values.tolist()]
+    return [f"{one!r} {unit}".rstrip() for one in values.tolist()]
+
+
+def _arrays(found: Sweep, rows: Sequence[Row]) -> dict[str, Any]:
+    columns = list(zip(*(row.values for row in rows)))
+    arrays: dict[str, Any] = {
+        head.id: _array(column) for head, column in zip(found.heads, columns, strict=True) if not head.input
+    }
+    arrays["failure"] = np.array([row.failure for row in rows])
+    if found.limited:
+        arrays["keeps"] = np.array([bool(row.keeps) for row in rows])
+    return arrays
+
+
+def _array(values: Sequence[Any]) -> Any:
+    if any(isinstance(one, tuple) for one in values):
+        found = np.empty(len(values), dtype=object)
+        found[:] = values
+        return found
+    return np.array([np.nan if one is None else one for one in values], dtype=float)

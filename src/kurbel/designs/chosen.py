@@ -1,0 +1,163 @@
+"""Which rows of a sweep are kept: by conditions, as the best, as those that no other one betters; and a summary."""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.declared.numerals import NUMBER, parse_ratio, plain
+from kurbel.declared.reading import shown
+from kurbel.declared.unit_systems import SI, convert_back
+from kurbel.declared.units import example, parse_quantity
+from kurbel.designs.sweep import Head, Row
+from kurbel.errors import UnitError, UsageError
+from kurbel.near_words import did_you_mean
+
+_RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
+    "<=": operator.le,
+    ">=": operator.ge,
+    "!=": operator.ne,
+    "<": operator.lt,
+    ">": operator.gt,
+    "=": operator.eq,
+}
+_CONDITION = re.compile(r"(.+?)\s*(<=|>=|!=|<|>|=)\s*(.+)")
+
+
+class Condition(NamedTuple):
+    """A comparison of a column with a value in the unit of its head, or with a text."""
+
+    place: int
+    relation: str
+    value: Any
+
+    def holds(self, row: Row) -> bool:
+        """Return whether it holds; a row without that value keeps no condition."""
+        value = row.values[self.place]
+        if value is None or isinstance(value, tuple) or isinstance(value, str) != isinstance(self.value, str):
+            return False
+        return bool(_RELATIONS[self.relation](value, self.value))
+
+
+def read_condition(text: str, heads: Sequence[Head]) -> Condition:
+    """Return what `c_max < 5 m/s` says; raises UsageError."""
+    found = _CONDITION.fullmatch(plain(text).strip())
+    if not found:
+        raise UsageError(
+            f"--where: expected a column, a relation and a value, such as 'c_max < 5 m/s', got {shown(text)!r}"
+        )
+    place = place_of(found[1].strip(), heads, "--where")
+    head, written = heads[place], found[3].strip()
+    if not head.kind:
+        return Condition(place, found[2], written)
+    try:
+        value = parse_ratio(written) if head.kind == "ratio" else parse_quantity(written, head.kind)
+    except UnitError as error:
+        hint = f"; write for instance {example(head.kind)}" if NUMBER.fullmatch(written) else ""
+        raise UsageError(f"--where {shown(text)}: {error}{hint}") from None
+    return Condition(place, found[2], _in_unit(value, head))
+
+
+def _in_unit(value: float, head: Head) -> float:
+    return value / convert_back(1.0, head.kind, head.unit) if head.unit not in ("", SI[head.kind]) else value
+
+
+def place_of(name: str, heads: Sequence[Head], option: str) -> int:
+    """Return which column a name is; raises UsageError."""
+    ids = [one.id for one in heads]
+    if name not in ids:
+        raise UsageError(
+            f"{option}: no column '{shown(name)}'{did_you_mean(name, tuple(ids))} (there are {', '.join(ids)})"
+        )
+    return ids.index(name)
+
+
+class Aim(NamedTuple):
+    """A column of which the smallest values are the best, or, with `most`, the largest ones."""
+
+    place: int
+    most: bool
+
+    def of(self, row: Row) -> float:
+        """Return a number that is the less the better; inf where there is none."""
+        value = row.values[self.place]
+        if not isinstance(value, (int, float)):
+            return float("inf")
+        return -value if self.most else value
+
+
+def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
+    """Return what `T_max` or `-T_max` says, the largest value first; raises UsageError."""
+    name = text.strip()
+    return Aim(place_of(name.removeprefix("-"), heads, option), name.startswith("-"))
+
+
+def sorted_rows(rows: Iterable[Row], aim: Aim) -> list[Row]:
+    """Return the rows, the best one first; rows without a value come last, equal ones as they came."""
+    return sorted(rows, key=aim.of)
+
+
+def unbettered(rows: Iterable[Row], aims: Sequence[Aim]) -> Iterator[Row]:
+    """Yield the rows than which no other one is better in one aim and as good in all: the front of Pareto."""
+    given = list(rows)
+    places = [place for place, row in enumerate(given) if all(aim.of(row) < float("inf") for aim in aims)]
+    costs = np.array([[aim.of(given[place]) for aim in aims] for place in places]).reshape(len(places), len(aims))
+    order = np.lexsort(costs.T[::-1])
+    front: list[int] = []
+    kept = np.empty((0, len(aims)))
+    for one in order.tolist():
+        better = (kept <= costs[one]).all(axis=1) & (kept < costs[one]).any(axis=1)
+        if not better.any():
+            front.append(places[one])
+            kept = np.vstack((kept, costs[one]))
+    return (given[place] for place in sorted(front))
+
+
+QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
+
+
+def summary_heads(heads: Sequence[Head]) -> tuple[tuple[str, str], ...]:
+    """Return names and units of what a summary tells: quantiles, and the rank correlation with every input."""
+    inputs = [f"r({one.id})" for one in heads if one.input]
+    return tuple((name, "") for name in ("unit", "rows", "mean", *(f"q{100 * q:g}" for q in QUANTILES), *inputs))
+
+
+def summary(rows: Iterable[Row], heads: Sequence[Head]) -> Iterator[Row]:
+    """Yield what is to be told of every column of numbers, over the rows that have a value there."""
+    given = [row.values for row in rows]
+    numbers = [_numbers(given, place) for place in range(len(heads))]
+    inputs = [values for values, head in zip(numbers, heads) if head.input]
+    for values, head in zip(numbers, heads):
+        there = values[np.isfinite(values)]
+        if head.kind and len(there):
+            told = (head.unit, len(there), float(there.mean()), *np.quantile(there, QUANTILES).tolist())
+            yield Row(head.id, (*told, *(_rank_correlation(values, one) for one in inputs)))  # type: ignore[arg-type]
+
+
+def _numbers(values: Sequence[tuple[Any, ...]], place: int) -> Any:
+    column = (row[place] for row in values)
+    return np.array([one if isinstance(one, (int, float)) else np.nan for one in column], dtype=float)
+
+
+def _rank_correlation(first: Any, second: Any) -> float | None:
+    """Return the correlation of the ranks (Spearman); None where one of both does not vary."""
+    there = np.isfinite(first) & np.isfinite(second)
+    ranks = [_ranks(one[there]) for one in (first, second)]
+    spread = [float(np.ptp(one)) if len(one) else 0.0 for one in ranks]
+    return float(np.corrcoef(*ranks)[0, 1]) if min(spread) > 0 else None
+
+
+def _ranks(values: Any) -> Any:
+    """Return the rank of every value, equal ones sharing the mean of theirs."""
+    order = np.argsort(values, kind="stable")
+    inverse = np.empty(len(values), dtype=np.intp)
+    inverse[order] = np.arange(len(values))
+    ordered = values[order]
+    begins = np.flatnonzero(np.append(True, ordered[1:] != ordered[:-1]))
+    group = np.searchsorted(begins, inverse, side="right") - 1
+    ends = np.append(begins[1:], len(values))
+    return (begins[group] + ends[group] - 1) / 2

@@ -1,0 +1,105 @@
+"""What is asked of every design: key values of any command, each of a cylinder or of the whole machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from importlib import import_module
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.declared.quantity import Quantity, ambiguity, called, joined
+from kurbel.declared.reading import shown
+from kurbel.errors import KurbelError, UsageError
+from kurbel.machine import Machine
+from kurbel.mechanisms import every_quantity
+from kurbel.near_words import did_you_mean
+from kurbel.numerics.extreme import Extreme
+from kurbel.solver.case import Case
+
+SIDE_BY_SIDE = ("forces", "motion")
+"""Commands whose key values a cylinder answers."""
+
+
+class Answer(NamedTuple):
+    """A key value of a command; subject: whose it is, as the report of that command names it."""
+
+    quantity: Quantity
+    command: str
+    subject: str
+
+    @property
+    def of_cylinder(self) -> bool:
+        """Whether a cylinder answers it by its forces or motion."""
+        return self.command in SIDE_BY_SIDE
+
+
+def subjects(case: Case, command: str) -> Iterable[Any]:
+    """Return whom a command speaks of, with what answers their key values."""
+    return import_module(f"kurbel.report.{command}").subjects(case)  # type: ignore[no-any-return]
+
+
+def asked_answers(machine: Machine, names: Sequence[str]) -> tuple[Answer, ...]:
+    """Return the key values that are asked for by id or symbol, of every cylinder that has them; none: all of `forces`.
+
+    Raises UsageError for one that there is not, or that this machine has not.
+    """
+    case = Case(machine)
+    with np.errstate(all="ignore"):
+        if not names:
+            return tuple(_usual(case))
+        declared = every_quantity().all_key_values
+        return tuple(one for name in joined(names, declared) for one in _named(case, name))
+
+
+def _usual(case: Case) -> Iterator[Answer]:
+    for subject in subjects(case, "forces"):
+        for quantity, _ in subject.key_values("forces"):
+            if not quantity.residual:
+                yield Answer(quantity, "forces", subject.name)
+
+
+def _named(case: Case, name: str) -> list[Answer]:
+    declared = every_quantity().all_key_values
+    ids = called(name, declared)
+    if not ids or ambiguity(name, ids):
+        near = did_you_mean(name, tuple(one.id for one in declared))
+        raise UsageError(f"--columns: {ambiguity(name, ids) or f'no key value {shown(name)!r}{near}'}")
+    command = every_quantity().commands_of(ids[0])
+    command = ("forces", *command) if "forces" in command and case.machine.cylinders else command
+    for word in dict.fromkeys(command):
+        found = [
+            Answer(quantity, word, subject.name)
+            for subject in subjects(case, word)
+            if (quantity := subject.lists.key_values(word).get(ids[0])) and _has(subject, quantity)
+        ]
+        if found:
+            return found
+    raise UsageError(f"--columns: this machine has no {ids[0]}; kurbel check says why")
+
+
+def _has(subject: Any, quantity: Quantity) -> bool:
+    try:
+        return subject.answer(quantity) is not None
+    except KurbelError:  # other designs may have it
+        return True
+
+
+def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
+    """Return the values of a machine alone, in SI, an Extreme, a tuple or None; raises KurbelError."""
+    case = Case(machine)
+    known: dict[tuple[str, str], Any] = {}
+    for command in dict.fromkeys(one.command for one in answers):
+        known |= {(command, subject.name): subject for subject in subjects(case, command)}
+    found = [_checked(known.get((one.command, one.subject)), one.quantity) for one in answers]
+    return found
+
+
+def _checked(subject: Any, quantity: Quantity) -> Any:
+    from kurbel.report.shown import too_large
+
+    value = subject.answer(quantity) if subject else None
+    number = value.value if isinstance(value, Extreme) else value
+    if number is not None and not np.isfinite(number).all():
+        raise too_large(quantity)
+    return value

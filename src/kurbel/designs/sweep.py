@@ -1,0 +1,236 @@
+"""A sweep: rows of inputs and answers, computed chunk by chunk in their order, here or by other processes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
+
+from kurbel.declared.numerals import parse_ratio
+from kurbel.declared.unit_systems import SI, convert, shown_unit
+from kurbel.declared.units import parse_quantity
+from kurbel.designs.answers import answers_of
+from kurbel.designs.binding import Binder, Unbound
+from kurbel.designs.columns import Answer, asked_answers, subjects
+from kurbel.designs.inputs import Input, read_input
+from kurbel.designs.plan import Fixed, Plan
+from kurbel.errors import KurbelError, MachineFileError, UsageError
+from kurbel.machine import Machine
+from kurbel.machine_file.source import Source
+from kurbel.numerics.extreme import Extreme
+
+CHUNK = 1000
+"""Rows that are computed together: what memory holds at once."""
+_FIRST = 20
+"""Rows of the first chunk, so that a reader sees something at once."""
+_STARTS = 100
+"""Rows that are tried for one that makes a machine."""
+
+
+class Spec(NamedTuple):
+    """All that a sweep is made of, in texts, so that any process can make it anew.
+
+    vary: `KEY=…` each; or keys and rows of texts in `given`. columns: ids or symbols; with_angles: beside extremes the
+    angle where each stands; system: of units; the others: see `Plan`.
+    """
+
+    source: Source
+    overrides: tuple[str, ...] = ()
+    vary: tuple[str, ...] = ()
+    side_by_side: bool = False
+    sample: int | None = None
+    seed: int = 0
+    sobol: bool = False
+    columns: tuple[str, ...] = ()
+    with_angles: bool = False
+    system: str = "si"
+    given: tuple[tuple[str, ...], tuple[tuple[str, ...], ...]] | None = None
+
+
+class Head(NamedTuple):
+    """A column of the table: its id, the unit of its values, '' for none; input: whether it is what varies.
+
+    kind: of the values, '' of texts.
+    """
+
+    id: str
+    unit: str
+    input: bool
+    kind: str = ""
+
+
+class Row(NamedTuple):
+    """One design: its number from 1 on, values under the heads (texts, numbers, tuples or None), and why it has none.
+
+    keeps: whether all limits of the file are kept, None where there are none; broken: the first one that is not.
+    """
+
+    number: int
+    values: tuple[Any, ...]
+    keeps: bool | None = None
+    broken: str = ""
+    failure: str = ""
+
+
+class Sweep:
+    """Rows of one machine; heads: what stands over their values. Raises UsageError for what makes none."""
+
+    def __init__(self, spec: Spec) -> None:
+        self.spec = spec
+        plan: Plan | Fixed
+        if spec.given is None:
+            plan = Plan(list(map(read_input, spec.vary)), spec.side_by_side, spec.sample, spec.seed, spec.sobol)
+        else:
+            plan = Fixed(*spec.given)
+        self.plan = plan
+        self.rows = plan.rows
+        self._binder = self._started()
+        machine = self._binder.machine
+        self.asked = asked_answers(machine, spec.columns)
+        self._limits = tuple(_limit_answers(machine))
+        self.limited = bool(machine.limits)
+
+    def _started(self) -> Binder:
+        """Return what binds texts, starting from the first row that makes a machine."""
+        keys = [one.key for one in self.plan.inputs]
+        failed: MachineFileError | None = None
+        for row in range(min(self.rows, _STARTS)):
+            try:
+                return Binder(self.spec.source, self.spec.overrides, keys, self.plan.texts(row))
+            except MachineFileError as error:
+                failed = failed or error
+        raise (
+            UsageError(str(failed).replace("--set ", "--vary ")) if failed else UsageError("there is no row to compute")
+        )
+
+    @cached_property
+    def heads(self) -> tuple[Head, ...]:
+        """What stands over the values."""
+        ids = [one.quantity.id for one in self.asked]
+        heads = [self._input_head(number, one) for number, one in enumerate(self.plan.inputs)]
+        for one, unit in zip(self.asked, self._units):
+            name = f"{one.subject}.{one.quantity.id}" if ids.count(one.quantity.id) > 1 else one.quantity.id
+            heads.append(Head(name, unit, False, one.quantity.kind))
+            if self._has_angle(one):
+                heads.append(Head(f"{name}_at", "deg", False, "angle"))
+        return tuple(heads)
+
+    def _input_head(self, number: int, one: Input) -> Head:
+        kind = kind_of_form(self._binder.form(number))
+        return Head(one.key, shown_unit(kind, self.spec.system, 0.0) if kind else "", True, kind)
+
+    def _has_angle(self, one: Answer) -> bool:
+        return self.spec.with_angles and bool(one.quantity.asks[:1] == ("extremes_of",) or one.quantity.id in _AT)
+
+    @cached_property
+    def _units(self) -> tuple[str, ...]:
+        """Units of the answers, from the sizes that the first machine has."""
+        if self.spec.system == "si":
+            return tuple(SI[one.quantity.kind] for one in self.asked)
+        (first,) = answers_of([self._binder.machine], self.asked)
+        sizes = [0.0] * len(self.asked) if isinstance(first, str) else map(_size, first)
+        return tuple(
+            shown_unit(one.quantity.kind, self.spec.system, size) for one, size in zip(self.asked, sizes, strict=True)
+        )
+
+    def chunk(self, start: int, stop: int) -> list[Row]:
+        """Return the rows with these indices from 0 on."""
+        texts = [self.plan.texts(row) for row in range(start, stop)]
+        machines: list[Machine | str] = [self._bound(one) for one in texts]
+        whole = [one for one in machines if isinstance(one, Machine)]
+        answers = iter(answers_of(whole, (*self.asked, *(answer for answer, _ in self._limits))))
+        return [
+            self._row(start + place, texts[place], one if isinstance(one, str) else next(answers))
+            for place, one in enumerate(machines)
+        ]
+
+    def _bound(self, texts: tuple[str, ...]) -> Machine | str:
+        try:
+            return self._binder.bound(texts)
+        except (Unbound, KurbelError) as error:
+            return str(error)
+
+    def _row(self, row: int, texts: Sequence[str], found: list[Any] | str) -> Row:
+        inputs = [self._input_value(number, text) for number, text in enumerate(texts)]
+        if isinstance(found, str):
+            blank = [None] * (len(self.heads) - len(inputs))
+            return Row(row + 1, (*inputs, *blank), None, "", found)
+        values = [
+            part for one, unit, value in zip(self.asked, self._units, found) for part in self._shown(one, unit, value)
+        ]
+        broken = self._broken(found[len(self.asked) :])
+        return Row(row + 1, (*inputs, *values), not broken if self.limited else None, broken)
+
+    def _input_value(self, number: int, text: str) -> Any:
+        head = self.heads[number]
+        if not head.kind:
+            return text
+        try:
+            value = parse_ratio(text) if head.kind == "ratio" else parse_quantity(text, head.kind)
+        except KurbelError:  # a word, or what the row fails for
+            return text
+        return convert(value, head.kind, head.unit) + 0.0
+
+    def _shown(self, one: Answer, unit: str, value: Any) -> Iterator[Any]:
+        number = value.value if isinstance(value, Extreme) else value
+        if isinstance(number, tuple):
+            yield tuple(convert(part, one.quantity.kind, unit) + 0.0 for part in number)
+        else:
+            yield None if number is None else convert(number, one.quantity.kind, unit) + 0.0
+        if self._has_angle(one):
+            yield value.degrees if isinstance(value, Extreme) else None
+
+    def _broken(self, found: Sequence[Any]) -> str:
+        from kurbel.report.compared import breaks
+
+        for (answer, bound), value in zip(self._limits, found, strict=True):
+            number = value.value if isinstance(value, Extreme) else value
+            if number is not None and breaks(answer.quantity, bound, number):
+                return answer.quantity.id
+        return ""
+
+    def chunks(self, rows: range) -> Iterator[tuple[int, int]]:
+        """Yield the ends of the chunks in which rows are computed, the first one short."""
+        start = rows.start
+        while start < rows.stop:
+            stop = min(start + (_FIRST if start == rows.start else CHUNK), rows.stop)
+            yield start, stop
+            start = stop
+
+
+_AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")
+
+
+def kind_of_form(form: Any) -> str:
+    """Return the kind of the number that stands under a key; '' where none does."""
+    if hasattr(form, "kind"):
+        return form.kind if hasattr(form, "parse") else ""
+    return next((kind for _, part in form.parts() if not part.parts() and (kind := kind_of_form(part))), "")
+
+
+def _size(value: Any) -> float:
+    number = value.value if isinstance(value, Extreme) else value
+    return max(map(abs, number), default=0.0) if isinstance(number, tuple) else abs(number or 0.0)
+
+
+def _limit_answers(machine: Machine) -> Iterable[tuple[Answer, float]]:
+    """Yield whose value each limit of the file is for, with its bound."""
+    from kurbel.report.limits import commands_for
+    from kurbel.solver.case import Case
+
+    case = Case(machine)
+    for name, bound in machine.limits:
+        for command in commands_for(machine, name):
+            for subject in subjects(case, command):
+                if quantity := subject.lists.key_values(command).get(name):
+                    yield Answer(quantity, command, subject.name), bound
+
+
+@lru_cache(maxsize=4)
+def _sweep(spec: Spec) -> Sweep:
+    return Sweep(spec)
+
+
+def computed(spec: Spec, start: int, stop: int) -> list[Row]:
+    """Return rows of a sweep, in whatever process; a sweep is made once in each."""
+    return _sweep(spec).chunk(start, stop)

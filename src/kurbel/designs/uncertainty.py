@@ -1,0 +1,215 @@
+"""What standard uncertainties of the inputs make of the key values, u² = Σ (∂y/∂x u_x)², and which input it comes from.
+
+The derivatives by an input are differences of the solver's answers, which are exact but for rounding: at four places
+beside the value, extrapolated to none (Richardson). Jets carry slopes by the crank angle and do not reach the inputs.
+Where an answer bends over the width of an uncertainty, so that its first order does not hold, a sample tells instead.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from statistics import NormalDist
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.declared.numerals import parse_ratio
+from kurbel.declared.unit_systems import SI, convert, shown_unit
+from kurbel.declared.units import parse_quantity
+from kurbel.designs.answers import answers_of
+from kurbel.designs.binding import Binder, Unbound, written_texts
+from kurbel.designs.columns import Answer, subjects
+from kurbel.designs.sampling import latin_hypercube
+from kurbel.designs.sweep import kind_of_form
+from kurbel.errors import UnitError, UsageError
+from kurbel.machine import Machine
+from kurbel.machine_file.source import Source, decode
+from kurbel.numerics.extreme import Extreme
+from kurbel.report.tables import Column, Part, PlaceTable, Report
+from kurbel.solver.case import Case
+
+SAMPLE, SLOW_SAMPLE = 2000, 200
+"""Machines that are drawn where the first order does not hold: side by side, and where each is answered alone."""
+_STEP = 0.1
+"""Of an uncertainty: the outer difference; the inner one is half of it."""
+_BEND = 0.1
+"""What the second order may be beside the first one."""
+_ROUNDING = 1e-9
+"""What is less than this beside the value itself bends nothing."""
+
+
+_NOISE = 1e-12
+"""Of a value: what is less is no uncertainty but rounding."""
+
+
+class Uncertain(NamedTuple):
+    """The standard uncertainty of a key value in SI, and the share of each input in its square.
+
+    sample: from how many drawn machines both are told, 0 where they are of first order.
+    """
+
+    answer: Answer
+    value: float
+    spread: float
+    shares: tuple[float, ...]
+    sample: int = 0
+
+
+class Uncertainty:
+    """What uncertain inputs make of key values; spreads: dotted key -> `0.2 mm` or `2 %`, its standard uncertainty.
+
+    Raises UsageError for keys under which no number stands, and for units that do not fit.
+    """
+
+    def __init__(self, source: Source, overrides: Sequence[str], spreads: Sequence[tuple[str, str]]) -> None:
+        self.keys = tuple(key for key, _ in spreads)
+        texts = written_texts(source, overrides, self.keys)
+        self._binder = Binder(source, overrides, self.keys, texts)
+        self._kinds = [kind_of_form(self._binder.form(number)) for number in range(len(spreads))]
+        self._values = [_number(text, kind, key) for text, kind, key in zip(texts, self._kinds, self.keys)]
+        told = zip(spreads, self._kinds, self._values)
+        self._spreads = [_spread(text, kind, value, key) for (key, text), kind, value in told]
+
+    def _machine(self, shifts: Sequence[float]) -> Machine | None:
+        """Return the machine with inputs off by so many of their uncertainties each; None where there is none."""
+        values = (value + shift * spread for value, shift, spread in zip(self._values, shifts, self._spreads))
+        try:
+            return self._binder.bound([f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._kinds)])
+        except Unbound:
+            return None
+
+    def _answers(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer]) -> Any:
+        """Return the answers (machines, asked) as floats, nan where there are none."""
+        machines = [self._machine(one) for one in shifts]
+        found = iter(answers_of([one for one in machines if one], asked))
+        rows = [next(found) if one else "" for one in machines]
+        blank = [math.nan] * len(asked)
+        return np.array([blank if isinstance(row, str) else [_float(value) for value in row] for row in rows])
+
+    def of(self, asked: Sequence[Answer]) -> list[Uncertain]:
+        """Return the uncertainties of those key values that are numbers."""
+        steps = [sign * step for step in (_STEP, _STEP / 2, 1.0) for sign in (1, -1)]
+        units = np.eye(len(self.keys))
+        places = [0 * units[0], *(unit * step for unit in units for step in steps)]
+        found = self._answers([one.tolist() for one in places], asked)
+        there = [place for place in range(len(asked)) if math.isfinite(found[0, place])]
+        kept, found = [asked[place] for place in there], found[:, there]
+        outer, inner, whole = (found[1:].reshape(len(self.keys), 3, 2, -1)[:, k] for k in range(3))
+        slopes = [(pair[:, 0] - pair[:, 1]) / (2 * step) for pair, step in ((outer, _STEP), (inner, _STEP / 2))]
+        first = (4 * slopes[1] - slopes[0]) / 3
+        bend = np.maximum(np.abs(whole.sum(axis=1) / 2 - found[0]), np.abs(slopes[1] - slopes[0]))
+        size = np.sqrt((first**2).sum(axis=0))
+        holds = (bend <= np.maximum(_BEND * size, _ROUNDING * np.abs(found[0]))).all(axis=0)
+        linear = [
+            Uncertain(one, float(found[0, k]), float(size[k]), _shares(first[:, k] ** 2)) for k, one in enumerate(kept)
+        ]
+        drawn = iter(self._drawn([one for one, flat in zip(linear, holds) if not flat]))
+        return [one if flat else next(drawn) for one, flat in zip(linear, holds)]
+
+    def _drawn(self, bent: Sequence[Uncertain]) -> list[Uncertain]:
+        """Return by a sample the uncertainties of what bends; shares are the squares of correlations."""
+        if not bent:
+            return []
+        asked = [one.answer for one in bent]
+        count = SAMPLE if all(one.of_cylinder for one in asked) else SLOW_SAMPLE
+        points = latin_hypercube(count, len(self.keys), 0)
+        shifts = [[NormalDist().inv_cdf(share) for share in point] for point in points.tolist()]
+        found = self._answers(shifts, asked)
+        return [_of_sample(one, np.array(shifts), found[:, k]) for k, one in enumerate(bent)]
+
+
+def _of_sample(one: Uncertain, shifts: Any, values: Any) -> Uncertain:
+    there = np.isfinite(values)
+    spread = float(values[there].std(ddof=1)) if there.sum() > 1 else math.nan
+    if not spread > 0:
+        return one._replace(spread=spread, shares=(0.0,) * shifts.shape[1], sample=int(there.sum()))
+    own = shifts[there]
+    shares = tuple(float(np.corrcoef(own[:, k], values[there])[0, 1]) ** 2 for k in range(own.shape[1]))
+    return one._replace(spread=spread, shares=shares, sample=int(there.sum()))
+
+
+def _shares(squares: Any) -> tuple[float, ...]:
+    whole = squares.sum()
+    return tuple((squares / whole).tolist()) if whole > 0 else (0.0,) * len(squares)
+
+
+def _float(value: Any) -> float:
+    number = value.value if isinstance(value, Extreme) else value
+    return number if isinstance(number, (int, float)) else math.nan
+
+
+def _number(text: str, kind: str, key: str) -> float:
+    try:
+        return parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
+    except (UnitError, KeyError):
+        raise UsageError(f"uncertainty of {key}: '{text}' is no number that could be off") from None
+
+
+def _spread(text: str, kind: str, value: float, key: str) -> float:
+    try:
+        if text.endswith("%"):
+            spread = abs(value) * parse_ratio(text)
+        else:
+            spread = parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
+    except UnitError as error:
+        raise UsageError(f"uncertainty of {key}: {error}") from None
+    if not spread > 0:
+        raise UsageError(f"uncertainty of {key}: it must be more than 0, got {text}")
+    return spread
+
+
+def with_uncertainty(report: Report, case: Case, more: Sequence[tuple[str, str]], system: str) -> Report:
+    """Return a report with a table of the uncertainties of its key values; more: those that no file gives.
+
+    Raises UsageError, as `Uncertainty`.
+    """
+    spreads = tuple((dict(case.machine.uncertainty) | dict(more)).items())
+    origin = case.machine.origin
+    if not spreads or origin is None:
+        return report
+    import os
+
+    source = decode(origin.name, origin.content, os.path.dirname(origin.name))
+    uncertainty = Uncertainty(source, origin.overrides, spreads)
+    asked = [
+        Answer(quantity, report.command, subject.name)
+        for subject in subjects(case, report.command)
+        for quantity, _ in subject.key_values(report.command)
+        if not (quantity.listed or quantity.residual)
+    ]
+    found = uncertainty.of(asked)
+    parts = [_with_table(part, found, uncertainty.keys, system) for part in report.all_parts]
+    last = parts.pop() if report.whole else None
+    return report._replace(parts=tuple(parts), whole=last, notes=(*report.notes, *_notes(found)))
+
+
+def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], system: str) -> Part:
+    own = [one for one in found if one.answer.subject == part.name and one.spread > _NOISE * abs(one.value)]
+    if not own:
+        return part
+    names, spreads = [], []
+    for one in own:
+        kind = one.answer.quantity.kind
+        unit = shown_unit(kind, system, abs(one.value))
+        names.append((one.answer.quantity.id, f"{convert(one.value, kind, unit):.6g}", unit or "1"))
+        spreads.append(convert(one.spread, kind, unit))
+    columns = [Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2)]
+    for place, key in enumerate(keys):
+        columns.append(Column(key, key, key, "%", tuple(_percent(one.shares[place]) for one in own), alone=2))
+    columns.append(Column("sample", "sample", "sample", "", tuple(one.sample or None for one in own), alone=2))
+    title = "Standard uncertainty, and the share of each input in its square"
+    heads = ("key_value", "value", "unit")
+    table = PlaceTable("uncertainty", title, heads, tuple(names), tuple(columns), headed=True)
+    return part._replace(place_tables=(*part.place_tables, table))
+
+
+def _percent(share: float) -> float:
+    """Return a share in percent, to a tenth."""
+    return round(100 * share, 1)
+
+
+def _notes(found: Sequence[Uncertain]) -> Iterable[str]:
+    yield "Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."
+    if sizes := {one.sample for one in found if one.sample}:
+        yield f"Those with a sample bend too much for that and come from so many drawn machines ({max(sizes)})."

@@ -1,0 +1,77 @@
+"""Who computes the chunks of a sweep: this process, others on this machine, or a cluster; the order stays."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from kurbel.designs.sweep import Row, Spec, Sweep, computed
+from kurbel.errors import UsageError
+
+_AHEAD = 3
+"""Chunks per worker that are on their way: what is computed and not yet read stays little."""
+_RETRIES = 5
+"""How often a chunk is sent anew whose worker was lost."""
+_ANSWERS_WITHIN = 10.0
+"""Seconds in which a cluster must answer."""
+
+
+def rows_of(sweep: Sweep, rows: range, jobs: int = 1, dask: str = "") -> Iterator[Row]:
+    """Yield rows in their order as soon as they are there; jobs: processes of this machine; dask: address of a cluster.
+
+    Raises UsageError for an address that does not answer.
+    """
+    if dask:
+        with _cluster(dask) as (submit, workers):
+            yield from _gathered(sweep, rows, submit, workers)
+    elif jobs > 1:
+        with _processes(jobs) as submit:
+            yield from _gathered(sweep, rows, submit, jobs)
+    else:
+        for start, stop in sweep.chunks(rows):
+            yield from sweep.chunk(start, stop)
+
+
+def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: int) -> Iterator[Row]:
+    """Yield the rows of chunks that others compute, in order, with few of them ahead."""
+    waiting: deque[Any] = deque()
+    for start, stop in sweep.chunks(rows):
+        waiting.append(submit(computed, sweep.spec, start, stop))
+        if len(waiting) > _AHEAD * workers:
+            yield from waiting.popleft().result()
+    while waiting:
+        yield from waiting.popleft().result()
+
+
+@contextmanager
+def _processes(jobs: int) -> Iterator[Callable[..., Any]]:
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    pool = ProcessPoolExecutor(jobs, get_context("spawn"))
+    try:
+        yield pool.submit
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[tuple[Callable[..., Any], int]]:
+    try:
+        from distributed import Client  # type: ignore[import-not-found, unused-ignore]
+    except ImportError:
+        raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
+    try:
+        client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
+    except (OSError, ValueError) as error:  # what is no address, and what does not answer in time
+        raise UsageError(f"--dask {address}: no scheduler answers there ({str(error).splitlines()[0]})") from None
+
+    def submit(function: Callable[..., Any], spec: Spec, start: int, stop: int) -> Any:
+        return client.submit(function, spec, start, stop, retries=_RETRIES, key=f"kurbel-{hash(spec)}-{start}")
+
+    try:
+        yield submit, max(len(client.scheduler_info()["workers"]), 1)
+    finally:
+        client.close()

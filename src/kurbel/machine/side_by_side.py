@@ -1,0 +1,130 @@
+"""Machines of one kind side by side: the same records, in which what differs is an array over the variants.
+
+Each machine has kept its own rules at birth, so that these records, made without them, keep them too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.indicator import Indicator
+from kurbel.machine.variants import Chambers, record_of
+
+_SIDE_BY_SIDE = ("slider-crank", "yoke-frame", "scotch-yoke")
+"""Mechanisms whose formulas take numbers of many machines at once."""
+_MOST_LINES = 40
+"""Points of a card with more of which a machine is answered alone: its pieces are many enough to fill an array."""
+
+
+_ALONE = object()
+
+
+class Kinds:
+    """Tells what machines that can stand side by side have in common; what several of them share is looked at once."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[Any, Any]] = {}
+
+    def of(self, machine: Machine, cylinder: Cylinder) -> Hashable | None:
+        """Return the kind of one cylinder of a machine; None where it must be answered alone."""
+        if cylinder.mechanism.name not in _SIDE_BY_SIDE:
+            return None
+        cycles = tuple(machine.cycle_of_piston(cylinder, number) for number in range(len(cylinder.pistons)))
+        kind = (_number(machine.speed), _number(machine.ambient), machine.rotation, machine.cycle_of(cylinder), cycles)
+        own = self._kind(cylinder)
+        return None if own is _ALONE else (*kind, own)
+
+    def _kind(self, value: Any) -> Any:
+        if isinstance(value, (float, int)) and not isinstance(value, bool):
+            return _number(value)
+        if value is None or isinstance(value, (str, bool)):
+            return value
+        if id(value) not in self._known:  # beside it, so that no other takes its place in memory
+            self._known[id(value)] = value, self._looked_at(value)
+        return self._known[id(value)][1]
+
+    def _looked_at(self, value: Any) -> Any:
+        if isinstance(value, tuple):
+            return self._together(value)
+        if isinstance(value, Indicator):
+            mirrored = value.crank_end is value.head_end
+            ends = _chamber(value.head_end), _chamber(value.crank_end)
+            return _ALONE if _ALONE in ends else (Indicator, *ends, mirrored, value.absolute)
+        if getattr(value, "of_pins", ()):  # whose loads bend where they all but vanish
+            return _ALONE
+        if is_dataclass(value):
+            own = self._together(one for name, one in vars(value).items() if name != "name")
+            return _ALONE if own is _ALONE else (type(value), own)
+        return value
+
+    def _together(self, values: Iterable[Any]) -> Any:
+        found = tuple(self._kind(one) for one in values)
+        return _ALONE if any(one is _ALONE for one in found) else found
+
+
+def _number(value: Any) -> str | None:
+    return None if value is None else "0" if value == 0 else "inf" if math.isinf(value) else "number"
+
+
+def _chamber(chamber: Any) -> Any:
+    if chamber is None:
+        return None
+    lines = getattr(chamber, "lines", ())
+    measured = hasattr(chamber, "angles")  # over the crank angle, and no process over the stroke
+    return _ALONE if measured or sum(len(one.fractions) for one in lines) > _MOST_LINES else "process"
+
+
+def side_by_side(pairs: Sequence[tuple[Machine, Cylinder]]) -> tuple[Machine, Cylinder]:
+    """Return machines of one kind, each with one of its cylinders, as one machine and one cylinder of many variants."""
+    machines, cylinders = zip(*pairs)
+    stack = _Stack()
+    first = machines[0]
+    numbers = {name: stack.of([getattr(one, name) for one in machines]) for name in ("speed", "ambient")}
+    return record_of(first, vars(first) | numbers), stack.of(cylinders)
+
+
+class _Stack:
+    """Puts records of one kind together; what is one in many places stays one."""
+
+    def __init__(self) -> None:
+        self._made: dict[tuple[int, ...], Any] = {}
+
+    def of(self, column: Sequence[Any]) -> Any:
+        """Return what stands for the values (v,) of one field."""
+        first = column[0]
+        if all(one is first for one in column):
+            return first
+        ids = tuple(map(id, column))
+        if ids not in self._made:
+            self._made[ids] = self._join(column)
+        return self._made[ids]
+
+    def _join(self, column: Sequence[Any]) -> Any:
+        first = column[0]
+        if isinstance(first, (float, int)) and not isinstance(first, bool):
+            return np.array(column) if any(one != first for one in column) else first
+        if isinstance(first, tuple) and not hasattr(first, "_fields"):
+            return tuple(self.of(parts) for parts in zip(*column))
+        if isinstance(first, Indicator):
+            ends = {end: self._chambers([getattr(one, end) for one in column]) for end in ("head_end", "crank_end")}
+            return record_of(first, vars(first) | ends)
+        if is_dataclass(first):
+            return record_of(
+                first, {one.name: self.of([getattr(each, one.name) for each in column]) for one in fields(first)}
+            )
+        return first
+
+    def _chambers(self, column: Sequence[Any]) -> Any:
+        ids = tuple(map(id, column))
+        if ids not in self._made:
+            different = {id(one): one for one in column}
+            places = {key: place for place, key in enumerate(different)}
+            chambers = Chambers(tuple(different.values()), np.array([places[one] for one in ids]))
+            self._made[ids] = chambers if len(different) > 1 else column[0]
+        return self._made[ids]

@@ -1,0 +1,179 @@
+"""Brackets of what a quantity does between the nodes of a grid: where it turns round, where that is worth a search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.roots import bracketed_roots
+
+if TYPE_CHECKING:
+    from kurbel.arrays import Array, Flags, Indices
+
+
+class Sampled(NamedTuple):
+    """Values and slopes by φ (per radian) of one quantity at the same angles, of one shape."""
+
+    value: Array
+    slope: Array
+
+    @classmethod
+    def of(cls, jet: Any, shape: tuple[int, ...]) -> Sampled:
+        """Return value and slope of a jet, or of what does not change, at angles of this shape."""
+        value, slope = getattr(jet, "value", jet), getattr(jet, "slope", 0.0)
+        return cls(np.broadcast_to(value, shape), np.broadcast_to(slope, shape))
+
+
+Evaluate = Callable[["Array", "Array"], "dict[str, Sampled]"]
+"""Quantities at any (degrees, within), each (n,). Of many variants it has `of(variant (n,))`: the same of those."""
+
+
+class Brackets(NamedTuple):
+    """Intervals that hold one root each: number of the quantity, ends in degrees, row of the piece, values at the ends.
+
+    node: after which the interval begins. Each is (n,).
+    """
+
+    owner: Any
+    low: Array
+    high: Array
+    row: Indices
+    node: Indices
+    f_low: Array
+    f_high: Array
+
+    def where(self, flags: Flags) -> Brackets:
+        """Return those for which a flag (n,) is set."""
+        parts: list[Any] = [part[flags] for part in self]
+        return Brackets(*parts)
+
+    @classmethod
+    def joined(cls, parts: Iterable[Brackets]) -> Brackets:
+        return cls(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+class Worth(NamedTuple):
+    """Where a quantity is worth a search: rows (k,) of pieces, and flags (k, nodes − 1) of the intervals in them."""
+
+    rows: Indices
+    intervals: Any
+
+
+class Slopes(NamedTuple):
+    """Slopes and their derivatives on the pieces (k,) that are searched, (k, nodes), and which intervals are."""
+
+    rows: Indices
+    slope: Array
+    bends: Array
+    worth: Any
+
+
+def slopes_worth(grid: Grid, sampled: Sampled, worth: Worth | None) -> Slopes:
+    rows, intervals = worth or Worth(np.arange(len(sampled.slope)), True)
+    slope = sampled.slope[rows]
+    return Slopes(rows, slope, grid.slopes(slope, rows), intervals)
+
+
+def _reach(grid: Grid, sampled: Sampled) -> Array:
+    """Return what values in a piece (pieces,) may at most differ by from those at the nodes beside them.
+
+    Slope times width is four times what a parabola with these slopes rises above its ends.
+    """
+    steepest = np.maximum(sampled.slope.max(axis=1), -sampled.slope.min(axis=1))
+    return np.asarray(steepest * grid.half_widths * grid.widest)
+
+
+def _between_nodes(grid: Grid, sampled: Sampled, rows: Indices) -> tuple[Array, Array, Array]:
+    """Return values at both ends of the intervals of these rows, and the reach in each, (k, nodes − 1)."""
+    value, slope = sampled.value[rows], np.abs(sampled.slope[rows])
+    widths = grid.half_widths[rows][:, None] * np.diff(grid.nodes)
+    return value[:, :-1], value[:, 1:], np.maximum(slope[:, :-1], slope[:, 1:]) * widths
+
+
+def may_be_extreme(grid: Grid, sampled: Sampled) -> Worth:
+    """Return where a quantity may be larger or smaller than at every node of its variant."""
+    reach, high, low = _reach(grid, sampled), sampled.value.max(axis=1), sampled.value.min(axis=1)
+    pieces = np.diff(np.append(grid.first, len(high)))
+    top = np.repeat(np.maximum.reduceat(high, grid.first), pieces)
+    bottom = np.repeat(np.minimum.reduceat(low, grid.first), pieces)
+    rows = np.flatnonzero((high + reach >= top) | (low - reach <= bottom))
+    before, after, rise = _between_nodes(grid, sampled, rows)
+    above = np.maximum(before, after) + rise >= top[rows][:, None]
+    return Worth(rows, above | (np.minimum(before, after) - rise <= bottom[rows][:, None]))
+
+
+def may_be_zero(grid: Grid, sampled: Sampled) -> Worth:
+    """Return where a quantity may reach zero, and turn back or not."""
+    reach = _reach(grid, sampled)
+    rows = np.flatnonzero((sampled.value.min(axis=1) <= reach) & (sampled.value.max(axis=1) >= -reach))
+    before, after, rise = _between_nodes(grid, sampled, rows)
+    return Worth(rows, np.minimum(np.abs(before), np.abs(after)) <= rise)
+
+
+def slope_brackets(grid: Grid, asked: list[Slopes], evaluate: Evaluate) -> Brackets:
+    """Return where slopes pass zero between two nodes, once or to and fro."""
+    plain = Brackets.joined(_crossing(grid, k, one) for k, one in enumerate(asked))
+    over, share = zip(*(_dips(grid, k, one) for k, one in enumerate(asked)), strict=True)
+    twice = Brackets.joined(over)
+    if not len(twice.low):
+        return plain
+    middle = twice.low + np.concatenate(share) * (twice.high - twice.low)
+    f_middle = at_brackets(grid, twice, evaluate, "slope")(middle)
+    crossed = f_middle * twice.f_low < 0
+    halves = twice._replace(high=middle, f_high=f_middle), twice._replace(low=middle, f_low=f_middle)
+    return Brackets.joined((plain, *(half.where(crossed) for half in halves)))
+
+
+def _crossing(grid: Grid, owner: int, asked: Slopes) -> Brackets:
+    before, after = asked.slope[:, :-1], asked.slope[:, 1:]
+    # a zero at a node counts for the interval that it ends, so that it is found once
+    once = (((before < 0) & (after >= 0)) | ((before > 0) & (after <= 0))) & asked.worth
+    return _between(grid, owner, asked, *np.nonzero(once))
+
+
+def _dips(grid: Grid, owner: int, asked: Slopes) -> tuple[Brackets, Array]:
+    """Return the intervals in which the tangents to a slope of one sign at both ends meet beyond zero.
+
+    Also where between the ends a line through its derivatives there is zero, (n,) as a share of the way.
+    """
+    ends = (part[:, side] for part in (asked.slope, asked.bends) for side in (slice(-1), slice(1, None)))
+    low, high, bend, next_bend = ends
+    toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0) & asked.worth
+    rows, nodes = np.nonzero(toward)
+    low, high, bend, next_bend = (part[rows, nodes] for part in (low, high, bend, next_bend))
+    width = grid.half_widths[asked.rows[rows]] * np.diff(grid.nodes)[nodes]
+    lowest = low + bend * (high - low - next_bend * width) / (bend - next_bend)
+    beyond = lowest * low <= 0
+    share = bend / (bend - next_bend)
+    return _between(grid, owner, asked, rows[beyond], nodes[beyond]), share[beyond]
+
+
+def _between(grid: Grid, owner: int, asked: Slopes, places: Indices, nodes: Indices) -> Brackets:
+    rows = asked.rows[places]
+    f_low, f_high = asked.slope[places, nodes], asked.slope[places, nodes + 1]
+    owners = np.full(len(rows), owner)
+    return Brackets(owners, grid.degrees[rows, nodes], grid.degrees[rows, nodes + 1], rows, nodes, f_low, f_high)
+
+
+def at_brackets(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str) -> Callable[[Array], Array]:
+    """Return what gives values or slopes of the quantities of brackets (n,) at angles (n,) in degrees inside them."""
+    asked: Any = evaluate if grid.variant is None else evaluate.of(grid.variant[brackets.row])  # type: ignore[attr-defined]
+    within, number = grid.within[brackets.row, 0], np.arange(len(brackets.row))
+
+    def at(degrees: Array) -> Array:
+        stacked = np.stack([getattr(sampled, part) for sampled in asked(degrees, within).values()])
+        return np.asarray(stacked[brackets.owner, number])
+
+    return at
+
+
+def roots(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str) -> Array:
+    """Return the roots in degrees of values or slopes in their brackets."""
+    if not len(brackets.low):
+        return brackets.low
+    return bracketed_roots(
+        at_brackets(grid, brackets, evaluate, part), brackets.low, brackets.high, brackets.f_low, brackets.f_high
+    )

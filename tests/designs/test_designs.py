@@ -1,0 +1,166 @@
+"""What varies, in which order, and how it is bound to the machine file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import qmc
+
+from kurbel.designs.binding import Binder, Unbound
+from kurbel.designs.inputs import read_input
+from kurbel.designs.plan import Plan, shard
+from kurbel.designs.sampling import _digits, latin_hypercube, sobol
+from kurbel.errors import UsageError
+from kurbel.machine_file import source
+
+CONFIGS = Path(__file__).parent.parent.parent / "configs"
+
+
+@pytest.mark.parametrize(
+    ("text", "texts"),
+    [
+        ("rod_ratio=3:6:0.75", ("3.00", "3.75", "4.50", "5.25", "6.00")),
+        ("bore=300 mm:500:100", ("300 mm", "400 mm", "500 mm")),
+        ("speed=60:40:-10 rpm", ("60 rpm", "50 rpm", "40 rpm")),
+        ("speed=40,50 1/s,60 rpm", ("40 rpm", "50 1/s", "60 rpm")),
+        ("mechanism=slider-crank,scotch-yoke", ("slider-crank", "scotch-yoke")),
+        ("x=0:0.3:0.1", ("0.0", "0.1", "0.2", "0.3")),
+    ],
+)
+def test_values(text: str, texts: tuple[str, ...]) -> None:
+    assert read_input(text).texts == texts
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("rod_ratio", "write KEY="),
+        ("rod_ratio=", "write KEY="),
+        ("rod_ratio=3:6:0", "never reaches 6"),
+        ("rod_ratio=3:6:-1", "never reaches 6"),
+        ("rod_ratio=3:6", "a range has three numbers"),
+        ("rod_ratio=3:6:1e-9", "this range has 3000000001 values"),
+        ("bore=300 mm:500 in:10", "one unit"),
+        ("bore=normal(450 mm, -0.2 mm)", "must be more than 0, got -0.2"),
+        ("bore=normal(450 mm, 0 mm)", "must be more than 0"),
+        ("bore=normal(450 mm)", "has two numbers"),
+        ("bore=normal(450 mm, 0.2 in)", "in one unit"),
+        ("bore=uniform(2 m, 1 m)", "must be less than the most"),
+        ("bore=triangular(1 m, 2 m)", "no distribution 'triangular'"),
+        ("bore=400 mm,,500 mm", "a value is missing"),
+    ],
+)
+def test_bad_values(text: str, message: str) -> None:
+    with pytest.raises(UsageError, match=message):
+        read_input(text)
+
+
+def test_grid_list_and_sample() -> None:
+    a, b = read_input("a=1,2"), read_input("b=5,6,7")
+    grid = Plan([a, b])
+    assert [grid.texts(row) for row in range(grid.rows)] == [(x, y) for x in "12" for y in "567"]
+    side_by_side = Plan([a, read_input("b=5,6")], side_by_side=True)
+    assert [side_by_side.texts(row) for row in range(side_by_side.rows)] == [("1", "5"), ("2", "6")]
+    both = Plan([a, read_input("c=normal(10, 1)")], sample=50, seed=3)
+    drawn = np.array([[float(text) for text in both.texts(row)] for row in range(both.rows)])
+    assert both.rows == 100
+    assert (drawn[:50, 1] == drawn[50:, 1]).all()
+    # one in each of fifty strips of equal probability: the mean is that of the distribution far beyond chance
+    assert abs(drawn[:50, 1].mean() - 10) < 0.02
+
+
+@pytest.mark.parametrize(
+    ("inputs", "options", "message"),
+    [
+        (["a=1,2", "a=3"], {}, "varied twice"),
+        (["a=1,2", "b=3"], {"side_by_side": True}, "one length; a has 2, b has 1"),
+        (["a=normal(1, 1)"], {}, "needs --sample"),
+        (["a=1"], {"sample": 5}, "no key has a distribution"),
+    ],
+)
+def test_plans_that_are_none(inputs: list[str], options: dict[str, int], message: str) -> None:
+    with pytest.raises(UsageError, match=message):
+        Plan(list(map(read_input, inputs)), **options)  # type: ignore[arg-type]
+
+
+def test_shards_are_the_whole() -> None:
+    for count in (1, 3, 7, 20):
+        rows = [row for k in range(count) for row in shard(f"{k + 1}/{count}", 17)]
+        assert rows == list(range(17))
+    for wrong in ("0/3", "4/3", "1", "a/b", "1/0"):
+        with pytest.raises(UsageError, match="write K/N"):
+            shard(wrong, 10)
+
+
+def test_the_sequence_of_sobol_is_that_of_joe_and_kuo() -> None:
+    assert (_digits(256, 13) / 2.0**32 == qmc.Sobol(13, scramble=False).random(256)).all()
+    points = sobol(64, 3, 5)
+    assert all((np.sort(np.floor(64 * column)) == np.arange(64)).all() for column in points.T)
+    with pytest.raises(UsageError, match="is known for 13"):
+        sobol(4, 14, 0)
+
+
+def test_a_latin_hypercube_has_one_point_in_every_strip() -> None:
+    points = latin_hypercube(100, 4, 1)
+    assert all((np.sort(np.floor(100 * column)) == np.arange(100)).all() for column in points.T)
+    assert (points == latin_hypercube(100, 4, 1)).all()
+    assert (points != latin_hypercube(100, 4, 2)).any()
+
+
+KEYS = {
+    "waterworks.yaml": {
+        "rod_ratio": "4.5",
+        "speed": "61 rpm",
+        "tandem.0.indicator.head_end.constant.compression": "5 at",
+        "indicator.head_end.expansion.1.1": "9.3",
+        "masses.piston": "100 kg",
+        "friction.crosshead": "0.2",
+    },
+    "diesel-trace.yaml": {"bore": "200 mm", "indicator.head_end.trace.angle_zero": "0.1 deg"},
+    "four-cylinder-generator.yaml": {
+        "cylinders.each.bore": "250 mm",
+        "cylinders.each.indicator.head_end.otto.peak": "20 at",
+    },
+    "punch.yaml": {"flywheel.inertia": "900 kg m2"},
+}
+
+
+@pytest.mark.parametrize("name", KEYS)
+def test_a_bound_machine_is_the_one_that_is_read(name: str) -> None:
+    file, texts = source.read(CONFIGS / name), KEYS[name]
+    keys, values = tuple(texts), tuple(texts.values())
+    binder = Binder(file, (), keys[:1], values[:1])
+    assert described(binder.bound(values[:1])) == described(binder.read_whole(values[:1]))
+    pairs = [value.partition(" ") for value in values]
+    start = [f"{1.1 * float(number):g} {unit}".rstrip() for number, _, unit in pairs]
+    binder = Binder(file, (), keys, start)
+    assert described(binder.bound(values)) == described(binder.read_whole(values))
+    assert described(binder.bound(values)) != described(binder.bound(start))
+
+
+def described(machine: object) -> str:
+    """Everything that a machine is made of, but for the file that it comes from."""
+    return repr(getattr(machine, "cylinders", None)) + repr(
+        [value for name, value in vars(machine).items() if name != "origin"]
+    )
+
+
+@pytest.mark.parametrize("texts", [("0.5", "50 rpm"), ("4", "50 mm"), ("4", "-3 rpm"), ("1,5", "50 rpm")])
+def test_what_makes_no_machine_is_told_as_when_it_is_read(texts: tuple[str, str]) -> None:
+    binder = Binder(source.read(CONFIGS / "waterworks.yaml"), (), ("rod_ratio", "speed"), ("5", "50 rpm"))
+    with pytest.raises(Unbound) as quick:
+        binder.bound(texts)
+    with pytest.raises(Unbound) as whole:
+        binder.read_whole(texts)
+    assert str(quick.value) == str(whole.value)
+
+
+def test_a_cylinder_that_is_like_another_varies_with_it(tmp_path: Path) -> None:
+    file = tmp_path / "m.yaml"
+    file.write_text(
+        "cylinders:\n  - {name: a, crank: 1 m, rod: 5 m, bore: 1 m}\n  - {name: b, like: a, crank_position: 90 deg}\n"
+    )
+    binder = Binder(source.read(file), (), ("cylinders.0.bore",), ("1 m",))
+    assert [one.pistons[0].bore for one in binder.bound(("2 m",)).cylinders] == [2.0, 2.0]

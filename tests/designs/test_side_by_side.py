@@ -1,0 +1,172 @@
+"""Many machines at once answer as each alone: random machines of random kinds, with everything that bends or jumps."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kurbel import Machine, loads
+from kurbel.designs.answers import answers_of
+from kurbel.designs.columns import Answer, answered_alone
+from kurbel.errors import KurbelError, RuleError
+from kurbel.machine import Cylinder
+from kurbel.machine.friction import Friction, Guide
+from kurbel.machine.indicator import Indicator
+from kurbel.machine.piston import Piston
+from kurbel.machine.rectangle import Rectangle
+from kurbel.machine.resistance import RamForce
+from kurbel.machine.side_by_side import Kinds
+from kurbel.mechanisms import quantities_of
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.mechanisms.yoke_frame import YokeFrame
+from kurbel.numerics.extreme import Extreme
+from random_cylinders import random_cylinder
+
+
+def random_machine(random: np.random.Generator) -> Machine:
+    """A machine with one cylinder; some lock themselves."""
+    while True:
+        try:
+            drive = random_cylinder(random, friction=bool(random.integers(3))).drive
+            return replace(drive.machine, cylinders=(varied(drive.cylinder, random),))
+        except RuleError:
+            continue
+
+
+def varied(cylinder: Cylinder, random: np.random.Generator) -> Cylinder:
+    """The cylinder, or one with another mechanism, a tandem piston, a greater friction, a ram or a shoe."""
+    crank, kind = cylinder.mechanism.crank, random.integers(7)
+    if kind == 0:
+        yoke = ScotchYoke(crank, guide_length=3 * crank, pin_diameter=crank / 4, pin_length=crank / 3)
+        return replace(cylinder, mechanism=yoke, friction=Friction(constant=50.0), masses=None)
+    if kind == 1:
+        frame = YokeFrame(crank, cylinder.mechanism.rod_length, 0.0, gland=crank)
+        return replace(cylinder, mechanism=frame, friction=None)
+    if kind == 2:
+        pump = Piston(crank / 2, indicator=Indicator(Rectangle(mean=-random.uniform(1e5, 3e5))), name="pump")
+        return replace(cylinder, pistons=(*cylinder.pistons, pump))
+    if kind == 3:
+        return replace(cylinder, friction=Friction(random.uniform(0.2, 3.0), guide=Guide(crank, crank / 2)))
+    if kind == 4:
+        return replace(cylinder, ram_force=RamForce(random.uniform(0, 1e3), random.uniform(0, 1e2)))
+    return cylinder
+
+
+def asked_of(machine: Machine) -> list[Answer]:
+    known = quantities_of(machine.cylinders[0].mechanism).key_values("forces").values()
+    return [Answer(one, "forces", machine.cylinders[0].name) for one in known if one.id != "energy_residual"]
+
+
+def alone(machine: Machine, asked: list[Answer]) -> Any:
+    try:
+        with np.errstate(all="ignore"):
+            return answered_alone(machine, asked)
+    except KurbelError as error:
+        return str(error)
+
+
+def distance(found: Any, single: Any) -> float:
+    """By how much two values differ beside their size, inf for other kinds of values; angles in turns."""
+    if single is None or found is None:
+        return 0.0 if single is found else math.inf
+    if isinstance(single, Extreme):
+        return abs(found.value - single.value) / (abs(single.value) or 1)
+    if isinstance(single, tuple):
+        if len(found) != len(single):
+            return math.inf
+        return max((abs(a - b) / 360 for a, b in zip(found, single)), default=0.0)
+    return abs(found - single) / (abs(single) or 1)
+
+
+def worst(seed: int, count: int) -> tuple[float, int, int]:
+    """Largest distance to the single answers, how many of them failed, and how many kinds stood side by side."""
+    random = np.random.default_rng(seed)
+    machines = [random_machine(random) for _ in range(count)]
+    asked = asked_of(machines[0])
+    largest, failures = 0.0, 0
+    for machine, values in zip(machines, answers_of(machines, asked)):
+        single = alone(machine, asked)
+        if isinstance(single, str) or isinstance(values, str):
+            assert values == single
+            failures += 1
+        else:
+            largest = max(largest, *(distance(a, b) for a, b in zip(values, single, strict=True)))
+    known = Kinds()
+    kinds = {known.of(machine, machine.cylinders[0]) for machine in machines}
+    return largest, failures, len(kinds)
+
+
+def test_random_machines_answer_as_each_alone() -> None:
+    largest, _, kinds = worst(7, 15)
+    assert kinds > 8
+    assert largest <= 1e-12
+
+
+@pytest.mark.slow
+def test_a_thousand_random_machines_answer_as_each_alone() -> None:
+    largest, failures, kinds = worst(11, 1000)
+    assert kinds > 80
+    assert failures > 10
+    assert largest <= 1e-12
+
+
+STEAM = """
+speed: 50 rpm
+stroke: 800 mm
+rod_ratio: 5
+bore: 450 mm
+indicator:
+  head_end:
+    unit: at
+    expansion: [[0, 9.5], [0.35, 9.5], [0.7, 4.7], [1, 2.2]]
+    compression: [[1, 1.2], [0.25, 1.2], [0, 9.5]]
+  crank_end: mirrored
+masses: {piston: 830 kg}
+friction: {crosshead: 0.1}
+"""
+
+
+def of_ratios(text: str, ratios: Any) -> list[Machine]:
+    return [loads(text, overrides=[f"rod_ratio={ratio}"]) for ratio in ratios]
+
+
+def test_one_that_locks_itself_fails_beside_others_with_the_reason_that_it_has_alone() -> None:
+    text = STEAM.replace("crosshead: 0.1", "crosshead: 2") + "inclination: 0 deg\n"
+    machines = of_ratios(text, [1.5, 2.2, 2.3, 3, 4, 5])
+    asked = asked_of(machines[0])
+    found = answers_of(machines, asked)
+    assert "locks itself near φ" in str(found[0])
+    for values, machine in zip(found, machines):
+        single = alone(machine, asked)
+        assert values == single or max(distance(a, b) for a, b in zip(values, single, strict=True)) <= 1e-12
+    assert not isinstance(found[-1], str)
+
+
+def test_machines_that_differ_in_kind_keep_their_order() -> None:
+    plain, offset = of_ratios(STEAM, [4, 5, 6]), of_ratios(STEAM + "offset: 20 mm\n", [4, 5, 6])
+    machines = [one for pair in zip(plain, offset) for one in pair]
+    asked = asked_of(plain[0])
+    for machine, values in zip(machines, answers_of(machines, asked)):
+        single = alone(machine, asked)
+        assert max(distance(a, b) for a, b in zip(values, single, strict=True)) <= 1e-12
+
+
+def test_what_differs_may_be_anything() -> None:
+    """Ambient, speed, card, masses, friction and rod at once; absolute pressures."""
+    text = STEAM.replace("indicator:", "indicator:\n  pressures: absolute")
+    changes = [
+        [
+            *(f"rod_ratio={4 + 0.1 * k}", f"ambient={1 + 0.01 * k} bar", f"speed={40 + k} rpm"),
+            *(f"indicator.head_end.expansion.1.1={9.5 - 0.1 * k}", f"masses.piston={800 + k} kg"),
+            f"friction.crosshead=0.{k + 1}",
+        ]
+        for k in range(5)
+    ]
+    machines = [loads(text, overrides=one) for one in changes]
+    asked = asked_of(machines[0])
+    for machine, values in zip(machines, answers_of(machines, asked)):
+        assert max(distance(a, b) for a, b in zip(values, alone(machine, asked), strict=True)) <= 1e-12

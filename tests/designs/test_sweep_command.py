@@ -1,0 +1,230 @@
+"""`kurbel sweep` from the command line: rows, order, choice, parts, and what goes wrong."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+import kurbel
+from kurbel.cli import kurbel as command
+from kurbel.designs import workers
+from kurbel.designs.sweep import CHUNK
+
+CONFIGS = Path(__file__).parent.parent.parent / "configs"
+WATERWORKS = str(CONFIGS / "waterworks.yaml")
+
+
+def run(*args: str, file: str = WATERWORKS) -> Result:
+    return CliRunner().invoke(command, ["sweep", file, *args])
+
+
+def rows(*args: str, file: str = WATERWORKS) -> list[dict[str, object]]:
+    result = run(*args, "-f", "json", file=file)
+    assert result.exit_code == 0, result.output
+    return [json.loads(line) for line in result.stdout.splitlines()]
+
+
+def test_rows_are_what_forces_tells_of_each() -> None:
+    found = rows("--vary", "rod_ratio=4,5", "--vary", "speed=40,50 rpm", "--columns", "T_max,p_i,φ_P=0", "--angles")
+    assert [(one["rod_ratio"], one["row"]) for one in found] == [(4.0, 1), (4.0, 2), (5.0, 3), (5.0, 4)]
+    for one, (ratio, speed) in zip(found, [(4, 40), (4, 50), (5, 40), (5, 50)]):
+        machine = kurbel.load(WATERWORKS, [f"rod_ratio={ratio}", f"speed={speed} rpm"])
+        single = kurbel.solve(machine).cylinders[0]
+        assert one["speed_1/s"] == speed / 60
+        assert one["T_max_N"] == pytest.approx(single["T_max"].value, rel=1e-13)
+        assert one["T_max_at_deg"] == pytest.approx(single["T_max"].degrees, rel=1e-11)
+        assert one["mean_pressure_Pa"] == pytest.approx(single["p_i"].value, rel=1e-13)
+        assert one["phi_reversal_deg"] == pytest.approx(list(single["phi_reversal"].value), rel=1e-12)
+        assert one["failure"] is None
+
+
+def test_a_row_that_fails_stays_with_its_reason() -> None:
+    found = rows("--vary", "rod_ratio=0.5,2", "--columns", "T_max")
+    assert found[0]["T_max_N"] is None
+    assert found[0]["failure"] == "rod_ratio: 0.5 is too small; it must be more than 1"
+    assert found[1]["failure"] is None
+
+
+def test_key_values_of_other_commands_and_limits() -> None:
+    file = str(CONFIGS / "waterworks-two-cranks.yaml")
+    found = rows("--vary", "flywheel.fluctuation=1/80,1/100", "--columns", "dE,J,c_max", file=file)
+    for one, fluctuation in zip(found, ("1/80", "1/100")):
+        turning = kurbel.solve(kurbel.load(file, [f"flywheel.fluctuation={fluctuation}"])).flywheel
+        assert (one["dE_J"], one["J_kgm^2"]) == (turning.dE, turning.J)
+    limits = ("--set", "limits.c_max=2.3 m/s", "--set", "limits.b_max=15 m/s2")
+    kept = rows("--vary", "rod_ratio=3,5", "--vary", "speed=50,60 rpm", "--columns", "c_max", *limits)
+    assert [one["keeps"] for one in kept] == [True, False, True, False]
+    assert [one["broken"] for one in kept] == [None, "c_max", None, "c_max"]
+
+
+def test_where_sort_top_and_pareto() -> None:
+    asked = ("--vary", "rod_ratio=3:6:0.5", "--columns", "T_max,b_max")
+    every = {one["row"]: one for one in rows(*asked)}
+    below = rows(*asked, "--where", "b_max < 13.5 m/s2")
+    assert [one["row"] for one in below] == [row for row, one in every.items() if one["b_max_m/s^2"] < 13.5]  # type: ignore[operator]
+    assert [one["row"] for one in rows(*asked, "--where", "rod_ratio >= 5")] == [5, 6, 7]
+    assert [one["row"] for one in rows(*asked, "--sort", "T_max", "--top", "2")] == [7, 6]
+    assert [one["row"] for one in rows(*asked, "--sort", "-T_max", "--top", "1")] == [1]
+    # a longer rod betters both
+    assert [one["row"] for one in rows(*asked, "--pareto", "T_max,b_max")] == [7]
+    # more of T_max against less of b_max: nothing betters anything
+    assert [one["row"] for one in rows(*asked, "--pareto", "-T_max,b_max")] == [1, 2, 3, 4, 5, 6, 7]
+
+
+def test_a_summary_tells_quantiles_and_ranks() -> None:
+    asked = ("--vary", "rod_ratio=uniform(3, 6)", "--sample", "60", "--columns", "b_max,work")
+    whole = rows(*asked)
+    told = {one["column"]: one for one in rows(*asked, "--summary")}
+    values = np.array([one["b_max_m/s^2"] for one in whole])
+    assert told["b_max"]["q50"] == pytest.approx(np.median(values), rel=1e-13)
+    assert (told["b_max"]["q0"], told["b_max"]["q100"]) == (values.min(), values.max())
+    assert told["b_max"]["r(rod_ratio)"] == pytest.approx(-1)  # b_max = R ω² (1 + λ)
+    assert told["rod_ratio"]["rows"] == 60
+
+
+def test_parts_one_after_another_are_the_whole_byte_for_byte() -> None:
+    asked = ("--vary", "rod_ratio=3:6:0.1", "--columns", "T_max", "-f", "csv")
+    whole = run(*asked).stdout
+    assert "".join(run(*asked, "--shard", f"{k}/4").stdout for k in (1, 2, 3, 4)) == whole
+    assert len(whole.splitlines()) == 32
+
+
+def test_resuming_ends_in_the_same_file(tmp_path: Path) -> None:
+    asked = ("--vary", "rod_ratio=3:6:0.1", "--columns", "T_max")
+    for suffix in ("csv", "json"):
+        file = tmp_path / f"rows.{suffix}"
+        assert run(*asked, "-o", str(file)).exit_code == 0
+        whole = file.read_bytes()
+        for cut in (0, 5, 200, len(whole) - 1, len(whole)):
+            file.write_bytes(whole[:cut])
+            assert run(*asked, "-o", str(file), "--resume").exit_code == 0
+            assert file.read_bytes() == whole
+    file.write_text("something else\nquite\n")
+    refused = run(*asked, "-o", str(file), "--resume")
+    assert "is not of this sweep" in refused.output
+    assert refused.exit_code == 2
+
+
+@pytest.mark.slow
+def test_an_interrupt_leaves_whole_rows(tmp_path: Path) -> None:
+    file = tmp_path / "rows.csv"
+    asked = ["--vary", "rod_ratio=3:6:0.0002", "--columns", "T_max", "-o", str(file)]
+    process = subprocess.Popen([sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *asked], env=dict(os.environ))
+    while not (file.exists() and file.stat().st_size):
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    assert process.wait() == 130
+    text = file.read_text()
+    assert text.endswith("\n")
+    assert all(line.count(",") == 3 for line in text.splitlines())
+
+
+@pytest.mark.slow
+def test_processes_answer_as_one() -> None:
+    asked = ("--vary", "rod_ratio=3:6:0.1", "--columns", "T_max", "-f", "csv")
+    assert run(*asked, "--jobs", "2").stdout == run(*asked).stdout
+
+
+def test_chunks_that_others_compute_keep_their_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Futures that are done in any order, as those of a cluster are."""
+    from kurbel.designs.sweep import Spec, Sweep
+    from kurbel.machine_file import source
+
+    class Future:
+        def __init__(self, *args: object) -> None:
+            self.args = args
+
+        def result(self) -> list[object]:
+            function, *rest = self.args
+            return function(*rest)  # type: ignore[operator, no-any-return]
+
+    monkeypatch.setattr("kurbel.designs.sweep.CHUNK", 7)
+    sweep = Sweep(Spec(source.read(WATERWORKS), vary=("rod_ratio=3:6:0.1",), columns=("stroke",)))
+    found = list(workers._gathered(sweep, range(sweep.rows), Future, 2))
+    assert [row.number for row in found] == list(range(1, 32))
+    assert CHUNK > 7
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (("--vary", "rod_ratoi=3,4"), "did you mean 'rod_ratio'"),
+        (("--vary", "rod_ratio=3:6:-1"), "never reaches 6"),
+        (("--vary", "bore=400,450 kg"), "kg is a unit of mass"),
+        (("--vary", "bore=normal(450 mm, -1 mm)", "--sample", "3"), "must be more than 0, got -1"),
+        (("--vary", "rod_ratio=3:6:1e-4", "--vary", "speed=40:50:0.01 rpm"), "30031001 rows; --yes computes more"),
+        (("--vary", "rod_ratio=3,4", "--columns", "T_mx"), "no key value 'T_mx'; did you mean 'T_max'"),
+        (("--vary", "rod_ratio=3,4", "--columns", "dE", "--where", "dE < 5"), "has no unit"),
+        (("--vary", "rod_ratio=3,4", "--where", "nonsense"), "expected a column, a relation and a value"),
+        (("--vary", "rod_ratio=3,4", "--where", "T_mx < 5 N"), "no column 'T_mx'"),
+        (("--vary", "rod_ratio=3,4", "--top", "3"), "--top N takes the first rows of --sort"),
+        (("--vary", "rod_ratio=3,4", "--resume"), "give --output FILE"),
+        (("--vary", "rod_ratio=3,4", "--shard", "3/2"), "write K/N"),
+        (("--vary", "rod_ratio=3,4", "-f", "parquet"), "Parquet is a file"),
+        (("--vary", "rod_ratio=3,4", "--dask", "tcp://x:1", "-j", "2"), "leave one of them out"),
+        (("--vary", "rod_ratio=3,4", "-o", WATERWORKS), "name another file"),
+        ((), "Missing option '--vary'"),
+    ],
+)
+def test_bad_input(args: tuple[str, ...], message: str) -> None:
+    result = run(*args)
+    assert result.exit_code == 2
+    assert message in " ".join(result.output.split())
+    assert "Traceback" not in result.output
+
+
+def test_an_address_that_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(workers, "_ANSWERS_WITHIN", 0.5)
+    result = run("--vary", "rod_ratio=3,4", "--dask", "tcp://127.0.0.1:1")
+    assert "no scheduler answers there" in result.output
+    assert result.exit_code == 2
+
+
+def test_every_format_has_every_row(tmp_path: Path) -> None:
+    asked = ("--vary", "rod_ratio=0.5,5", "--columns", "T_max,phi_reversal")
+    assert run(*asked, "-f", "csv", "--decimal", "comma").stdout.splitlines()[0] == (
+        "row;rod_ratio;T_max_N;phi_reversal_deg;failure"
+    )
+    assert run(*asked, "-f", "markdown").stdout.count("\n") == 4
+    text = run(*asked).stdout.splitlines()
+    assert text[-1].split() == ["2", "5.000", "87.70", "130.5", "316.1"]
+    assert "too small" in text[-2]
+
+
+def test_python_gets_arrays() -> None:
+    machine = kurbel.load(WATERWORKS)
+    ratios = np.array([0.9, 4.0, 5.0])
+    found = kurbel.sweep(machine, {"rod_ratio": ratios, "speed": [0.5, 0.6, 0.7]}, ["T_max", "dE", "phi_reversal"])
+    assert np.isnan(found["T_max"][0])
+    assert found["failure"].tolist()[1:] == ["", ""]
+    for place in (1, 2):
+        case = kurbel.solve(kurbel.load(WATERWORKS, [f"rod_ratio={ratios[place]}", f"speed={0.5 + place / 10!r} 1/s"]))
+        assert found["T_max"][place] == pytest.approx(case.cylinders[0]["T_max"].value, rel=1e-13)
+        assert found["dE"][place] == case.flywheel.dE
+        assert found["phi_reversal"][place] == pytest.approx(case.cylinders[0].phi_reversal, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "message"),
+    [
+        ({"rod_ratio": [1, 2], "speed": [3]}, "rod_ratio has 2, speed has 1"),
+        ({"rod": [1.0]}, "no value stands under this key"),
+        ({}, "there is none"),
+    ],
+)
+def test_python_is_told_what_is_wrong(inputs: dict[str, list[float]], message: str) -> None:
+    with pytest.raises(kurbel.KurbelError, match=message):
+        kurbel.sweep(kurbel.load(WATERWORKS), inputs, ["T_max"])
+    machine = kurbel.Machine((kurbel.Cylinder(kurbel.SliderCrank(0.1, 0.5)),))
+    with pytest.raises(kurbel.KurbelError, match=r"kurbel\.load"):
+        kurbel.sweep(machine, {"crank": [1.0]})

@@ -1,0 +1,105 @@
+"""Standard uncertainties: against closed derivatives, and against a large sample."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kurbel
+from kurbel.cli import kurbel as command
+from kurbel.declared.quantities import COMMON
+from kurbel.designs.columns import Answer
+from kurbel.designs.uncertainty import Uncertain, Uncertainty
+from kurbel.machine_file import source
+
+WATERWORKS = Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml"
+
+
+def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
+    known = COMMON.key_values(command)
+    asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
+    found = Uncertainty(source.read(WATERWORKS), (), tuple(spreads.items())).of(asked)
+    return {one.answer.quantity.id: one for one in found}
+
+
+def test_first_order_is_that_of_closed_formulas() -> None:
+    """c_m = 2 s n; b_max = R ω² (1 + λ): relative uncertainties 2 of n, and λ/(1 + λ) of L/R."""
+    found = of({"speed": "1 %", "rod_ratio": "2 %"}, "c_m", "b_max", "A_head")
+    assert found["c_m"].spread == pytest.approx(0.01 * found["c_m"].value, rel=1e-9)
+    assert found["c_m"].shares == pytest.approx((1, 0), abs=1e-15)
+    by_speed, by_ratio = 2 * 0.01, 0.2 / 1.2 * 0.02
+    size = np.hypot(by_speed, by_ratio)
+    assert found["b_max"].spread == pytest.approx(size * found["b_max"].value, rel=1e-8)
+    assert found["b_max"].shares == pytest.approx(((by_speed / size) ** 2, (by_ratio / size) ** 2), rel=1e-7)
+    assert found["A_head"].spread <= 1e-15
+    assert all(one.sample == 0 for one in found.values())
+
+
+def test_what_bends_is_told_by_a_sample() -> None:
+    """c_max with L/R = 5 ± 0.8 is far from straight; the spread is that of a sample drawn otherwise."""
+    (one,) = of({"rod_ratio": "0.8"}, "c_max").values()
+    assert one.sample > 1000
+    ratios = np.random.default_rng(4).normal(5, 0.8, 4000)
+    machine = kurbel.load(WATERWORKS)
+    drawn = kurbel.sweep(machine, {"rod_ratio": ratios[ratios > 1.01]}, ["c_max"])["c_max"]
+    assert one.spread == pytest.approx(np.nanstd(drawn), rel=0.15)
+
+
+@pytest.mark.slow
+def test_first_order_is_that_of_a_large_sample() -> None:
+    """Sampling noise of a standard deviation from n drawn ones is 1/√(2n)."""
+    found = of({"bore": "0.2 mm", "friction.crosshead": "10 %", "speed": "0.5 %"}, "T_max", "N_max", "W", "P_max")
+    count, random = 20_000, np.random.default_rng(1)
+    inputs = {
+        "bore": random.normal(0.45, 2e-4, count),
+        "friction.crosshead": random.normal(0.1, 0.01, count),
+        "speed": random.normal(50 / 60, 0.005 * 50 / 60, count),
+    }
+    drawn = kurbel.sweep(kurbel.load(WATERWORKS), inputs, list(found))
+    for name, one in found.items():
+        assert one.sample == 0
+        assert one.spread == pytest.approx(drawn[name].std(ddof=1), rel=4 / np.sqrt(2 * count))
+
+
+def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> None:
+    text = (WATERWORKS.read_text(encoding="utf-8")) + 'uncertainty: {speed: "± 1 %", bore: ± 0.2 mm}\n'
+    file = tmp_path / "m.yaml"
+    file.write_text(text, encoding="utf-8")
+    for name, id, part in (("forces", "T_max", "cylinders"), ("flywheel", "dE", "machine_place_tables")):
+        result = CliRunner().invoke(command, [name, str(file), "--key-values", "-f", "json"])
+        assert result.exit_code == 0, result.output
+        told = json.loads(result.stdout)
+        tables = told[part] if part == "machine_place_tables" else told[part][0]["place_tables"]
+        (table,) = tables
+        assert any(id in str(row) for row in table["rows"])
+    page = CliRunner().invoke(command, ["forces", str(file), "--key-values"]).stdout
+    assert "Standard uncertainty, and the share of each input in its square" in page
+    assert "speed" in page
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (("bor=1 mm",), "bor: no value stands under this key"),
+        (("bore=1 kg",), "kg is a unit of mass"),
+        (("bore=-1 mm",), "write KEY=SPREAD, above 0"),
+        (("bore",), "write KEY=SPREAD"),
+        (("name=1 mm",), "is no number that could be off"),
+    ],
+)
+def test_bad_uncertainties(args: tuple[str, ...], message: str) -> None:
+    options = [part for one in args for part in ("--uncertainty", one)]
+    result = CliRunner().invoke(command, ["forces", str(WATERWORKS), *options])
+    assert result.exit_code == 2
+    assert message in " ".join(result.output.split())
+
+
+def test_an_uncertainty_of_the_file_that_is_none() -> None:
+    with pytest.raises(kurbel.KurbelError, match="expected a standard uncertainty above 0"):
+        kurbel.loads("{stroke: 1 m, rod_ratio: 5, uncertainty: {stroke: 0 mm}}")
+    with pytest.raises(kurbel.KurbelError, match="expected a mapping of keys"):
+        kurbel.loads("{stroke: 1 m, rod_ratio: 5, uncertainty: 1 mm}")
