@@ -171,3 +171,12 @@ def test_every_lobe_is_named_and_no_name_meets_another(name: str, lobes: int) ->
     assert {one.text.split()[0] for one in named} == {f"A_{number}" for number in range(1, lobes + 1)}
     boxes = [Box(one.x, one.y - 9, one.x + CHARACTER * len(one.text), one.y + 2) for one in named]
     assert not any(a.meets(b) for a, b in combinations(boxes, 2))
+
+
+def test_a_long_name_takes_several_lines() -> None:
+    picture = drawn("shaper", "motion")[0]
+    laid = scene(picture._replace(machine=f"{'long name of a machine ' * 8}end"), Look())
+    lines = [one.text for one in laid.items if isinstance(one, Text) and one.look == "h"]
+    assert len(lines) == 3
+    assert all(len(line) <= 85 for line in lines)
+    assert laid.height > scene(picture, Look()).height
