@@ -41,6 +41,11 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("bearings",),
     ("bearings", "-f", "csv", "--units", "imperial"),
     ("bearings", "-f", "json", "--set", "rotation=under"),
+    ("harmonics",),
+    ("harmonics", "--speeds", "100:500:100 rpm", "-f", "json"),
+    ("torsion",),
+    ("torsion", "--orders", "0.5,1,3", "--columns", "M_shaft,tau", "-f", "json"),
+    ("torsion", "--speeds", "50:500:50 rpm", "--modes", "9"),
 )
 
 

@@ -243,6 +243,31 @@ CRANKSHAFT = {
 }
 
 
+def shaft(random: Random, cylinders: list[str]) -> list[Any]:
+    """Return a shaft line: masses and pieces of any size, gears, grounds, dampers, and now and then one too many."""
+    count = int(random.integers(1, 12)) if random.random() < 0.95 else 50
+    places = random.integers(0, count, len(cylinders))
+    parts: list[Any] = ["ground"] * bool(random.random() < 0.15)
+    for index in range(count):
+        here = [name for name, place in zip(cylinders, places) if place == index]
+        mass: Keys = {"cylinder": here} if here else {}
+        mass |= {"inertia": size(random, 3, "kg m2", 2)} if not here or random.random() < 0.7 else {}
+        mass |= maybe(random, 0.2, {"damping": size(random, 5, "N m s/rad", 2)}) | maybe(random, 0.03, {"load": True})
+        after: list[Any] = [{"gear": number(random, 0.1, 4)}] * bool(random.random() < 0.04)
+        parts += [_piece(random)] * bool(parts) + ["flywheel" if not here and random.random() < 0.1 else mass, *after]
+    return parts + [_piece(random), "ground"] * bool(random.random() < 0.1)
+
+
+def _piece(random: Random) -> Keys:
+    """Return a piece of shaft, damped or not."""
+    thick = number(random, 20, 300)
+    plain = {"diameter": f"{thick} mm", "length": size(random, 0.5, "m")}
+    plain |= maybe(random, 0.2, {"bore": f"{thick / 2} mm"})
+    piece = plain if random.random() < 0.5 else {"stiffness": size(random, 1e6, "N m/rad", 3)}
+    piece |= maybe(random, 0.4, {"loss_factor": number(random, 0, 0.2)})
+    return piece | maybe(random, 0.2, {"damping": size(random, 50, "N m s/rad", 3)})
+
+
 def effort(random: Random) -> Keys:
     """Return a turning-moment diagram by its harmonics."""
     orders = [[order, number(random, -9, 9), number(random, -9, 9)] for order in range(1, int(random.integers(2, 9)))]
@@ -295,6 +320,11 @@ def machine_file(random: Random) -> str:
     overhung = {"overhung": True, "b": "900 mm", "flywheel_position": "-300 mm"} if random.random() < 0.5 else {}
     keys |= turning(random) | maybe(random, 0.2, {"crankshaft": CRANKSHAFT | overhung})
     keys |= {} if "effort" in keys else {**balancing(random), **keys}
+    own = keys.get("cylinders", [])
+    count = 0 if "effort" in keys else own["count"] if isinstance(own, dict) else max(len(own), 1)
+    named = isinstance(own, list) and bool(own)
+    names = ["first" if named and not number else f"cylinder {number + 1}" for number in range(count)]
+    keys |= {"shaft": shaft(random, names)} if random.random() < 0.4 and "coupling" not in keys else {}
     keys |= maybe(random, 0.2, {"brake_torque": size(random, 2e3, "N m")})
     keys |= maybe(
         random,

@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
+from kurbel.machine.shaft_line import ShaftLine, ShaftPart
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 BLOWER, SHIP = (str(CONFIGS / f"{name}.yaml") for name in ("coupled-blower", "marine-diesel"))
@@ -175,3 +176,54 @@ def test_an_undamped_resonance_beside_a_damper_elsewhere_has_no_solution() -> No
     torques = table(beside, "critical_speeds")["M_vibratory"]
     assert torques[0] is None  # order 1 with mode 1
     assert torques[13] is not None  # order 2 with mode 2, which the damper reaches
+
+
+STALLS = """
+speed: 158.121 rpm
+crank: 0.289454 m
+rod: 0.356377 m
+bore: 0.238002 m
+indicator:
+  pressures: absolute
+  head_end: {constant: {expansion: 38.0077 bar, compression: 0.818689 bar}}
+flywheel: {inertia: 3.51196 kg m2}
+load: {power_law: 2.55509}
+coupling: {stiffness: 13784 N m/rad, damping: 5.84372 N m s/rad, inertia: 66.24 kg m2}
+"""
+
+
+@pytest.mark.parametrize(("command", "status"), [("flywheel", 3), ("harmonics", 0), ("torsion", 0)])
+def test_a_coupling_whose_motion_finds_no_end_is_no_fault_of_kurbel(command: str, status: int) -> None:
+    answer = CliRunner().invoke(kurbel, [command, "-"], input=STALLS)
+    assert answer.exit_code == status
+    told = " ".join((answer.stderr if status else answer.stdout).split())
+    assert "the machine stops near φ = 345.9°" in told
+    assert "and the elastic coupling" in told
+
+
+NEIGHBOURS = """
+speed: 100 rpm
+effort: {unit: N m, mean: 9, harmonics: [[1, 1, 0], [2, 1, 0]]}
+shaft:
+  - {inertia: 1 kg m2}
+  - {stiffness: 5500 N m/rad}
+  - {inertia: 1 kg m2}
+"""
+
+
+def test_near_stands_in_every_row_that_is() -> None:
+    """ω_e = √(2 k/J) is order 10.02: both 10 and 11 are within a tenth."""
+    answer = CliRunner().invoke(kurbel, ["torsion", "-", "--orders", "10,11"], input=NEIGHBOURS)
+    assert answer.exit_code == 0
+    assert [line.split()[:2] for line in answer.stdout.splitlines() if line.startswith("near")] == [
+        ["near", "10"],
+        ["near", "11"],
+    ]
+    assert "orders 10" in answer.stdout
+
+
+def test_the_load_stands_at_an_end_that_is_no_crank() -> None:
+    """A motor drives pistons: it is named first, so that the last mass is a crank and no load."""
+    parts = [ShaftPart(inertia=2.0), ShaftPart(stiffness=1e3), ShaftPart(cylinder=("one",))]
+    assert ShaftLine.of_parts(parts, ["one"]).load == 0
+    assert ShaftLine.of_parts(parts[::-1], ["one"]).load == 1

@@ -12,6 +12,7 @@ import pytest
 
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPart, ShaftPiece
+from kurbel.machine.shaft_list import line_of
 from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.numerics.grid import Cuts
@@ -21,6 +22,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.shaft_line.chain import Chain
 from kurbel.solver.shaft_line.periodic import ChainEquation
 from kurbel.solver.shaft_line.response import responding, twisting
+from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.torsion.vibration import ShaftVibration
 from kurbel.solver.turning.flywheel import MachineTurning
 from kurbel.solver.turning.harmonics import spectrum
@@ -119,6 +121,97 @@ def test_the_coupling_of_the_flywheel_with_all_its_orders(load: Load | None) -> 
     assert piece.M_shaft_min == pytest.approx(case.flywheel.elastic.M_coupling_min.value, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    "load",
+    [
+        None,
+        Load(slip=0.05),
+        Load(power=3.0),
+        Load(diagram=Effort((0.0, 100.0, 100.0, 360.0), (9.0, 9.0, 400.0, 400.0))),
+    ],
+    ids=["constant", "slip", "power", "diagram"],
+)
+def test_the_coupling_of_the_flywheel_where_the_effort_jumps(load: Load | None) -> None:
+    """All orders of a jump, not the first 24 of them: wave and extremes as `flywheel` has them."""
+    case = Case(machine_of(load))
+    (piece,) = case.torsion.pieces
+    angles = np.linspace(0, 360, 73)
+    wanted = case.flywheel.at(angles).M_coupling
+    assert piece.at(angles).M_shaft == pytest.approx(wanted, abs=1e-12 * np.abs(wanted).max())
+    assert piece.M_shaft_max == pytest.approx(case.flywheel.elastic.M_coupling_max.value, rel=1e-12)
+    assert piece.M_shaft_min == pytest.approx(case.flywheel.elastic.M_coupling_min.value, rel=1e-12)
+
+
+class InSteadyMotion:
+    """The torque in a piece of a shaft line with all its orders, as a torque of which they can be taken."""
+
+    def __init__(self, steady: SteadyMotion, piece: int) -> None:
+        self._steady, self._piece = steady, str(piece)
+        self.cuts = Cuts(np.append(steady.motion.elements.low, steady.cycle))
+
+    def torque(self, degrees: np.ndarray, within: np.ndarray) -> Jet:
+        return Jet(self._steady._sampled(degrees, within)[self._piece].value, np.zeros_like(degrees))
+
+
+PISTONS = """
+name: two cylinders behind a gear
+speed: 300 rpm
+efficiency: 0.85
+cylinders:
+  - {name: one, crank: 100 mm, rod: 400 mm, bore: 200 mm, masses: {reciprocating: 20 kg},
+     indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}}
+  - {name: two, like: one, crank_position: 90 deg}
+load: {slip: 0.1}
+shaft:
+  - {cylinder: one, inertia: 2 kg m2}
+  - {stiffness: 40 kN m/rad, damping: 12 N m s/rad}
+  - {cylinder: two, inertia: 2 kg m2, damping: 3 N m s/rad}
+  - {stiffness: 60 kN m/rad, damping: 4 N m s/rad}
+  - {inertia: 3 kg m2}
+  - {gear: 2}
+  - {stiffness: 5 kN m/rad, damping: 9 N m s/rad}
+  - {inertia: 1 kg m2}
+"""
+
+
+def test_all_orders_of_a_shaft_line_hold_each_of_them(tmp_path: Path) -> None:
+    """Cylinders, efficiency, a gear, and a load that slips: over the angle the same orders as order by order."""
+    (tmp_path / "machine.yaml").write_text(PISTONS)
+    found = Case(load(tmp_path / "machine.yaml")).torsion
+    assert found.remainder is None
+    size = np.abs(found.vibration.torques).max()
+    for piece, amplitudes in enumerate(found.vibration.torques[:, 0]):
+        over_the_angle = spectrum(InSteadyMotion(found.steady, piece), found.orders).amplitudes
+        assert over_the_angle == pytest.approx(amplitudes, abs=1e-12 * size)
+
+
+def test_of_a_loss_factor_the_orders_are_told_with_what_is_left(tmp_path: Path) -> None:
+    """Eight times as many orders than the usual ones add no more than is told."""
+    (tmp_path / "machine.yaml").write_text(PISTONS.replace("damping: 4 N m s/rad", "loss_factor: 0.02"))
+    case = Case(load(tmp_path / "machine.yaml"))
+    few, many = case.torsion, case.torsion_of(np.arange(1.0, 193.0))
+    assert few.steady is None
+    assert many.remainder is None
+    for one, other in zip(few.pieces, many.pieces):
+        assert abs(one.M_vibratory - other.M_vibratory) < few.remainder < 0.1 * few.M_vibratory
+
+
+@pytest.mark.parametrize("load", [None, Load(slip=0.05)], ids=["constant", "slip"])
+def test_a_linear_load_takes_one_step_of_newton(load: Load | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of each set of elements the equations are solved once: two looks at the rate; one more tells the growth."""
+    case = Case(machine_of(load))
+    rate, looks, sizes = ChainEquation.rate, [0], set()
+
+    def counted(self: ChainEquation, prepared: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        looks[0] += 1
+        sizes.add(y.shape)
+        return rate(self, prepared, y)
+
+    monkeypatch.setattr(ChainEquation, "rate", counted)
+    assert case.flywheel.elastic.growth < 0
+    assert looks[0] == 2 * len(sizes) + 1
+
+
 @pytest.mark.parametrize("ground", ["", "after"])
 def test_longer_chains_over_the_angle_have_the_same_orders(ground: str) -> None:
     """Collocation in 2n − 1 or 2n unknowns, driven at two masses by torques that jump."""
@@ -159,7 +252,7 @@ def test_the_damping_takes_what_the_torques_give() -> None:
 
 
 def shaft(effort: Any, speed: float, *parts: Any, **more: Any) -> ShaftVibration:
-    return Case(Machine((), effort=effort, speed=speed, shaft=ShaftLine.of_parts(parts), **more)).torsion
+    return Case(Machine((), effort=effort, speed=speed, shaft=line_of(parts), **more)).torsion
 
 
 def test_two_masses_in_closed_form() -> None:
@@ -222,6 +315,20 @@ def test_crests_against_many_samples() -> None:
         assert largest == pytest.approx(curve.max(), rel=1e-6)
         assert largest >= curve.max()
         assert smallest <= curve.min()
+
+
+def test_of_crests_that_are_all_but_equal_the_largest_is_taken() -> None:
+    """Seven of these 200 sums have two crests whose order samples do not tell; against 64 samples to a wave."""
+    draw, count, per_wave = np.random.default_rng(0), 48, 64
+    amplitudes = draw.normal(size=(200, count)) + 1j * draw.normal(size=(200, count))
+    high, low = crests(range(1, count + 1), amplitudes)
+    padded = np.zeros((200, count * per_wave // 2 + 1), dtype=complex)
+    padded[:, 1 : count + 1] = amplitudes * (count * per_wave / 2)
+    samples = np.fft.irfft(padded, axis=1)
+    assert (high >= samples.max(axis=1)).all()
+    assert (low <= samples.min(axis=1)).all()
+    between = np.abs(amplitudes) @ np.arange(1.0, count + 1) ** 2 * (2 * np.pi / count / per_wave) ** 2 / 8
+    assert (high <= samples.max(axis=1) + between).all()
 
 
 def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:

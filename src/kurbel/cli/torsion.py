@@ -22,9 +22,10 @@ def torsion(
 ) -> None:
     """Print natural frequencies, Holzer's table, and critical speeds of the shaft line.
 
-    Where damping and torques are given, also the steady vibration, all orders together: torque and stress in every
-    piece at the working speed and at the critical speeds that the machine meets; --columns M_shaft,tau prints them over
-    the crank angle. FILE needs 'shaft', or a 'coupling' behind a 'flywheel'; it may be - for standard input.
+    Where damping and torques are given, also the steady vibration: torque and stress in every piece at the working
+    speed, all orders together, and at the critical speeds that the machine meets, with orders up to 24; --columns
+    M_shaft,tau prints them over the crank angle. FILE needs 'shaft', or a 'coupling' behind a 'flywheel'; it may be -
+    for standard input.
     """
     from kurbel.report.torsion import Wanted, torsion_report
 

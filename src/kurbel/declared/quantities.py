@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES, PIN_LOSSES
+from kurbel.declared.flywheel import EFFORT_VALUES, FLYWHEEL_COLUMNS, FLYWHEEL_VALUES
 from kurbel.declared.indicated import INDICATED_COLUMNS, INDICATED_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.rod_load import ROD_COLUMNS, ROD_VALUES
@@ -17,8 +18,8 @@ from kurbel.declared.torsion import HARMONIC_VALUES, TORSION_COLUMNS, TORSION_VA
 _FORCES, _FLYWHEEL, _STRESS = ("forces",), ("flywheel",), ("stress",)
 _motion = partial(Quantity, commands=("motion", "forces"))
 _forces = partial(Quantity, commands=_FORCES)
+_searched = partial(Quantity, commands=_FORCES, extremes=_FORCES)
 _turning = partial(Quantity, commands=(*_FORCES, *_FLYWHEEL))
-_flywheel = partial(Quantity, commands=_FLYWHEEL)
 
 
 _COLUMNS = (
@@ -59,22 +60,15 @@ _COLUMNS = (
     _forces("p_crank", "p_C", "pressure", "Gauge pressure in the crank-end chamber, just after a jump", gauge=True),
     *INDICATED_COLUMNS,
     _forces("P_gas", "P_gas", "force", "Force of gas, steam or water on all pistons of the rod"),
-    _forces(
-        "P_gas_book",
-        "P_297",
-        "force",
-        "The same by the mean of both areas (R 297)",
-        on_request=_FORCES,
-    ),
+    _forces("P_gas_book", "P_297", "force", "The same by the mean of both areas (R 297)", on_request=_FORCES),
     _forces("P_inertia", "P_b", "force", "Inertia force −m b of the reciprocating masses"),
     _forces("P_weight", "P_w", "force", "Weight of the reciprocating masses along the stroke line"),
     _forces("P_ram", "P_r", "force", "Force on a ram against its motion"),
-    _forces(
+    _searched(
         "P",
         "P",
         "force",
         "Force along the stroke line: gas, inertia, weight, and what a ram works against",
-        extremes=_FORCES,
         called="piston force",
         peak=True,
     ),
@@ -86,37 +80,33 @@ _COLUMNS = (
         extremes=_FORCES,
         called="piston force without inertia: starting and slow running",
     ),
-    _forces(
+    _searched(
         "S",
         "S",
         "force",
         "Force in the connecting rod, compression positive; of an exact rod, between the masses at its ends",
-        extremes=_FORCES,
         called="rod force",
         peak=True,
     ),
-    _forces(
+    _searched(
         "S_crosshead",
         "S_H",
         "force",
         "Force along an exact rod at the crosshead pin, compression positive",
-        extremes=_FORCES,
         called="force along the rod at the crosshead pin",
     ),
-    _forces(
+    _searched(
         "S_crank",
         "S_Z",
         "force",
         "Force along an exact rod at the crank pin, compression positive",
-        extremes=_FORCES,
         called="force along the rod at the crank pin",
     ),
-    _forces(
+    _searched(
         "N",
         "N",
         "force",
         "Force on the guide (yoke frame: on the piston rod), positive on the side where it lies while an engine drives",
-        extremes=_FORCES,
         called="guide force",
         peak=True,
     ),
@@ -139,20 +129,7 @@ _COLUMNS = (
         commands=(*_FORCES, *_FLYWHEEL, *_STRESS),
     ),
     _forces("F_friction", "F_f", "force", "Friction along the stroke line, opposing the motion"),
-    _flywheel("T_inertia", "T_b", "force", "Share of the inertia forces in T, at uniform rotation (Tolle)"),
-    _turning("M", "M", "torque", "Torque on the shaft", extremes=_FLYWHEEL, called="torque"),
-    _flywheel("E", "E", "energy", "Excess of the work of M over that of the resistance since angle 0"),
-    _flywheel("omega", "ω", "angular_velocity", "Angular velocity of the shaft", "omega"),
-    _flywheel(
-        "alpha",
-        "α",
-        "angular_acceleration",
-        "Angular acceleration of the shaft, just after a jump",
-        "alpha",
-        extremes=_FLYWHEEL,
-        called="angular acceleration of the shaft",
-    ),
-    _flywheel("M_coupling", "M_K", "torque", "Torque in the elastic coupling"),
+    *FLYWHEEL_COLUMNS,
     *ROD_COLUMNS,
     *STRENGTH_COLUMNS,
     *BEARING_COLUMNS,
@@ -178,13 +155,7 @@ _MOTION_VALUES = (
     ),
     _motion("v", "v", "velocity", "Crank-pin speed"),
     _motion("c_m", "c_m", "velocity", "Mean piston speed 2 s n (R 290)"),
-    _motion(
-        "c_work_m",
-        "c_a,m",
-        "velocity",
-        "Mean speed of the outstroke (of work, R p. 617)",
-        unless="equal_strokes",
-    ),
+    _motion("c_work_m", "c_a,m", "velocity", "Mean speed of the outstroke (of work, R p. 617)", unless="equal_strokes"),
     _motion("c_return_m", "c_r,m", "velocity", "Mean speed of the return stroke (R p. 617)", unless="equal_strokes"),
     _motion("c_max", "c_max", "velocity", "Largest velocity on the outstroke"),
     _motion("c_min", "c_min", "velocity", "Largest velocity on the return stroke, negative", unless="has_no_c_min"),
@@ -265,55 +236,7 @@ _WORK_VALUES = (
         "dA/A",
         residual=True,
     ),
-    Quantity(
-        "M_mean",
-        "M_m",
-        "torque",
-        "Mean torque of the turning effort: the resistance",
-        commands=(*_FLYWHEEL, "harmonics"),
-    ),
-    _flywheel("work_shaft", "A", "energy", "Work of the turning effort per cycle"),
-    _flywheel("power_shaft", "N_e", "power", "Power at the shaft, mean torque times nominal angular velocity"),
-)
-_FLYWHEEL_VALUES = (
-    _flywheel(
-        "phi_crossing",
-        "φ_T=W",
-        "angle",
-        "Crank angles at which the effort crosses the resistance",
-        "phi_T=W",
-        listed=True,
-    ),
-    _flywheel(
-        "lobes", "A_1, A_2, …", "energy", "Excess work of the lobes, from crossing to crossing", "A_1, ...", listed=True
-    ),
-    _flywheel("E_max", "E_max", "energy", "Largest excess work since angle 0"),
-    _flywheel("E_min", "E_min", "energy", "Smallest excess work since angle 0"),
-    _flywheel("dE", "ΔE", "energy", "Largest swing of the excess work, over all lobes", "dE"),
-    _flywheel("energy_fluctuation", "ΔE/A", "ratio", "Coefficient of fluctuation of energy", "dE/A"),
-    _flywheel("J", "J", "inertia", "Moment of inertia of the flywheel: the given one, or that for the wanted δ"),
-    _flywheel("GD2", "GD²", "gd2", "Old form of the moment of inertia, 4gJ as a weight times an area", "GD2"),
-    _flywheel("J_needed", "J_δ", "inertia", "Flywheel for the wanted δ, ΔE/(δ ω²)", "J_delta", unless="is_the_needed"),
-    _flywheel("GD2_needed", "GD²_δ", "gd2", "The same as GD² = 4gJ", "GD2_delta", unless="is_the_needed"),
-    _flywheel("rim_section", "A_K", "area", "Section of the rim for the wanted δ, or for J: 4 J/(π ρ D³)"),
-    _flywheel("rim_speed", "v_K", "velocity", "Speed of the middle of the rim"),
-    _flywheel("rim_stress", "σ_K", "stress", "Hoop stress of the rim, ρ v²", "sigma_K"),
-    _flywheel(
-        "J_exact", "J_δ,ω", "inertia", "Flywheel with which δ of the speed line is the wanted one", "J_delta,omega"
-    ),
-    _flywheel("delta", "δ", "ratio", "Coefficient of speed fluctuation, (ω_max − ω_min)/ω_m", "delta"),
-    _flywheel("delta_book", "δ_0", "ratio", "The same after the books, ΔE/(J ω²)", "delta_0"),
-    _flywheel("omega_max", "ω_max", "angular_velocity", "Largest angular velocity", "omega_max"),
-    _flywheel("omega_min", "ω_min", "angular_velocity", "Smallest angular velocity", "omega_min"),
-    _flywheel("omega_mean", "ω_m", "angular_velocity", "Mean angular velocity over time", "omega_m"),
-    _flywheel(
-        "multiplier", "μ", "ratio", "What is left of a disturbance after a cycle (Floquet); below 1 it dies away", "mu"
-    ),
-    _flywheel("natural_order", "n_e", "ratio", "Natural frequency of the coupled masses over the angular velocity"),
-    _flywheel("M_coupling_max", "M_K,max", "torque", "Largest torque in the elastic coupling"),
-    _flywheel("M_coupling_min", "M_K,min", "torque", "Smallest torque in the elastic coupling"),
-    _flywheel("amplification", "V", "ratio", "Swing of the torque in the coupling over that in a rigid one"),
-    _flywheel("P_dead_centre", "P_d + P_p", "force", "Force before the pump in a dead centre, without inertia"),
+    *EFFORT_VALUES,
 )
 
 
@@ -335,7 +258,7 @@ class Lists(NamedTuple):
             *_WORK_VALUES,
             *ROD_VALUES,
             *extremes(found, "flywheel"),
-            *_FLYWHEEL_VALUES,
+            *FLYWHEEL_VALUES,
             *STRENGTH_VALUES,
             *BEARING_VALUES,
             *BALANCE_VALUES,

@@ -73,10 +73,10 @@ def _standing(
 
 
 def _shaft_line(parts: tuple[ShaftPart | str, ...], cylinders: list[str]) -> ShaftLine:
-    from kurbel.machine.shaft_line import ShaftLine
+    from kurbel.machine.shaft_list import line_of
 
     try:
-        return ShaftLine.of_parts(parts, cylinders)
+        return line_of(parts, cylinders)
     except RuleError as error:
         raise RuleError(*(fault.below(("shaft",)) for fault in error.faults)) from None
 

@@ -54,7 +54,11 @@ class ShaftPart(Described):
             "Name of the cylinder whose crank stands here, or a list of those on one pin; its masses count by the mean "
             "of their reduced inertia over the turn",
         ),
-        "load": Key(Truth(), "Whether this mass takes the load", absent="the last mass does"),
+        "load": Key(
+            Truth(),
+            "Whether this mass takes the load",
+            absent="the last; the first if cranks stand at the last",
+        ),
         "stiffness": Key(Physical("stiffness", above=0), "Stiffness of a piece; or give `diameter` and `length`", "k"),
         "diameter": Key(
             Physical("length", above=0), "Diameter of a piece; beside a stiffness it serves the stress alone", "d"
@@ -183,13 +187,3 @@ class ShaftLine:
     pieces: tuple[ShaftPiece, ...]
     ground: str = ""
     load: int = -1
-
-    @classmethod
-    def of_parts(cls, parts: Sequence[ShaftPart | str], cylinders: Sequence[str] = ()) -> ShaftLine:
-        """Return the line that a list of a machine file describes; cylinders: the names of those of the machine.
-
-        Raises RuleError.
-        """
-        from kurbel.machine.shaft_list import line_of
-
-        return line_of(parts, cylinders)

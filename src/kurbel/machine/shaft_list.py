@@ -80,7 +80,7 @@ def _of_load(parts: Sequence[Part]) -> Iterator[Fault]:
         yield Fault((gears[0], "gear"), "cranks stand before and behind the gear; they turn at one speed")
 
 
-def line_of(parts: Sequence[Part], cylinders: Sequence[str]) -> ShaftLine:
+def line_of(parts: Sequence[Part], cylinders: Sequence[str] = ()) -> ShaftLine:
     """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError."""
     refuse(*_of_cylinders(parts, cylinders), *_of_order(parts), *_of_load(parts))
     return _Builder(parts).line()
@@ -110,7 +110,8 @@ class _Builder:
     def line(self) -> ShaftLine:
         masses: list[ShaftMass] = []
         pieces: list[ShaftPiece] = []
-        load, open_ = -1, False  # whether pieces stand behind the last mass
+        load: int | None = None
+        open_ = False  # whether pieces stand behind the last mass
         for index, part in enumerate(self._parts):
             kind = _kind(part)
             if kind == "piece":
@@ -131,7 +132,9 @@ class _Builder:
                 if isinstance(part, ShaftPart) and part.load:
                     load = len(masses) - 1
         ground = "before" if self.grounds[0] else "after" if self.grounds[-1] else ""
-        return ShaftLine(tuple(masses), tuple(pieces), ground, load if load >= 0 else len(masses) - 1)
+        if load is None:  # what drives or is driven stands at an end, and is no crank
+            load = 0 if masses[-1].cylinders and not masses[0].cylinders else len(masses) - 1
+        return ShaftLine(tuple(masses), tuple(pieces), ground, load)
 
     def _mass(self, index: int, number: int) -> ShaftMass:
         part, ratio = self._parts[index], self._ratio(index)

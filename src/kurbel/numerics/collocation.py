@@ -247,8 +247,11 @@ def _newton(
         while size > near and not after.lack <= (1 - share / 8) * at.lack and share > 1e-6:
             share /= 2
             after = state(at.start + share * step_start, at.values + share * step)
+        # the next step answers what is left lacking: of a linear equation nothing but rounding
+        left = size * after.lack / at.lack if at.lack else 0.0
         at = after
-        if share == 1 and (size <= 1e-6 * near or (size <= near and size >= previous / 4)):
+        settled = size <= 1e-6 * near or left <= 1e-5 * near or (size <= near and size >= previous / 4)
+        if share == 1 and settled:
             return at.start, at.values
         if share <= 1e-6 or not math.isfinite(size):
             break

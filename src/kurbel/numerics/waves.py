@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
+    from kurbel.arrays import Array, ComplexArray, Indices
 
-_PER_WAVE = 8
+_PER_WAVE = 10
 """Samples at least to a period of the shortest wave, …"""
 _STEPS = 3
-"""… from which so many steps of Newton's method lead to the crest."""
-_AT_ONCE = 1 << 17
+"""… from which so many steps of Newton's method lead to a crest."""
+_AT_ONCE = 1 << 16
 """Samples that are held at once."""
 
 
@@ -24,34 +24,49 @@ def crests(waves: Sequence[int], amplitudes: ComplexArray) -> tuple[Array, Array
     >>> crests([1, 2], np.array([[1.0, 0.5j]]))[0].round(8)
     array([1.29903811])
     """
-    highest, lowest = _sampled(waves, amplitudes)
-    return _crest(waves, amplitudes, highest, 1.0), _crest(waves, amplitudes, lowest, -1.0)
-
-
-def _sampled(waves: Sequence[int], amplitudes: ComplexArray) -> tuple[Array, Array]:
-    """Return where the largest and the smallest of equal samples stand, (m,) each."""
     count = 2 * (_PER_WAVE // 2) * max(waves)
-    rows = max(1, _AT_ONCE // count)
-    found = np.empty((2, len(amplitudes)))
+    rows, step = max(1, _AT_ONCE // count), 2 * np.pi / count
+    # above the sample next to it a crest lies by no more than the largest bend makes over half a step
+    above = np.abs(amplitudes) @ np.square(np.array(waves, dtype=float)) * step**2 / 8
+    found: list[list[Indices]] = [[], []]
     for start in range(0, len(amplitudes), rows):
         part = slice(start, start + rows)
         spectrum = np.zeros((len(amplitudes[part]), count // 2 + 1), dtype=complex)
-        spectrum[:, list(waves)] = amplitudes[part]
+        spectrum[:, list(waves)] = amplitudes[part] * (count / 2)
         samples = np.fft.irfft(spectrum, count, axis=1)
-        found[:, part] = samples.argmax(axis=1), samples.argmin(axis=1)
-    return found[0] * (2 * np.pi / count), found[1] * (2 * np.pi / count)
+        found[0].append(_near(samples, above[part]) + start * count)
+        found[1].append(_near(-samples, above[part]) + start * count)
+    highest, lowest = (np.divmod(np.concatenate(places), count) for places in found)
+    return _largest(waves, amplitudes, *highest, step), -_largest(waves, -amplitudes, *lowest, step)
 
 
-def _crest(waves: Sequence[int], amplitudes: ComplexArray, at: Array, sign: float) -> Array:
-    """Return the largest (sign 1) or the smallest (−1) value near these places (m,)."""
-    reach = np.pi / (_PER_WAVE * max(waves))
+def _near(samples: Array, above: Array) -> Indices:
+    """Return the places in the raveled samples (m, n) that may stand beside the largest crests of their rows.
+
+    Of two crests that are all but equal, the samples do not tell which is the larger one.
+    """
+    count, rows, top = samples.shape[1], np.arange(len(samples)), samples.argmax(axis=1)
+    near = samples >= (samples[rows, top] - above)[:, None]
+    for beside in (-1, 1):  # two crests do not stand so close
+        near[rows, (top + beside) % count] = False
+    return np.flatnonzero(near)
+
+
+def _largest(waves: Sequence[int], amplitudes: ComplexArray, rows: Indices, places: Indices, step: float) -> Array:
+    """Return the largest values (m,): those of the crests near these places in these rows (n,)."""
+    best = np.full(len(amplitudes), -np.inf)
+    np.maximum.at(best, rows, _crest(waves, amplitudes[rows], np.asarray(places * step, dtype=float), step))
+    return best
+
+
+def _crest(waves: Sequence[int], amplitudes: ComplexArray, at: Array, step: float) -> Array:
+    """Return the crests (m,) near these places (m,)."""
     best = np.full(len(at), -np.inf)
     for _ in range(_STEPS):
         value, slope, bend = _at(waves, amplitudes, at)
-        best = np.maximum(best, sign * value)
-        step = -slope / np.where(bend * sign < 0, bend, -np.inf * sign)
-        at = at + np.clip(step, -reach, reach)
-    return np.asarray(sign * np.maximum(best, sign * _at(waves, amplitudes, at)[0]))
+        best = np.maximum(best, value)
+        at = at + np.clip(slope / np.where(bend < 0, -bend, np.inf), -step / 2, step / 2)
+    return np.asarray(np.maximum(best, _at(waves, amplitudes, at)[0]))
 
 
 def _at(waves: Sequence[int], amplitudes: ComplexArray, at: Array) -> tuple[Array, Array, Array]:

@@ -115,8 +115,8 @@ def _lines(cells: Cells, look: Look, name_heads: tuple[str, ...]) -> Iterator[Li
     yield ruled
     before: tuple[str, ...] = ()
     for names, texts in zip(cells.names, cells.rows):
-        # what repeats the row above stays blank, so that the rows of one part stand together
-        shown = ("", *names[1:]) if names and before[:1] == names[:1] else names
+        # a part that repeats the row above stays blank, so that its places stand together
+        shown = ("", *names[1:]) if len(names) > 1 and before[:1] == names[:1] else names
         yield _line([left(name, wide) for name, wide in zip(shown, name_widths)], texts, widths, "cell")
         before = names
     yield ruled

@@ -15,6 +15,7 @@ from kurbel.report.tables import Report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.turning.flywheel import MachineTurning
+from kurbel.solver.turning.machine_effort import dead_centre_force
 
 
 def flywheel_report(case: Case, angles: Sequence[float] | Rows, columns: Sequence[str] | None, system: str) -> Report:
@@ -38,7 +39,7 @@ class _DeadCentre(NamedTuple):
     @property
     def P_dead_centre(self) -> Extreme | None:
         """Largest force in N in a dead centre, without inertia."""
-        return self.turning.dead_centre_force(self.forces)
+        return dead_centre_force(self.forces, self.turning.turned.cycle)
 
 
 def subjects(case: Case) -> Iterable[Subject]:

@@ -104,6 +104,13 @@ def _warnings(found: ShaftVibration, critical: tuple[Critical, ...]) -> Iterable
         )
 
 
+def _listed(orders: Sequence[str]) -> str:
+    """Return orders in words: few of them by name, many by their first and last."""
+    if len(orders) > 4:
+        return f"{len(orders)} orders from {orders[0]} to {orders[-1]}"
+    return f"order{'s' if len(orders) > 1 else ''} {', '.join(orders)}"
+
+
 def _notes(found: ShaftVibration, wanted: Wanted) -> Iterable[str]:
     if wanted.orders is None:
         yield f"Critical speeds of orders up to {_HIGHEST}; --orders tells others, --modes of more modes."
@@ -112,7 +119,9 @@ def _notes(found: ShaftVibration, wanted: Wanted) -> Iterable[str]:
     if not found.machine.cylinders and found.machine.effort:
         yield f"The effort acts on {found.line.masses[0].name}, the first mass."
     if found.pieces:
-        first, last = (f"{order:g}" for order in (found.orders[0], found.orders[-1]))
-        orders = f"order {first}" if first == last else f"orders {first} to {last} together"
+        orders = f"{_listed([f'{order:g}' for order in found.orders])} together"
+        orders = "all orders together" if found.steady else orders
+        if found.remainder is not None:
+            orders += f" (higher ones add about {show(found.remainder, 'torque')} or less)"
         taker = "what holds it" if found.chain.ground else found.line.masses[found.line.load].name
         yield f"Forced vibration: {orders}, about uniform rotation; the mean torque goes to {taker}."

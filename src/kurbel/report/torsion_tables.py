@@ -129,7 +129,7 @@ def _stresses(vibration: Vibration) -> list[float | None]:
 def pieces_table(found: ShaftVibration, system: str) -> PlaceTable:
     """Return torques and stresses in the pieces at the working speed."""
     values = {name: [getattr(piece, name) for piece in found.pieces] for name in PIECES}
-    title = "Torques and stresses at the working speed, all these orders together"
+    title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
     return _table("pieces", title, "piece", [piece.name for piece in found.pieces], PIECES, system, **values)
 
 

@@ -52,6 +52,13 @@ class Results(Shown):
         """What answers key values, the first that knows one."""
         return (self,)
 
+    def __getattr__(self, id: str) -> Any:
+        """Return a key value that is no attribute here: extremes, and what something else answers."""
+        quantity = None if id.startswith("_") else self._known.get(id)
+        if quantity is None:
+            raise AttributeError(f"no key value is called {id}")
+        return answered(self.answering, quantity)
+
     def __getitem__(self, name: str) -> Figure:
         """Return a key value by its id or printed symbol; raises UsageError where there is none."""
         quantity = self._known[_only(name, self._known, "key value")]
@@ -75,7 +82,7 @@ class Results(Shown):
         names: ids or printed symbols. Raises UsageError for angles that are no numbers and for what is no column here.
         """
         angles = np.atleast_1d(crank_angles(degrees))
-        state: Any = self.at(angles)  # type: ignore[attr-defined]
+        state: Any = self.at(angles)
         known = self.lists.columns(self.command)
         ids = [_only(name, known, "column") for name in names] if names else list(known)
         found = {id: getattr(state, id, None) for id in ids if id != "phi"}

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kurbel.solver.balance.circles import Circles
-
 if TYPE_CHECKING:
     from kurbel.arrays import Array, ComplexArray
-    from kurbel.solver.balance.free import Free
+    from kurbel.solver.balance.circles import Circles
     from kurbel.solver.balance.machine_balance import MachineBalance
+
+
+def _part(of: str, vector: str, part: Callable[[ComplexArray], Array]) -> property:
+    """Return a column: a part of the free force or moment, the true one (`free`) or that of the book."""
+
+    def column(columns: BalanceColumns) -> Array | None:
+        found = columns.vector(of, vector)
+        return None if found is None else part(found)
+
+    return property(column)
 
 
 class BalanceColumns:
@@ -25,80 +33,31 @@ class BalanceColumns:
         self._balance = balance
         self.phi = phi
         self._within = phi if within is None else within
+        self._vectors: dict[tuple[str, str], ComplexArray] = {}
 
-    def _vector(self, free: Free | None, name: str) -> ComplexArray | None:
-        circles: Circles | None = getattr(free, name, None)
-        omega = self._balance.omega
-        return None if circles is None or omega is None else circles.at(self.phi) * (omega * omega)
+    def vector(self, of: str, name: str) -> ComplexArray | None:
+        """Return the force in N or the moment in N m, `free` or by the `book`; None where there is none."""
+        if (of, name) not in self._vectors:
+            circles: Circles | None = getattr(getattr(self._balance, of), name, None)
+            omega = self._balance.omega
+            if circles is None or omega is None:
+                return None
+            self._vectors[of, name] = circles.at(self.phi) * (omega * omega)
+        return self._vectors[of, name]
 
-    @cached_property
-    def _F(self) -> ComplexArray | None:
-        return self._vector(self._balance.free, "force")
-
-    @cached_property
-    def _M(self) -> ComplexArray | None:
-        return self._vector(self._balance.free, "moment")
-
-    @cached_property
-    def _F_book(self) -> ComplexArray | None:
-        return self._vector(self._balance.book, "force")
-
-    @cached_property
-    def _M_book(self) -> ComplexArray | None:
-        return self._vector(self._balance.book, "moment")
-
-    @property
-    def F_x(self) -> Array | None:
-        """Free force in N along the stroke line of cylinder 1, outward from the shaft."""
-        return None if self._F is None else self._F.real
-
-    @property
-    def F_y(self) -> Array | None:
-        """Free force in N across it, 90° on in the sense of rotation."""
-        return None if self._F is None else self._F.imag
-
-    @property
-    def F_free(self) -> Array | None:
-        """Magnitude of the free force in N."""
-        return None if self._F is None else np.abs(self._F)
-
-    @property
-    def M_free(self) -> Array | None:
-        """Magnitude of the free moment in N m."""
-        return None if self._M is None else np.abs(self._M)
-
-    @property
-    def M_x(self) -> Array | None:
-        """Free moment in N m: of the forces F_x, times their places."""
-        return None if self._M is None else self._M.real
-
-    @property
-    def M_y(self) -> Array | None:
-        """Free moment in N m: of the forces F_y, times their places."""
-        return None if self._M is None else self._M.imag
+    F_x = _part("free", "force", np.real)
+    F_y = _part("free", "force", np.imag)
+    F_free = _part("free", "force", np.abs)
+    M_x = _part("free", "moment", np.real)
+    M_y = _part("free", "moment", np.imag)
+    M_free = _part("free", "moment", np.abs)
+    F_x_book = _part("book", "force", np.real)
+    F_y_book = _part("book", "force", np.imag)
+    M_x_book = _part("book", "moment", np.real)
+    M_y_book = _part("book", "moment", np.imag)
 
     @property
     def M_roll(self) -> Array | None:
         """Rolling moment on the frame in N m."""
         roll = self._balance.roll
         return None if roll is None else np.asarray(roll.torque(self.phi, self._within).value)
-
-    @property
-    def F_x_book(self) -> Array | None:
-        """F_x in N by the book's acceleration of first order."""
-        return None if self._F_book is None else self._F_book.real
-
-    @property
-    def F_y_book(self) -> Array | None:
-        """F_y in N by the book's acceleration of first order."""
-        return None if self._F_book is None else self._F_book.imag
-
-    @property
-    def M_x_book(self) -> Array | None:
-        """M_x in N m by the book's acceleration of first order."""
-        return None if self._M_book is None else self._M_book.real
-
-    @property
-    def M_y_book(self) -> Array | None:
-        """M_y in N m by the book's acceleration of first order."""
-        return None if self._M_book is None else self._M_book.imag

@@ -12,7 +12,7 @@ import numpy as np
 from kurbel.machine.shaft_line import ShaftLine
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
+    from kurbel.arrays import Array, ComplexArray
 
 
 _ARRAYS = ("inertias", "stiffnesses", "piece_damping", "mass_damping", "loss")
@@ -51,6 +51,13 @@ class Chain:
                 if 0 <= mass < count:
                     matrix[piece, mass] = sign
         return matrix
+
+    def twisted(self, angles: ComplexArray) -> ComplexArray:
+        """Return the twists (pieces, …) that angles of the masses (n, …) make; see `twists`."""
+        still = np.zeros_like(angles[:1])
+        first, last = [still] * (self.ground == "before"), [still] * (self.ground == "after")
+        held = np.concatenate((*first, angles, *last)) if self.ground else angles
+        return np.asarray(held[:-1] - held[1:])
 
     @property
     def damped(self) -> bool:

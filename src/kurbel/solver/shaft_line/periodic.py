@@ -18,7 +18,7 @@ from kurbel.numerics.elements import Elements
 from kurbel.solver.shaft_line.chain import Chain
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
+    from kurbel.arrays import Array, Indices
 
 _SWING = 120.0
 """Degrees of a natural oscillation that one element may hold at first, …"""
@@ -116,12 +116,16 @@ class ChainEquation:
         """See `collocation.Equation`: the load minds the speed as if its mass had so much more J ω_n², in N m."""
         return ChainEquation(self.chain, self.omega, self.order, self.driving, self.rise, by)
 
+    def parts(self, breaks: Array) -> Indices:
+        """Return into how many elements each piece of the cycle between the breaks in degrees is cut at first."""
+        return np.ceil(np.diff(breaks) * (self.order / _SWING)).clip(1, _MOST_PARTS).astype(int)
+
     def solved(self, breaks: Array) -> Periodic:
         """Return the periodic motion over smooth pieces of the cycle between the breaks in degrees.
 
         A load that does not mind the speed leaves the mean speed open: it is the nominal one.
         """
-        parts = np.ceil(np.diff(breaks) * (self.order / _SWING)).astype(int).clip(1, _MOST_PARTS)
+        parts = self.parts(breaks)
         cuts = [low + step * np.arange(n) / n for low, step, n in zip(breaks[:-1], np.diff(breaks), parts)]
         elements = Elements.over(np.append(np.concatenate(cuts), breaks[-1]))
         found = periodic(self, elements, len(self.matrix))

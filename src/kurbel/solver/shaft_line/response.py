@@ -53,7 +53,7 @@ def _responding(chain: Chain, frequencies: Array, torques: ComplexArray, held: A
 
 def twisting(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
     """Return the torques (pieces, …) in N m in springs and dampers of the pieces; angles (n, …): see `responding`."""
-    return np.asarray(_springs(chain, frequencies) * np.tensordot(chain.twists, angles, axes=1))
+    return np.asarray(_springs(chain, frequencies) * chain.twisted(angles))
 
 
 def _springs(chain: Chain, frequencies: Array) -> ComplexArray:

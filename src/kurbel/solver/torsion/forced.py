@@ -12,7 +12,7 @@ from kurbel.machine.shaft_line import ShaftLine
 from kurbel.numerics.waves import crests
 from kurbel.solver.shaft_line.chain import Chain
 from kurbel.solver.shaft_line.response import responding, twisting
-from kurbel.solver.turning.harmonics import MachineOrders, spectrum
+from kurbel.solver.turning.harmonics import MachineOrders, Spectrum, spectrum
 from kurbel.solver.turning.speed_lines import speed_law
 
 if TYPE_CHECKING:
@@ -138,6 +138,16 @@ class Vibration:
         high, low = crests(self.waves, flat)
         return high.reshape(self.torques.shape[:2]), low.reshape(self.torques.shape[:2])
 
+    @cached_property
+    def remainder(self) -> Array:
+        """About what higher orders add to the torque in any piece in N m, (s,).
+
+        What falls off as 1/ν², as behind a jump through a damper, or faster, is in all of them together no more than in
+        the upper half of these.
+        """
+        upper = self.acting.orders > self.acting.orders[-1] / 2
+        return np.asarray(np.abs(self.torques[..., upper]).sum(axis=2).max(axis=0))
+
     @property
     def vibratory(self) -> Array:
         """Half of what the torques in the pieces swing in N m, (pieces, s)."""
@@ -146,10 +156,7 @@ class Vibration:
 
     def over(self, piece: int, degrees: Array, speed: int = 0) -> Array:
         """Return the torque in a piece in N m at crank angles (n,) in degrees."""
-        turned = np.radians(np.mod(np.multiply.outer(degrees, self.acting.orders), 360.0))
-        amplitudes = self.torques[piece, speed]
-        wave = np.cos(turned) @ amplitudes.real - np.sin(turned) @ amplitudes.imag
-        return np.asarray(self.means[piece] + wave)
+        return Spectrum(self.means[piece], self.acting.orders, self.torques[piece, speed]).at(degrees)
 
     @cached_property
     def power(self) -> Array:
@@ -161,7 +168,7 @@ class Vibration:
     def loss(self) -> Array:
         """Mean power in W lost in dampers, in the material, and in a load that rises with the speed, (s,)."""
         chain, speeds = self.chain, np.abs(self._frequencies * self.angles) ** 2
-        twists = np.abs(np.tensordot(chain.twists, self.angles, axes=1)) ** 2
+        twists = np.abs(chain.twisted(self.angles)) ** 2
         of_masses = ((chain.mass_damping[:, None, None] + self._held) * speeds).sum(axis=(0, 2))
         material = np.multiply.outer(chain.stiffnesses * chain.loss, self._frequencies)
         viscous = np.multiply.outer(chain.piece_damping, self._frequencies**2)

@@ -12,11 +12,13 @@ import numpy as np
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
+from kurbel.numerics.collocation import Unsettled
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Results
 from kurbel.solver.shaft_line.chain import Chain
 from kurbel.solver.shaft_line.modes import Holzer, Modes
 from kurbel.solver.torsion.forced import Excitation, Vibration, excitation, stress
+from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.turning.effort import CylinderEffort, reduced_inertia
 from kurbel.solver.turning.harmonics import MachineOrders, every_order, phases
 from kurbel.solver.turning.machine_effort import MachineEffort, MovingInertia
@@ -76,6 +78,7 @@ class ShaftVibration(Results):
         self.line = shaft_line_of(machine)
         self._forces = {forces.drive.name: forces for forces in cylinders}
         self.cycle = 360.0 * machine.revolutions
+        self._every = orders is None
         self.orders = every_order(self.cycle) if orders is None else orders
         self.chain = Chain.of(self.line, [self._inertia(mass) for mass in self.line.masses])
         self.modes = Modes(self.chain)
@@ -149,10 +152,13 @@ class ShaftVibration(Results):
         return "" if self.chain.damped else "no damping given; at resonance nothing but damping bounds a vibration"
 
     @cached_property
+    def _turned(self) -> MachineEffort:
+        return MachineEffort(self.machine, tuple(self._forces.values()))
+
+    @cached_property
     def acting(self) -> Excitation:
         """The torques on the masses."""
-        turned = MachineEffort(self.machine, tuple(self._forces.values()))
-        return excitation(MachineOrders(turned, self.orders), self.line)
+        return excitation(MachineOrders(self._turned, self.orders), self.line)
 
     def forced(self, speeds: Sequence[float]) -> Vibration:
         """Return the forced vibration at speeds in revolutions per second."""
@@ -162,6 +168,21 @@ class ShaftVibration(Results):
     def vibration(self) -> Vibration | None:
         """The forced vibration at the working speed; None where none can be told."""
         return None if self.obstacle or self.machine.speed is None else self.forced([self.machine.speed])
+
+    @cached_property
+    def steady(self) -> SteadyMotion | None:
+        """The motion at the working speed with all orders, where none are asked for; None where only orders tell it."""
+        if self.vibration is None or not self._every or self.chain.loss.any():
+            return None
+        try:
+            return SteadyMotion(self.chain, self.line, self._turned, self.vibration.means)
+        except Unsettled:
+            return None
+
+    @property
+    def remainder(self) -> float | None:
+        """About what orders beyond the usual ones add to any piece in N m; None where they are in it, or not wanted."""
+        return None if self.vibration is None or self.steady or not self._every else float(self.vibration.remainder[0])
 
     @property
     def vibration_loss(self) -> float | None:
@@ -190,7 +211,8 @@ class ShaftVibration(Results):
         if self.vibration is None:
             return ()
         return tuple(
-            PieceTorque(self.vibration, piece, self.piece_name(piece)) for piece in range(len(self.line.pieces))
+            PieceTorque(self.steady or self.vibration, stress(self.line, piece), piece, self.piece_name(piece))
+            for piece in range(len(self.line.pieces))
         )
 
     def piece_name(self, piece: int) -> str:
@@ -201,11 +223,13 @@ class ShaftVibration(Results):
 
 
 class PieceTorque:
-    """The torque in one piece of the shaft line at the working speed, and the stress where its section is known."""
+    """The torque in one piece of the shaft line at the working speed, and the stress where its section is known.
 
-    def __init__(self, vibration: Vibration, piece: int, name: str) -> None:
-        self._vibration, self._piece, self.name = vibration, piece, name
-        self._stress = stress(vibration.line, piece)
+    factor: the stress in Pa per N m.
+    """
+
+    def __init__(self, vibration: Vibration | SteadyMotion, factor: float | None, piece: int, name: str) -> None:
+        self._vibration, self._stress, self._piece, self.name = vibration, factor, piece, name
 
     def _stressed(self, torque: float) -> float | None:
         return None if self._stress is None else self._stress * torque
@@ -228,7 +252,7 @@ class PieceTorque:
     @property
     def M_vibratory(self) -> float:
         """Half of what the torque swings, in N m."""
-        return float(self._vibration.vibratory[self._piece, 0])
+        return (self.M_shaft_max - self.M_shaft_min) / 2
 
     @property
     def tau_mean(self) -> float | None:

@@ -13,11 +13,12 @@ from kurbel.machine import Machine
 from kurbel.numerics.collocation import Standstill, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import rising_root
+from kurbel.numerics.search import Extremes
 from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Results, crank_angles
 from kurbel.solver.turning.columns import OF_SPEED, TurningColumns
-from kurbel.solver.turning.machine_effort import MachineEffort, dead_centre_force
+from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedLine, floquet
 from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law, turning
 
@@ -106,33 +107,12 @@ class MachineTurning(Results):
         given = self.machine.load.diagram if self.machine.load else None
         return self.excess.deficit or None if given else None
 
-    @property
-    def M_max(self) -> Extreme:
-        """Largest torque in N m."""
-        return self.excess.effort_extremes.largest
-
-    @property
-    def M_min(self) -> Extreme:
-        """Smallest torque in N m."""
-        return self.excess.effort_extremes.smallest
-
-    @property
-    def T_max(self) -> Extreme | None:
-        """Largest tangential force in N at the radius of crank 1."""
-        return self._at_crank(self.M_max)
-
-    @property
-    def T_min(self) -> Extreme | None:
-        """Smallest tangential force in N at the radius of crank 1."""
-        return self._at_crank(self.M_min)
-
-    @property
-    def T_peak(self) -> Extreme | None:
-        """Largest magnitude of the tangential force in N at the radius of crank 1."""
-        return self._at_crank(self.excess.effort_extremes.peak)
-
-    def _at_crank(self, torque: Extreme) -> Extreme | None:
-        return None if self.crank is None else Extreme(torque.value / self.crank, torque.degrees)
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
+        if column == "alpha":
+            return None if self.speed is None else self.speed.alpha_extremes
+        arm, found = self.crank if column == "T" else 1.0, self.excess.effort_extremes
+        return None if arm is None else Extremes(*(Extreme(one.value / arm, one.degrees) for one in found))
 
     # excess work
 
@@ -165,10 +145,6 @@ class MachineTurning(Results):
     def energy_fluctuation(self) -> float | None:
         """ΔE over the work of a cycle."""
         return self.dE / self.work_shaft if self.work_shaft > 0 else None
-
-    def dead_centre_force(self, forces: CylinderForces) -> Extreme | None:
-        """Return what the parts before a directly driven pump must stand; see there."""
-        return dead_centre_force(forces, self.turned.cycle)
 
     # flywheel
 
@@ -255,8 +231,16 @@ class MachineTurning(Results):
 
     @cached_property
     def elastic(self) -> ElasticCoupling | None:
-        """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with."""
-        return None if self.J is None or not self._lines or self._needs_no_inertia else self._lines.elastic(self.J)
+        """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
+
+        Raises NoSolutionError where no motion of it repeats.
+        """
+        if self.J is None or not self._lines or self._needs_no_inertia:
+            return None
+        try:
+            return self._lines.elastic(self.J)
+        except Unsettled as stop:
+            raise NoSolutionError(self._refusal(self._lines, self.J, stop)) from None
 
     # speed line
 
@@ -286,7 +270,8 @@ class MachineTurning(Results):
 
     def _refusal(self, lines: SpeedLines, flywheel: float, stop: Unsettled) -> str:
         """Return where the machine stands still, if it does, and the flywheel with which it was found to turn."""
-        with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if self.elastic else ''}"
+        elastic = self.natural_order is not None and not self.rigid
+        with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
         message = f"{with_this} no speed line is found that repeats under this load"
         if isinstance(stop, Standstill):
             message = (
@@ -314,16 +299,6 @@ class MachineTurning(Results):
     def omega_min(self) -> Extreme | None:
         """Smallest angular velocity in rad/s."""
         return None if self.speed is None else self.speed.omega_min
-
-    @property
-    def alpha_max(self) -> Extreme | None:
-        """Largest angular acceleration in rad/s²."""
-        return None if self.speed is None else self.speed.alpha_extremes.largest
-
-    @property
-    def alpha_min(self) -> Extreme | None:
-        """Smallest angular acceleration in rad/s²."""
-        return None if self.speed is None else self.speed.alpha_extremes.smallest
 
     @property
     def omega_mean(self) -> float | None:
