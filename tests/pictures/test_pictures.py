@@ -258,3 +258,11 @@ def test_cylinders_that_differ_by_one_key_are_drawn_apart() -> None:
     others = "{name: B, like: A, crank_position: 120 deg}, {name: C, like: A, masses: {piston: 101 kg}}"
     case = Case(loads(f"{{speed: 50 rpm, cylinders: [{equal}, {others}]}}"))
     assert [one.of for one in pictures(case, ("forces",), Wish())] == ["A, B", "C"]
+
+
+def test_an_infinite_rod_is_drawn_as_the_yoke_that_moves_alike() -> None:
+    case = Case(loads("{speed: 50 rpm, stroke: 800 mm, rod_ratio: infinite, masses: {piston: 100 kg}}"))
+    (picture,) = pictures(case, ("mechanism",), Wish(angles=(60.0,)))
+    (joints,) = next(one for one in picture.panels[0].curves if one.kind == "joint").pieces
+    assert picture.panels[0].x.unit == "mm"
+    assert (200.0, 0.0) in [(round(x, 9), round(y, 9)) for x, y in zip(joints.x, joints.y)]  # R cos 60°

@@ -8,7 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from drawn import CONFIGS, drawn, ids_of, named
+from drawn import CONFIGS, case_of, drawn, ids_of, named
 
 from kurbel.render import Look
 from kurbel.render.html import BAD, GOOD, LINK
@@ -17,7 +17,9 @@ from kurbel.render.html import INK as PAGE_INK
 from kurbel.render.html import PAPER as PAGE_PAPER
 from kurbel.render.html import SHADE as PAGE_SHADE
 from kurbel.render.pictures.drawing import draw_file
-from kurbel.render.pictures.scene import thinned
+from kurbel.render.pictures.labels import CHARACTER, Box
+from kurbel.render.pictures.layout import scene
+from kurbel.render.pictures.scene import Text, thinned
 from kurbel.render.pictures.style import FAINT, GAIN, INK, LOOKS, LOSS, PAPER, css
 from kurbel.render.pictures.svg import svg_file
 from kurbel.report.pictures import Wish, pictures
@@ -149,3 +151,32 @@ def test_thinning_leaves_out_only_what_lies_on_a_line() -> None:
     steepness = np.hypot(1, np.interp(x, kept[:-1, 0] / 2 + kept[1:, 0] / 2, np.diff(kept[:, 1]) / np.diff(kept[:, 0])))
     assert (np.abs(np.interp(x, *kept.T) - wave) / steepness).max() <= 0.15
     assert len(kept) < 200
+
+
+def test_an_angle_stands_only_where_the_mechanism_stands() -> None:
+    (page,) = ["".join(svg_file([drawn("shaper", "mechanism")[0]], Look()))]
+    shown, still = page.split('<g class="still">')
+    assert "φ = " not in shown
+    assert "φ = " in still
+    case = case_of("shaper")
+    standing = "".join(svg_file(list(pictures(case, ("mechanism",), Wish(angles=(45.0,)))), Look()))
+    assert "φ = 45°" in standing
+    assert "still" not in standing.split("</style>")[1]
+
+
+@pytest.mark.parametrize(("name", "lobes"), [("radial-three", 12), ("marine-diesel", 12), ("waterworks-two-cranks", 4)])
+def test_every_lobe_is_named_and_no_name_meets_another(name: str, lobes: int) -> None:
+    laid = scene(drawn(name, "effort")[0], Look())
+    named = [one for one in laid.items if isinstance(one, Text) and one.text.startswith("A_")]
+    assert {one.text.split()[0] for one in named} == {f"A_{number}" for number in range(1, lobes + 1)}
+    boxes = [Box(one.x, one.y - 9, one.x + CHARACTER * len(one.text), one.y + 2) for one in named]
+    assert not any(a.meets(b) for a, b in combinations(boxes, 2))
+
+
+def test_a_long_name_takes_several_lines() -> None:
+    picture = drawn("shaper", "motion")[0]
+    laid = scene(picture._replace(machine=f"{'long name of a machine ' * 8}end"), Look())
+    lines = [one.text for one in laid.items if isinstance(one, Text) and one.look == "h"]
+    assert len(lines) == 3
+    assert all(len(line) <= 85 for line in lines)
+    assert laid.height > scene(picture, Look()).height

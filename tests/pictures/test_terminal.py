@@ -84,3 +84,20 @@ def test_letters_tell_curves_apart_where_there_is_no_braille() -> None:
     text = text_of(drawn("waterworks", "forces", TERMINAL)[0], Look(width=80, encoding="ascii"))
     assert all(letter in text for letter in "*+ox")
     assert text.isascii()
+
+
+def test_many_lobes_bear_numbers_within_them_and_few_their_work() -> None:
+    crowded = text_of(drawn("radial-three", "effort", TERMINAL)[0], Look(width=80)).split("E in")[0]
+    assert "A_4" in crowded
+    assert "A_4 88.44 J" not in crowded
+    few = text_of(drawn("waterworks", "effort", TERMINAL)[0], Look(width=72))
+    assert "A_2 −18.39 kJ" in few
+    assert all(f"A_{number}" in few for number in (1, 2, 3, 4))
+
+
+def test_axes_tell_what_runs_along_them_in_which_unit() -> None:
+    text = text_of(drawn("waterworks", "effort", TERMINAL)[0], Look(width=72))
+    assert "T in kN" in text
+    assert "φ in °" in text
+    assert "−28.06 kN" in text
+    assert "-28.06 kN" in text_of(drawn("waterworks", "effort", TERMINAL)[0], Look(width=72, encoding="ascii"))

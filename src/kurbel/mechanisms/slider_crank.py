@@ -208,10 +208,12 @@ class SliderCrank(Mechanism):
         slope = formulas.rod_slope(angle.cos, cos_psi, self.lam)
         return Coupler(-sin_psi, cos_psi, -slope, -formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.lam))
 
-    def sketch(self, angle: CrankAngle) -> Sketch | None:
-        """Return crank, rod and crosshead, whose line runs e beside the shaft; of an infinite rod, None."""
+    def sketch(self, angle: CrankAngle) -> Sketch:
+        """Return crank, rod and crosshead, whose line runs e beside the shaft; for an infinite rod its twin, a yoke."""
         if math.isinf(self.rod):
-            return None
+            from kurbel.mechanisms.scotch_yoke import ScotchYoke
+
+            return ScotchYoke(self.crank).sketch(angle)
         pin, far = on_circle(self.crank, angle.cos, angle.sin), self.rod * self._reaches[0]
         guide = ((far - self.stroke, self.offset), (far, self.offset))
         return Sketch(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.render.charset import width
@@ -11,7 +11,7 @@ from kurbel.render.numbers import angle, single
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.render import Look
-    from kurbel.report.pictures.picture import Figure, Words
+    from kurbel.report.pictures.picture import Figure, Shade, Words
 
 CHARACTER, LINE = 5.8, 11.0
 """Width and height of a character of a label, in points."""
@@ -47,8 +47,11 @@ class Taken:
         x, y = self._curves.T
         return int(((x > box.left) & (x < box.right) & (y > box.top) & (y < box.bottom)).sum())
 
-    def place(self, x: float, y: float, text: str, upward: bool) -> tuple[float, float] | None:
-        """Return where a label begins that names a point, above or below it first; None where all is taken."""
+    def place(self, x: float, y: float, text: str, upward: bool, clear: bool = False) -> tuple[float, float] | None:
+        """Return where a label begins that names a point, above or below it first; None where all is taken.
+
+        clear: it must not stand on a curve.
+        """
         free = []
         for number, (left, base, box) in enumerate(self._tries(x, y, text, upward)):
             inside = box.top >= self._frame.top and box.bottom <= self._frame.bottom and left >= self._frame.left
@@ -56,7 +59,9 @@ class Taken:
                 free.append((self._on_curves(box), number, left, base, box))
         if not free:
             return None
-        *_, left, base, box = min(free)
+        crossed, _, left, base, box = min(free)
+        if clear and crossed:
+            return None
         self._boxes.append(box)
         return left, base
 
@@ -78,9 +83,14 @@ def symbol(words: Words, look: Look) -> str:
     return look.charset.text(look.charset.symbol(words.symbol, words.ascii_symbol))
 
 
+def signed(number: str, look: Look) -> str:
+    """Return a number with a minus sign, where there is one, in place of a hyphen."""
+    return f"−{number[1:]}" if number.startswith("-") and look.charset.has("−") else number
+
+
 def axis_text(words: Words, unit: str, look: Look) -> str:
     """Return what stands at the end of an axis."""
-    return "  ".join(filter(None, (symbol(words, look), look.charset.unit(unit))))
+    return " in ".join(filter(None, (symbol(words, look), look.charset.unit(unit))))
 
 
 def figure_text(figure: Figure, look: Look) -> str:
@@ -88,8 +98,19 @@ def figure_text(figure: Figure, look: Look) -> str:
     text = symbol(figure.name, look)
     if figure.value is not None:
         number, power = single(figure.value, look.digits, look.comma)
+        number = signed(number, look)
         number += look.charset.times_power(power) if power else ""
         text += f" {number} {look.charset.unit(figure.unit)}".rstrip()
     if figure.at_deg is not None:
         text += f"{',' if figure.value is not None else ''} {angle(figure.at_deg, look.comma)}{look.charset.degree}"
     return text
+
+
+def shade_texts(shades: Sequence[Shade], look: Look, room: Callable[[Shade], float]) -> list[tuple[Shade, str]]:
+    """Return what is written into shades: their figures, or the names alone where not each figure has the room.
+
+    room: how many characters fit between the ends of a shade.
+    """
+    found = [(one, one.figure, figure_text(one.figure, look)) for one in shades if one.figure]
+    fitting = all(width(text) <= room(one) for one, _, text in found)
+    return [(one, text if fitting else symbol(figure.name, look)) for one, figure, text in found]

@@ -10,6 +10,7 @@ from kurbel.render.pictures.panel_items import panel_items
 from kurbel.render.pictures.scale import Scale, scale_of, taller
 from kurbel.render.pictures.scene import Dots, Item, Scene, Text
 from kurbel.render.pictures.style import LOOKS, SHAPES
+from kurbel.render.prose import folded
 
 if TYPE_CHECKING:
     from kurbel.render import Look
@@ -18,15 +19,17 @@ if TYPE_CHECKING:
 WIDTH = 720.0
 _HEIGHT, _SHORT = 250.0, 170.0
 _TALLEST, _LEAST = 460.0, 110.0
-_TITLE = 24.0
+_TITLE, _BOLD = 24.0, 8.3
+"""Height of a heading, and width of a character of it."""
 SECONDS = 6.0
 """How long a moving mechanism takes for one cycle."""
 
 
 def scene(picture: Picture, look: Look, width: float = WIDTH) -> Scene:
     """Return a picture laid out on this width, in points."""
-    items: list[Item] = [Text(8.0, 16.0, look.charset.text(picture.heading), "h")]
-    top = _TITLE
+    heading = folded(look.charset.text(picture.heading), int((width - 16) / _BOLD))
+    items: list[Item] = [Text(8.0, 16.0 + 17.0 * number, text, "h") for number, text in enumerate(heading)]
+    top = _TITLE + 17.0 * (len(heading) - 1)
     rows = [picture.panels[i : i + picture.across] for i in range(0, len(picture.panels), picture.across)]
     for row in rows:
         each = width / picture.across

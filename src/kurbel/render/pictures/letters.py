@@ -11,14 +11,14 @@ from kurbel.render.charset import right
 from kurbel.render.charset import width as cells
 from kurbel.render.lines import BLANK, Line, line
 from kurbel.render.pictures.canvas import Canvas
-from kurbel.render.pictures.labels import axis_text, figure_text, symbol
-from kurbel.render.pictures.panel_items import looks_of
+from kurbel.render.pictures.labels import axis_text, figure_text, shade_texts, signed, symbol
 from kurbel.render.pictures.scale import Scale, scale_of, taller, tick_text, ticks
+from kurbel.render.pictures.style import looks_of
 from kurbel.render.prose import folded
 
 if TYPE_CHECKING:
     from kurbel.render import Look
-    from kurbel.report.pictures.picture import Curve, Panel, Picture
+    from kurbel.report.pictures.picture import Curve, Panel, Picture, Shade
 
 _WIDTH = 80
 _WIDEST = 160
@@ -66,7 +66,7 @@ def _rows_of_equal(x: Scale, y: Scale, columns: int) -> int:
 
 
 def _tick(value: float, values: list[float], log: bool, look: Look) -> str:
-    return f"{value:.0e}" if log else tick_text(value, values, look.comma)
+    return f"{value:.0e}" if log else signed(tick_text(value, values, look.comma), look)
 
 
 def _head(panel: Panel, look: Look) -> str:
@@ -92,12 +92,26 @@ def _draw(panel: Panel, canvas: Canvas, scales: tuple[Scale, Scale], look: Look)
     for mark in panel.marks:
         column, row = float(x.place(mark.x)), float(y.place(mark.y))
         _write_near(canvas, column, row, figure_text(mark.figure, look), "head")
-    for shade in panel.shades:
-        if shade.figure is None:
-            continue
-        widest = int(np.argmax(np.abs(shade.high - shade.low)))
-        middle = float(y.place((shade.high[widest] + shade.low[widest]) / 2))
-        _write_near(canvas, float(x.place(shade.x[widest])), middle, figure_text(shade.figure, look), "unit")
+    room = canvas.columns / canvas.fine[0]
+    for shade, text in shade_texts(panel.shades, look, lambda one: room * float(np.ptp(x.place(one.x)))):
+        if not _write_into(canvas, shade, scales, text):
+            _write_into(canvas, shade, scales, text.split(" ")[0])
+
+
+def _write_into(canvas: Canvas, shade: Shade, scales: tuple[Scale, Scale], text: str) -> bool:
+    """Write a text into a shade, as near its middle as there is a blank place, or beside it; True if it stands."""
+    (across, down), (x, y) = canvas.fine, scales
+    widest = int(np.argmax(np.abs(shade.high - shade.low)))
+    ends = sorted(int(y.place(line[widest]) * canvas.rows / down) for line in (shade.low, shade.high))
+    centres = [float(x.place(at)) * canvas.columns / across for at in ((shade.x[0] + shade.x[-1]) / 2, shade.x[widest])]
+    for row in sorted(range(ends[0] + 1, ends[1]), key=lambda row: abs(2 * row - sum(ends))):
+        for centre in centres:
+            start = round(centre - cells(text) / 2)
+            if canvas.free(start, row, text, blank=True):
+                canvas.write(start, row, text, "unit")
+                return True
+    middle = float(y.place((shade.high[widest] + shade.low[widest]) / 2))
+    return _write_near(canvas, float(x.place(shade.x[widest])), middle, text, "unit", (True,))
 
 
 def _draw_curve(curve: Curve, number: int, canvas: Canvas, scales: tuple[Scale, Scale]) -> None:
@@ -136,14 +150,19 @@ def _places(curve: Curve, scales: tuple[Scale, Scale]) -> np.ndarray:
     return np.concatenate([np.column_stack((x.place(piece.x), y.place(piece.y))) for piece in curve.pieces])
 
 
-def _write_near(canvas: Canvas, x: float, y: float, text: str, role: str) -> bool:
-    """Write a text beside a place in dots, where nothing is drawn if there is such a place; True if it stands."""
+def _write_near(
+    canvas: Canvas, x: float, y: float, text: str, role: str, blanks: tuple[bool, ...] = (True, False)
+) -> bool:
+    """Write a text beside a place in dots, where nothing is drawn if there is such a place; True if it stands.
+
+    blanks: whether only blank places will do, one try after the other.
+    """
     across, down = canvas.fine
     column, row, long = int(x * canvas.columns / across), int(y * canvas.rows / down), cells(text)
     starts = [min(max(column + shift, 0), canvas.columns - long) for shift in (-(long // 2), 1, -long)]
     upward = row >= canvas.rows // 2
     order = (1, -1, 2, -2, 0) if upward else (-1, 1, -2, 2, 0)
-    for blank in (True, False):
+    for blank in blanks:
         for step in order:
             for start in starts:
                 if canvas.free(start, row + step, text, blank):

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kurbel.render.charset import width as cells
-from kurbel.render.pictures.labels import CHARACTER, Box, Taken, axis_text, figure_text, symbol
+from kurbel.render.pictures.labels import CHARACTER, Box, Taken, axis_text, figure_text, shade_texts, signed, symbol
 from kurbel.render.pictures.scale import Scale, tick_text, ticks
 from kurbel.render.pictures.scene import Dots, Item, Line, Places, Text, thinned
-from kurbel.render.pictures.style import LOOKS, SHAPES
+from kurbel.render.pictures.style import SHAPES, looks_of
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -55,16 +55,6 @@ def _dense(panel: Panel, scales: Scales) -> Array:
     return np.concatenate(found)
 
 
-def looks_of(panel: Panel) -> list[int]:
-    """Return the look of each curve of a panel: lines take one after the other."""
-    found, following = [], 0
-    for curve in panel.curves:
-        own = following if curve.look is None else curve.look
-        found.append(own % len(LOOKS))
-        following += curve.kind in ("line", "dots")
-    return found
-
-
 def _grid(panel: Panel, scales: Scales, look: Look) -> Iterator[Item]:
     """Yield thin lines with what they stand for, and what runs along the axes."""
     x, y = scales
@@ -83,7 +73,9 @@ def _grid(panel: Panel, scales: Scales, look: Look) -> Iterator[Item]:
 
 
 def _at_tick(value: float, values: list[float], log: bool, look: Look) -> str:
-    return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") if log else tick_text(value, values, look.comma)
+    if log:
+        return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e")
+    return signed(tick_text(value, values, look.comma), look)
 
 
 def _shade(shade: Shade, scales: Scales) -> Iterator[Item]:
@@ -127,7 +119,7 @@ def _heading(panel: Panel, frame: Box, scales: Scales, looks: list[int], look: L
     left = x.start if panel.plain else 12.0 + frame.left
     for text in (look.charset.text(panel.title), "" if panel.plain else axis_text(panel.y.name, panel.y.unit, look)):
         if text:
-            yield Text(left, base, text)
+            yield Text(left, base, text, still=bool(panel.frames))
             left += CHARACTER * cells(text) + 20
     lines = [(curve, one) for curve, one in zip(panel.curves, looks) if curve.kind == "line"]
     for curve, one in lines if len(lines) > 1 else ():
@@ -167,14 +159,13 @@ def _marks(panel: Panel, scales: Scales, taken: Taken, look: Look) -> Iterator[I
 def _figures(panel: Panel, scales: Scales, taken: Taken, look: Look) -> Iterator[Item]:
     """Yield what is written into shades, at their highest place."""
     x, y = scales
-    for shade in panel.shades:
-        if shade.figure is None:
-            continue
+    for shade, text in shade_texts(panel.shades, look, lambda one: float(np.ptp(x.place(one.x))) / CHARACTER):
         widest = int(np.argmax(np.abs(shade.high - shade.low)))
-        text = figure_text(shade.figure, look)
         middle = float(y.place((shade.high[widest] + shade.low[widest]) / 2))
-        if place := taken.place(float(x.place(shade.x[widest])), middle, text, upward=True):
-            yield Text(*place, text, halo=True)
+        for written in (text, text.split(" ")[0]):
+            if place := taken.place(float(x.place(shade.x[widest])), middle, written, upward=True, clear=True):
+                yield Text(*place, written, halo=True)
+                break
 
 
 def _arrow(panel: Panel, number: int, scales: Scales, look: Look) -> Iterator[Item]:

@@ -22,7 +22,10 @@ class Line(NamedTuple):
 
 
 class Text(NamedTuple):
-    """A text at a place, by its start, middle or end; halo: it may stand on lines; frames: where it moves to."""
+    """A text at a place, by its start, middle or end; halo: it may stand on lines; frames: where it moves to.
+
+    still: it is of one moment, and stands only where nothing moves.
+    """
 
     x: float
     y: float
@@ -31,6 +34,7 @@ class Text(NamedTuple):
     anchor: str = "start"
     halo: bool = False
     frames: Places = ()
+    still: bool = False
 
 
 class Dots(NamedTuple):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from kurbel.report.pictures.picture import Panel
 
 
 class Look(NamedTuple):
@@ -26,6 +29,17 @@ LOOKS = (
     Look("#6b5900", "#e6d354", (1, 3), "@"),
 )
 """After Okabe and Ito, whom the colour-blind can tell apart, darkened or lightened to a contrast of 4.5."""
+
+
+def looks_of(panel: Panel) -> list[int]:
+    """Return the look of each curve of a panel: lines take one after the other."""
+    found, following = [], 0
+    for curve in panel.curves:
+        own = following if curve.look is None else curve.look
+        found.append(own % len(LOOKS))
+        following += curve.kind in ("line", "dots")
+    return found
+
 
 SHAPES: tuple[tuple[tuple[float, float], ...], ...] = (
     (),

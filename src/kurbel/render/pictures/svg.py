@@ -42,14 +42,18 @@ def svg(scene: Scene) -> str:
 
 def _items(scene: Scene) -> Iterator[str]:
     """Yield what stands still, then what moves, and the same once more for those who want it still."""
-    moving = [item for item in scene.items if item.frames]
     for item in scene.items:
-        if not item.frames:
+        if not (item.frames or _of_one_moment(item)):
             yield _item(item, 0.0) + "\n"
-    if moving:
-        yield f'<g class="moving">{"".join(_item(item, scene.seconds) for item in moving)}</g>\n'
-        still = (_item(item._replace(frames=()), 0.0) for item in moving)
+    if scene.seconds:
+        moving = (_item(item, scene.seconds) for item in scene.items if item.frames)
+        yield f'<g class="moving">{"".join(moving)}</g>\n'
+        still = (_item(item._replace(frames=()), 0.0) for item in scene.items if item.frames or _of_one_moment(item))
         yield f'<g class="still">{"".join(still)}</g>\n'
+
+
+def _of_one_moment(item: Item) -> bool:
+    return isinstance(item, Text) and item.still
 
 
 def _item(item: Item, seconds: float) -> str:
