@@ -11,7 +11,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
-from kurbel.machine.shaft_line import ShaftLine, ShaftPart
+from kurbel.machine.shaft_line import ShaftPart
+from kurbel.machine.shaft_list import line_of
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 BLOWER, SHIP = (str(CONFIGS / f"{name}.yaml") for name in ("coupled-blower", "marine-diesel"))
@@ -225,5 +226,5 @@ def test_near_stands_in_every_row_that_is() -> None:
 def test_the_load_stands_at_an_end_that_is_no_crank() -> None:
     """A motor drives pistons: it is named first, so that the last mass is a crank and no load."""
     parts = [ShaftPart(inertia=2.0), ShaftPart(stiffness=1e3), ShaftPart(cylinder=("one",))]
-    assert ShaftLine.of_parts(parts, ["one"]).load == 0
-    assert ShaftLine.of_parts(parts[::-1], ["one"]).load == 1
+    assert line_of(parts, ["one"]).load == 0
+    assert line_of(parts[::-1], ["one"]).load == 1

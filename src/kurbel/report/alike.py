@@ -4,18 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Hashable, Iterable, Sequence
-from dataclasses import fields, is_dataclass
 from itertools import groupby
-from typing import Any, TypeVar
+from typing import TypeVar
 
-import numpy as np
-
-from kurbel.machine import Cylinder
 from kurbel.report.tables import Part, Report
 
 Item = TypeVar("Item")
-_PLACE = ("name", "crank_position", "bank_angle", "axial_position", "counterweights")
-"""Keys of a cylinder that say where on the shaft it stands, and what the shaft carries there."""
 
 
 def together(names: Sequence[str]) -> str:
@@ -49,22 +43,6 @@ def gathered(items: Iterable[Item], equal: Callable[[Item, Item], bool]) -> list
         found = next((group for group in groups if equal(group[0], item)), None)
         groups.append([item]) if found is None else found.append(item)
     return groups
-
-
-def work_alike(one: Cylinder, other: Cylinder) -> bool:
-    """Whether two cylinders move and are pushed alike, wherever on the shaft they stand."""
-    keys = (field.name for field in fields(Cylinder) if field.name not in _PLACE)
-    return all(_same(getattr(one, key), getattr(other, key)) for key in keys)
-
-
-def _same(one: Any, other: Any) -> bool:
-    if one is other or type(one) is not type(other):
-        return one is other
-    if is_dataclass(one):
-        return all(_same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
-    if isinstance(one, tuple):
-        return len(one) == len(other) and all(map(_same, one, other))
-    return bool(np.array_equal(one, other))
 
 
 def told_once(report: Report) -> Report:
