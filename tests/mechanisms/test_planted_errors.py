@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 import pytest
 import test_every_mechanism as laws
+from _pytest.mark import ParameterSet
 
 SLIPS = [
     ("slider_crank", "rod_angle", "angle.sin - self.offset", "angle.sin + self.offset"),
@@ -33,10 +34,10 @@ SLIPS = [
     ("slotted_lever", "radial", "angle.sin", "angle.cos"),
     ("slotted_lever", "block_slope", "-self.crank", "self.crank"),
     ("ram", "lead", "cos - sin", "cos + sin"),
-    ("four_bar", "direction", "self.area * across - foot", "self.area * across + foot"),
-    ("four_bar", "slope", "+ a * (self.near", "- a * (self.near"),
-    ("four_bar", "turned", "lead - bearing", "lead + bearing"),
-    ("four_bar", "turned", "self.near - self", "self.near + self"),
+    ("four_bar_loop", "direction", "self.area * across - foot", "self.area * across + foot"),
+    ("four_bar_loop", "slope", "+ a * (self.near", "- a * (self.near"),
+    ("four_bar_loop", "turned", "lead - bearing", "lead + bearing"),
+    ("four_bar_loop", "turned", "self.near - self", "self.near + self"),
     ("four_bar", "coupler_force_factor", "1 / (", "-1 / ("),
     (
         "parallel_crank",
@@ -49,7 +50,7 @@ SLIPS = [
     ("parallel_crank", "coupler_force_factor", "angle.sin", "angle.cos"),
 ]
 """File, function, its text and the wrong one: signs, sine for cosine, factors."""
-SERVES = {"crank_formulas": "slider_crank", "ram": "slotted_lever"}
+SERVES = {"crank_formulas": "slider_crank", "ram": "slotted_lever", "four_bar_loop": "four_bar"}
 
 
 def planted(file: str, function: str, right: str, wrong: str) -> types.ModuleType:
@@ -80,7 +81,10 @@ def broken(file: str) -> Iterator[str]:
     """Yield the names of the laws that the machines of a file now break."""
     own = f"kurbel.mechanisms.{SERVES.get(file, file)}"
     for name, law in vars(laws).items():
-        marks = dict(mark.args for mark in getattr(law, "pytestmark", ()) if mark.name == "parametrize")
+        given = [mark.args for mark in getattr(law, "pytestmark", ()) if mark.name == "parametrize"]
+        marks = {
+            names: [one.values[0] if isinstance(one, ParameterSet) else one for one in every] for names, every in given
+        }
         if name.startswith("test_") and "machine" in marks:
             # anew, since some keep what they once computed
             marks["machine"] = [dataclasses.replace(one) for one in marks["machine"] if type(one).__module__ == own]
