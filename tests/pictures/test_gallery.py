@@ -40,7 +40,8 @@ def pictures_on(page: Path) -> list[str]:
 
 
 def words_in(svg: str) -> list[str]:
-    return ["".join(one.itertext()) for one in ElementTree.fromstring(svg).iter() if one.tag.endswith(("text", "title"))]
+    found = (one for one in ElementTree.fromstring(svg).iter() if one.tag.endswith(("text", "title")))
+    return ["".join(one.itertext()) for one in found]
 
 
 @pytest.mark.slow
