@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import BROKEN, DONE, NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import format_of, loaded, machine_file, width_option
+from kurbel.cli.exit_status import BROKEN, DONE
+from kurbel.cli.output_options import format_of, loaded, machine_file, output_option, width_option
 
 
-@click.command(short_help="Read and check a machine file and its limits.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
+@click.command(short_help="Read and check a machine file and its limits.")
 @machine_file
 @click.option(
     "--format",
@@ -17,7 +17,7 @@ from kurbel.cli.output_options import format_of, loaded, machine_file, width_opt
     type=click.Choice(["table", "json"]),
     help="json: every finding with its place. By the suffix of --output, or table, if not given.",
 )
-@click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
+@output_option
 @width_option
 def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: str | None, width: int | None) -> int:
     """Read the machine in FILE and say what will be computed, what is left out and why.

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import exit_statuses
-from kurbel.cli.output_options import Number, loaded, set_option, units_option
+from kurbel.cli.output_options import loaded, number_options, set_option, units_option
+from kurbel.cli.readings import number
 
 
-@click.command(short_help="Everything on one page of HTML; two machines side by side.", epilog=exit_statuses())
+@click.command(short_help="Everything on one page of HTML; two machines side by side.")
 @click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
 @set_option
 @click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
-@click.option("--step", type=Number(), default=15.0, metavar="DEGREES", help="Step of the tables; 15 if not given.")
+@click.option("--step", type=number, default=15.0, metavar="DEGREES", help="Step of the tables; 15 if not given.")
 @units_option
-@click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign.")
-@click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4 if not given.")
+@number_options
 def report(
     files: tuple[str, ...],
     overrides: tuple[str, ...],

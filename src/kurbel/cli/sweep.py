@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from kurbel.cli.completion import complete_override
-from kurbel.cli.exit_status import exit_statuses
-from kurbel.cli.output_options import Words, format_of, machine_file, stacked, units_option
+from kurbel.cli.output_options import format_of, machine_file, output_option, stacked, units_option
+from kurbel.cli.readings import words
 
 if TYPE_CHECKING:
     from kurbel.designs.chosen import Aim
@@ -36,19 +36,17 @@ _what_varies = stacked(
     click.option("--sobol", is_flag=True, help="The sequence of Sobol instead of a Latin hypercube."),
 )
 _what_is_told = stacked(
-    click.option("--columns", type=Words(), metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
+    click.option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
     click.option("--angles", "with_angles", is_flag=True, help="Beside every extreme the crank angle where it stands."),
     click.option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only rows with 'c_max < 5 m/s'."),
     click.option("--sort", metavar="ID", help="The smallest of this column first; -ID: the largest."),
     click.option("--top", type=click.IntRange(1), metavar="N", help="Only the first N rows of --sort."),
-    click.option(
-        "--pareto", type=Words(), metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."
-    ),
+    click.option("--pareto", type=words, metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."),
     click.option("--summary", is_flag=True, help="Quantiles, and rank correlation with every input, instead of rows."),
 )
 _where_it_goes = stacked(
     click.option("--format", "-f", "format", type=click.Choice(_FORMATS), help="By the suffix of --output, or table."),
-    click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."),
+    output_option,
     click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign."),
     click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4, and all in csv and json."),
     click.option("--resume", is_flag=True, help="Go on where the --output file of an interrupted run ends."),
@@ -65,7 +63,7 @@ _who_computes = stacked(
 )
 
 
-@click.command(short_help="Key values of many designs of a machine.", epilog=exit_statuses())
+@click.command(short_help="Key values of many designs of a machine.")
 @machine_file
 @_what_varies
 @_what_is_told

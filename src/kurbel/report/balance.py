@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -14,32 +14,22 @@ from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.case import Case
 
-_BOOK = ("F_x_book", "F_y_book", "M_x_book", "M_y_book")
 
+def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Report:
+    """Return what is free and what balances it; orders_only: no columns over the crank angle.
 
-def balance_report(
-    case: Case,
-    angles: Sequence[float],
-    columns: Sequence[str] | None,
-    system: str,
-    compare: bool = False,
-    orders_only: bool = False,
-) -> Report:
-    """Return what is free and what balances it; angles, columns, system: see `Frame`.
-
-    compare: with what the acceleration of first order gives, beside the true figures; orders_only: no columns over the
-    crank angle. Raises UsageError where no masses move.
+    Raises UsageError where no masses move.
     """
+    compare = frame.compare
     with np.errstate(all="ignore"):  # what overflows is refused, by name
         (whole,) = subjects(case, compare)
-        tables = tuple(balance_tables(case.balance, system, compare))
+        tables = tuple(balance_tables(case.balance, frame.system, compare))
         whole = whole._replace(place_tables=tables, at=None if orders_only or case.machine.speed is None else whole.at)
-    frame = Frame("balance", angles, columns, system, _BOOK if compare else ())
     return frame.report(case.machine, "Massenausgleich", (), whole, _notes(case.balance))
 
 
 def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
-    """Yield the whole machine; compare: see `balance_report`."""
+    """Yield the whole machine; compare: with what the acceleration of first order gives, beside the true figures."""
     machine = case.machine
     balance = case.balance
     yield Subject(

@@ -22,7 +22,7 @@ _NOTHING = 1e-6
 
 
 def balance_tables(balance: MachineBalance, system: str, compare: bool) -> Iterator[PlaceTable]:
-    """Yield what there is of the tables; compare: see `balance_report`."""
+    """Yield what there is of the tables; compare: see `kurbel.report.balance.subjects`."""
     if balance.omega is not None:
         square = balance.omega * balance.omega
         orders = Column("order", "n", "n", "", balance.free.orders, ORDERS["order"].text, alone=_DIGITS)

@@ -22,19 +22,19 @@ if TYPE_CHECKING:
     from kurbel.machine import Machine
 
 
-def harmonics_report(case: Case, orders: Sequence[float] | None, speeds: Sequence[float] | None, system: str) -> Report:
-    """Return the orders of the turning effort; orders: those to tell, None for all up to 24; system: see `Frame`.
+def harmonics_report(
+    case: Case, frame: Frame, orders: Sequence[float] | None = None, speeds: Sequence[float] | None = None
+) -> Report:
+    """Return the orders of the turning effort; orders: those to tell, None for all up to 24.
 
     speeds: in revolutions per second, at which the orders of the whole machine are told besides. Raises UsageError
     where nothing turns the shaft.
     """
     with np.errstate(all="ignore"):  # what overflows is refused, by name
         found = case.harmonics(orders_of(case.machine, orders))
-        each = [_cylinder(case.machine, one, system) for one in found.cylinders]
-        whole = _whole(case, found, tuple(_speed_tables(case.machine, found, speeds, system)), system)
-    frame = Frame("harmonics", (), None, system)
-    report = frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
-    return report
+        each = [_cylinder(case.machine, one, frame.system) for one in found.cylinders]
+        whole = _whole(case, found, tuple(_speed_tables(case.machine, found, speeds, frame.system)), frame.system)
+    return frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
 
 
 def _cylinder(machine: Machine, one: CylinderOrders, system: str) -> Subject:

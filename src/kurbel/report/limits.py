@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from importlib import import_module
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
 from kurbel.numerics.extreme import Extreme
+from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
 
 Found = tuple[str, float]
@@ -38,7 +38,7 @@ def commands_for(machine: Machine, name: str) -> tuple[str, ...]:
 
 
 def _values(case: Case, command: str, name: str) -> Iterator[Found]:
-    for subject in import_module(f"kurbel.report.{command}").subjects(case):
+    for subject in subjects_of(case, command):
         quantity = subject.lists.key_values(command).get(name)
         value = quantity and subject.answer(quantity)
         if isinstance(value, (Extreme, float)):
