@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -81,33 +82,8 @@ def sweep(**options: Any) -> None:
     asked.run()
 
 
-class _Asked(NamedTuple):
+class _Asked(SimpleNamespace):
     """The options, by the names above."""
-
-    file: str
-    overrides: tuple[str, ...]
-    vary: tuple[str, ...]
-    side_by_side: bool
-    sample: int | None
-    seed: int
-    sobol: bool
-    columns: tuple[str, ...] | None
-    with_angles: bool
-    conditions: tuple[str, ...]
-    sort: str | None
-    top: int | None
-    pareto: tuple[str, ...] | None
-    summary: bool
-    units: str | None
-    format: str | None
-    file_name: str | None
-    decimal: str
-    digits: int | None
-    resume: bool
-    shard: str | None
-    jobs: int
-    dask: str | None
-    yes: bool
 
     @property
     def _look(self) -> Look:
