@@ -23,7 +23,7 @@ from kurbel.machine_file import load, loads
 from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.check import checked
-from kurbel.report.plausibility import brake_warnings, trace_warnings
+from kurbel.report.warnings import brake_warnings, trace_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from machines import one_cylinder

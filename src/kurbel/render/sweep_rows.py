@@ -12,8 +12,6 @@ from kurbel.render.numbers import exact, single
 if TYPE_CHECKING:
     from kurbel.render import Look
 
-FORMATS = ("table", "csv", "json", "markdown", "parquet")
-
 
 class Titles(NamedTuple):
     """Names of the columns with their units, in order, without those of the row itself.
