@@ -47,7 +47,7 @@ def test_a_crank_that_leads_by_90_degrees_is_ahead_by_90_degrees() -> None:
 
 
 def test_cylinders_that_work_alike_give_what_each_gives_by_itself() -> None:
-    """They are asked as one, each at its own angles; a third that is heavier, and one on the next bank, by themselves."""
+    """They are asked as one, each at its own angles; one that is heavier, and one on the next bank, by themselves."""
     heavier = replace(ENGINE, masses=Masses(900.0), crank_position=200.0)
     across = replace(ENGINE, bank_angle=60.0, crank_position=260.0)
     machine = turning(ENGINE, replace(ENGINE, crank_position=90.0), heavier, across, efficiency=0.9)
