@@ -132,6 +132,7 @@ class _Asked(NamedTuple):
         named = self.file_name not in (None, "-")
         for wrong, message in (
             (self.top and not self.sort, "--top N takes the first rows of --sort ID; give --sort too."),
+            (self.sobol and not self.sample, "--sobol is a way to draw a sample; give --sample N too."),
             (self.resume and not named, "--resume goes on in a file; give --output FILE."),
             (self.resume and self._written not in ("csv", "json"), "--resume goes on in csv or json lines."),
             (self.resume and not self._in_order, "--resume cannot go on where rows are sorted, chosen or summed up."),
