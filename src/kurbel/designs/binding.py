@@ -3,8 +3,6 @@
 Every record that is made anew keeps its rules as when it is read; what a row breaks is told as `--set` would tell it.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple

@@ -5,8 +5,6 @@ beside the value, extrapolated to none (Richardson). Jets carry slopes by the cr
 Where an answer bends over the width of an uncertainty, so that its first order does not hold, a sample tells instead.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from statistics import NormalDist
