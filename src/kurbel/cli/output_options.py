@@ -1,7 +1,5 @@
 """Options shared by the commands that print a table, and what they mean."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -11,11 +9,11 @@ import click
 from kurbel.cli import readings
 from kurbel.cli.completion import complete_columns, complete_cylinder, complete_override
 from kurbel.render import FORMATS, LAYOUTS, Look
+from kurbel.report.tables import Report
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
     from kurbel.report.frame import Frame
-    from kurbel.report.tables import Report
     from kurbel.solver.case import Case
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -203,7 +201,7 @@ def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts:
     return angles
 
 
-def loaded(file: str, overrides: Sequence[str], *outputs: str | None) -> Machine:
+def loaded(file: str, overrides: Sequence[str], *outputs: str | None) -> "Machine":
     """Read the machine, with these values over those of its file.
 
     Raises UsageError where an output would overwrite its file, or a trace that it names.
@@ -240,13 +238,13 @@ class Asked(NamedTuple):
     over: str | None = None
     compare: bool = False
 
-    def case(self) -> Case:
+    def case(self) -> "Case":
         """Read the machine and return it with its results, none of which is computed yet."""
         from kurbel.solver.case import Case
 
         return Case(loaded(self.file, self.overrides, self.output.file_name))
 
-    def frame(self, command: str, end: float, parts: int = 1) -> Frame:
+    def frame(self, command: str, end: float, parts: int = 1) -> "Frame":
         """Return the frame of the report: rows from 0 to `end` degrees, for each of so many parts, or where wanted."""
         from kurbel.report.frame import Frame
 
@@ -268,7 +266,7 @@ class Asked(NamedTuple):
         # where a force has a value there is a motion to tell, too
         return Place.parsed(self.where, "forces" if command == "motion" else command, end).angles
 
-    def write(self, report: Report, case: Case | None = None, spreads: Spreads = ()) -> None:
+    def write(self, report: Report, case: "Case | None" = None, spreads: Spreads = ()) -> None:
         """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""
         if self.key_values_only and self.columns:
             raise click.UsageError("--columns names columns of the table that --key-values leaves out.")

@@ -1,18 +1,14 @@
 """A report as documents have it, Markdown, HTML and LaTeX: one walk through it, and what each of them must write."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
+from kurbel.render import Look
 from kurbel.render.numbers import angle
 from kurbel.render.prose import number_text, sentence_text
 from kurbel.render.sheet import part_name, sheets
 from kurbel.report.alike import told_once
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import KeyValue, Report
+from kurbel.report.tables import KeyValue, Report
 
 ON_PAPER = 9
 """Columns of a table beside that of the angle: what a page of A4 holds; more make a table of their own."""

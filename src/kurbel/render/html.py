@@ -1,18 +1,14 @@
 """HTML: a page of its own for one report, and the tables that longer pages and notebooks are made of."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from html import escape
 from itertools import chain, cycle, repeat
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from kurbel.render import Look
 from kurbel.render.document import KEY_VALUE_HEADS, ON_PAPER, Table, document, key_value_cells
 from kurbel.render.sheet import MARK
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import KeyValue, Report
+from kurbel.report.tables import KeyValue, Report
 
 INK, PAPER, FAINT, RULE, SHADE = (
     ("#1a1a1a", "#e8e8e8"),

@@ -1,7 +1,5 @@
 """JSON as the contract says: one object, numbers in full, missing values null."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
@@ -9,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel import __version__
 from kurbel.errors import UsageError
+from kurbel.render import Look
 from kurbel.render.numbers import rounded, whole_if_integral
+from kurbel.report.tables import Column, KeyValue, Part, Provenance, Report, Value
 
 if TYPE_CHECKING:
-    from kurbel.render import Look
     from kurbel.report.findings import Findings
-    from kurbel.report.tables import Column, KeyValue, Part, Provenance, Report, Value
 
 FORMAT = 1
 """Number of the output format; it changes when a script that reads it would break."""
@@ -27,7 +25,7 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
     return _lines(_report(report, look.digits), look)
 
 
-def findings_json(found: Findings, look: Look) -> Iterator[str]:
+def findings_json(found: "Findings", look: Look) -> Iterator[str]:
     """Return a check as one JSON object in pieces, a line for every finding."""
     content = {
         **_head("check"),

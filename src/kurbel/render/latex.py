@@ -1,17 +1,13 @@
 r"""LaTeX: tables in the manner of booktabs, to be \input into a document that has \usepackage{booktabs, longtable}."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from kurbel.render import Look
 from kurbel.render.document import KEY_VALUE_HEADS, ON_PAPER, Table, document, key_value_cells
 from kurbel.render.sheet import MARK
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import KeyValue, Report
+from kurbel.report.tables import KeyValue, Report
 
 _GREEK = {
     "φ": "varphi", "ψ": "psi", "θ": "theta", "ω": "omega", "δ": "delta", "λ": "lambda", "μ": "mu", "η": "eta",

@@ -1,17 +1,13 @@
 """Markdown: one row per crank angle, key values as a second table, for reports and issues."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from kurbel.render import Look
 from kurbel.render.document import KEY_VALUE_HEADS, Table, document, key_value_cells
 from kurbel.render.sheet import MARK
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import KeyValue, Report
+from kurbel.report.tables import KeyValue, Report
 
 
 def markdown(report: Report, look: Look) -> Iterator[str]:

@@ -1,7 +1,5 @@
 """How key values stand against the limits and the expectations of a machine file."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple, Union
@@ -180,7 +178,7 @@ def commands_for(machine: Machine, name: str) -> tuple[str, ...]:
     return (first, *(command for command in others if command == "flywheel" and not alike))
 
 
-def _values(case: Case, command: str, name: str) -> Iterator[Found]:
+def _values(case: "Case", command: str, name: str) -> Iterator[Found]:
     from kurbel.numerics.extreme import Extreme
     from kurbel.report.commands import subjects_of
 

@@ -1,15 +1,13 @@
 """The report of `kurbel report`: all that a machine has, section by section; or several machines side by side."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
-from kurbel.machine.alike import work_alike
-from kurbel.report.alike import gathered, together
+from kurbel.machine.alike import gathered, work_alike
+from kurbel.report.alike import together
 from kurbel.report.angles import stepped
 from kurbel.report.check import Checked, checked
 from kurbel.report.commands import report_of
