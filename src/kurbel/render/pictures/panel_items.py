@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 Scales = tuple[Scale, Scale]
 _KINDS = {"faint": "f", "guide": "f", "member": "m", "block": "b"}
 _MOST_LABELS = 12
+_BESIDE = 14.0
+"""Room that a picture has to the right of its panel."""
 
 
 def panel_items(panel: Panel, frame: Box, scales: Scales, look: Look) -> Iterator[Item]:
@@ -63,13 +65,23 @@ def _grid(panel: Panel, scales: Scales, look: Look) -> Iterator[Item]:
     lines += [((x.start, y.place(v)), (x.end, y.place(v))) for v in up]
     yield Line(tuple(lines), "g")
     yield Line((((x.start, y.end), (x.start, y.start), (x.end, y.start)),), "x")
-    for value in across:
-        text = panel.x.names[int(value)] if panel.x.names else _at_tick(value, across, panel.x.log, look)
-        yield Text(x.place(value), y.start + 14, text, "t", "middle")
+    texts = [panel.x.names[int(v)] if panel.x.names else _at_tick(v, across, panel.x.log, look) for v in across]
+    yield from _along([float(x.place(v)) for v in across], texts, x.end + _BESIDE, y.start + 14)
     for value in up:
         text = panel.y.names[int(value)] if panel.y.names else _at_tick(value, up, panel.y.log, look)
         yield Text(x.start - 6, y.place(value) + 3.5, text, "t", "end")
     yield Text(x.end, y.start + 26, axis_text(panel.x.name, panel.x.unit, look), "t", "end")
+
+
+def _along(places: list[float], texts: list[str], edge: float, base: float) -> Iterator[Item]:
+    """Yield what stands below the ticks, inside the edge of the picture; where two meet, the nearer to an end stands."""
+    taken: list[tuple[float, float]] = []
+    for place, text in sorted(zip(places, texts), key=lambda one: min(one[0] - places[0], places[-1] - one[0])):
+        half = CHARACTER * cells(text) / 2
+        middle = min(place, edge - half)
+        if all(middle + half <= left or middle - half >= right for left, right in taken):
+            taken.append((middle - half, middle + half))
+            yield Text(middle, base, text, "t", "middle")
 
 
 def _at_tick(value: float, values: list[float], log: bool, look: Look) -> str:
