@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Number, Physical
 from kurbel.declared.keys import Key, Keys
@@ -14,7 +15,6 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
-from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, where
 from kurbel.numerics.extreme import Extreme
