@@ -8,7 +8,7 @@ from kurbel.cli.exit_status import BROKEN, NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import Output, loaded, output_options, set_option
 
 
-@click.command(short_help="Error against run time; stiff and extreme cases.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
+@click.command(epilog=exit_statuses(BROKEN, NO_SOLUTION))
 @click.argument("file", metavar="[FILE]", required=False, type=click.Path(allow_dash=True))
 @set_option
 @click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")

@@ -8,7 +8,7 @@ from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import Asked, machine_table
 
 
-@click.command(short_help="Loads on pins and main bearings.", epilog=exit_statuses(NO_SOLUTION))
+@click.command(epilog=exit_statuses(NO_SOLUTION))
 @machine_table
 def bearings(asked: Asked) -> None:
     """Print the loads on crank pins, crosshead pins and main bearings over the cycle.

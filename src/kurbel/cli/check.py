@@ -8,7 +8,7 @@ from kurbel.cli.exit_status import BROKEN, DONE, NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import format_of, loaded, machine_file, width_option
 
 
-@click.command(short_help="Read and check a machine file and its limits.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
+@click.command(epilog=exit_statuses(BROKEN, NO_SOLUTION))
 @machine_file
 @click.option(
     "--format",

@@ -9,7 +9,7 @@ from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty
 from kurbel.cli.row_options import AskedRows, where_option
 
 
-@click.command(short_help="Turning effort, flywheel and speed line of the machine.", epilog=exit_statuses(NO_SOLUTION))
+@click.command(epilog=exit_statuses(NO_SOLUTION))
 @machine_table
 @where_option
 @uncertainty_option

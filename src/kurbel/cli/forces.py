@@ -9,7 +9,7 @@ from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty
 from kurbel.cli.row_options import AskedRows, row_options
 
 
-@click.command(short_help="Forces, work and friction loss of every cylinder.", epilog=exit_statuses(NO_SOLUTION))
+@click.command(epilog=exit_statuses(NO_SOLUTION))
 @machine_table
 @uncertainty_option
 @row_options

@@ -8,7 +8,7 @@ from kurbel.cli.exit_status import exit_statuses
 from kurbel.cli.output_options import Number, Output, output_options
 
 
-@click.command(short_help="Body on an inclined plane; needs no machine file.", epilog=exit_statuses())
+@click.command(epilog=exit_statuses())
 @click.option("--incline", type=Number(), required=True, metavar="DEGREES", help="Plane against the horizontal.")
 @click.option("--coefficient", type=Number(), required=True, metavar="F", help="Coefficient of friction, such as 0.1.")
 @click.option(

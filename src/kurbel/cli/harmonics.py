@@ -9,7 +9,7 @@ from kurbel.cli.order_options import orders_option, speeds_option
 from kurbel.cli.output_options import Asked, machine_places
 
 
-@click.command(short_help="Orders of the turning effort, gas and inertia apart.", epilog=exit_statuses())
+@click.command(epilog=exit_statuses())
 @machine_places
 @orders_option
 @speeds_option

@@ -9,7 +9,7 @@ from kurbel.cli.output_options import Asked, machine_table
 from kurbel.cli.row_options import AskedRows, row_options
 
 
-@click.command(short_help="Displacement, velocity, acceleration of any mechanism.", epilog=exit_statuses())
+@click.command(epilog=exit_statuses())
 @machine_table
 @row_options
 def motion(asked: Asked, rows: AskedRows) -> None:

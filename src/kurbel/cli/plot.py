@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kurbel.solver.case import Case
 
 
-@click.command(short_help="Pictures, in the terminal or as SVG, PNG, PDF.", epilog=exit_statuses(NO_SOLUTION))
+@click.command(epilog=exit_statuses(NO_SOLUTION))
 @machine_file
 @click.argument("names", metavar="[PICTURE]...", nargs=-1, shell_complete=complete_picture)
 @click.option("--list", "listed", is_flag=True, help="Say which pictures this machine has.")

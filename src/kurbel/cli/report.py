@@ -8,7 +8,7 @@ from kurbel.cli.exit_status import exit_statuses
 from kurbel.cli.output_options import Number, loaded, set_option, units_option
 
 
-@click.command(short_help="Everything on one page of HTML; two machines side by side.", epilog=exit_statuses())
+@click.command(epilog=exit_statuses())
 @click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
 @set_option
 @click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")

@@ -8,7 +8,7 @@ from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option
 
 
-@click.command(short_help="Bearing forces and stresses of the crankshaft.", epilog=exit_statuses(NO_SOLUTION))
+@click.command(epilog=exit_statuses(NO_SOLUTION))
 @machine_table
 @uncertainty_option
 @click.option("--places", "places_only", is_flag=True, help="Only the stresses place by place; as csv one line each.")

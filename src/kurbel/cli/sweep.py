@@ -63,7 +63,7 @@ _who_computes = stacked(
 )
 
 
-@click.command(short_help="Key values of many designs of a machine.", epilog=exit_statuses())
+@click.command(epilog=exit_statuses())
 @machine_file
 @_what_varies
 @_what_is_told

@@ -10,7 +10,7 @@ from kurbel.cli.exit_status import exit_statuses
 from kurbel.cli.output_options import Number, Output, Words, angle_options, crank_angles, output_options, units_option
 
 
-@click.command(short_help="Zusammenstellung 112 for any L/R; needs no machine file.", epilog=exit_statuses())
+@click.command(epilog=exit_statuses())
 @click.option(
     "--ratio",
     "ratios",

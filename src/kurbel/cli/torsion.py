@@ -9,7 +9,7 @@ from kurbel.cli.order_options import orders_option, speeds_option
 from kurbel.cli.output_options import Asked, machine_table
 
 
-@click.command(short_help="Torsional vibration of the shaft line.", epilog=exit_statuses(NO_SOLUTION))
+@click.command(epilog=exit_statuses(NO_SOLUTION))
 @machine_table
 @orders_option
 @speeds_option
