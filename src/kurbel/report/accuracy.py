@@ -61,7 +61,7 @@ def _measured(scene: Scene, quick: bool) -> Measured:
         tuple(lacking),
         tuple(model_errors(machine)),
         tuple(data_errors(machine)),
-        tuple(savings(machine, everything, Patience(5, 0.1) if quick else Patience())) if worth else (),
+        tuple(savings(machine, everything, Patience.of(quick))) if worth else (),
     )
 
 
