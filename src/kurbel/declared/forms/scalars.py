@@ -9,12 +9,13 @@ from functools import cache
 from operator import ge, gt, le, lt
 from typing import Any, NoReturn
 
-from kurbel.declared.bounds import SIZES, out_of_size, range_of
+from kurbel.declared.bounds import out_of_size, range_of
 from kurbel.declared.keys import Form, Schema
+from kurbel.declared.kinds import KINDS
 from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio, plain
 from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import example, parse_quantity, unit_factor, unit_names
+from kurbel.declared.units import example, parse_quantity, unit_example, unit_factor, unit_names
 from kurbel.errors import Fault, Path, RuleError, UnitError
 from kurbel.near_words import did_you_mean
 
@@ -162,7 +163,7 @@ class Number(_Bounded):
         return "5" if (self.above or 0) >= 1 else "0.1"
 
     def schema(self, definitions: Schema) -> Schema:
-        largest = SIZES["ratio"][1]
+        largest = KINDS["ratio"].largest
         bounds = {
             "exclusiveMinimum": self.above,
             "minimum": -largest if self.least is None else self.least,
@@ -314,7 +315,7 @@ class UnitName(Scalar):
         return f"a unit of {self.kind}, such as '{self.example()}'"
 
     def example(self) -> str:
-        return example(self.kind).split(" ", 1)[1]
+        return unit_example(self.kind)
 
     def schema(self, definitions: Schema) -> Schema:
         return {"type": "string", "pattern": f"^\\s*{_units(self.kind)}\\s*$"}
