@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from statistics import NormalDist
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -28,6 +28,9 @@ from kurbel.machine_file.source import Source, decode
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
+
+if TYPE_CHECKING:
+    from kurbel.accuracy.inexact import Difference
 
 SAMPLE, SLOW_SAMPLE = 2000, 200
 """Machines that are drawn where the first order does not hold: side by side, and where each is answered alone."""
@@ -164,24 +167,59 @@ def with_uncertainty(report: Report, case: Case, more: Sequence[tuple[str, str]]
 
     Raises UsageError, as `Uncertainty`.
     """
-    spreads = tuple((dict(case.machine.uncertainty) | dict(more)).items())
-    origin = case.machine.origin
-    if not spreads or origin is None:
+    uncertainty = _given(case.machine, more)
+    if uncertainty is None:
         return report
-    import os
-
-    source = decode(origin.name, origin.content, os.path.dirname(origin.name))
-    uncertainty = Uncertainty(source, origin.overrides, spreads)
-    asked = [
-        Answer(quantity, report.command, subject.name)
-        for subject in subjects(case, report.command)
-        for quantity, _ in subject.key_values(report.command)
-        if not (quantity.listed or quantity.residual)
-    ]
-    found = uncertainty.of(asked)
+    found = uncertainty.of(_asked(case, report.command))
     parts = [_with_table(part, found, uncertainty.keys, system) for part in report.all_parts]
     last = parts.pop() if report.whole else None
     return report._replace(parts=tuple(parts), whole=last, notes=(*report.notes, *_notes(found)))
+
+
+_COMPARED = (("forces", ("c_max", "b_max", "work", "T_max")), ("flywheel", ("dE",)))
+"""Command -> ids of the quantities whose other errors stand beside those of the data."""
+
+
+def data_uncertainty(machine: Machine) -> tuple[Difference, ...]:
+    """Return what the uncertainties in a machine's file make of motion, work and torques, relatively.
+
+    Of the first cylinder and of the whole machine. Raises UsageError, as `Uncertainty`.
+    """
+    from kurbel.accuracy.inexact import Difference
+
+    uncertainty = _given(machine)
+    if uncertainty is None:
+        return ()
+    case = Case(machine)
+    asked = [one for command, ids in _COMPARED for one in _asked(case, command) if one.quantity.id in ids]
+    first = [one for one in asked if one.subject in (asked[0].subject, "whole machine")]
+    found = [one for one in uncertainty.of(first) if one.spread > _NOISE * abs(one.value)]
+    return tuple(
+        Difference(one.answer.quantity.symbol, "standard uncertainties of the file", one.spread / abs(one.value))
+        for one in found
+        if one.value
+    )
+
+
+def _given(machine: Machine, more: Sequence[tuple[str, str]] = ()) -> Uncertainty | None:
+    """Return the uncertainties of a machine's file, and those that no file gives; None where there are none."""
+    spreads = tuple((dict(machine.uncertainty) | dict(more)).items())
+    origin = machine.origin
+    if not spreads or origin is None:
+        return None
+    import os
+
+    return Uncertainty(decode(origin.name, origin.content, os.path.dirname(origin.name)), origin.overrides, spreads)
+
+
+def _asked(case: Case, command: str) -> list[Answer]:
+    """Return the key values of a command that are numbers which the inputs move."""
+    return [
+        Answer(quantity, command, subject.name)
+        for subject in subjects(case, command)
+        for quantity, _ in subject.key_values(command)
+        if not (quantity.listed or quantity.residual)
+    ]
 
 
 def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], system: str) -> Part:

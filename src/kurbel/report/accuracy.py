@@ -34,11 +34,14 @@ class Measured(NamedTuple):
     savings: tuple[Saving, ...]
 
 
-def accuracy_report(machine: Machine | None, quick: bool, loads: Loads) -> Report:
-    """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and points."""
+def accuracy_report(machine: Machine | None, quick: bool, loads: Loads, uncertain: Sequence[Difference] = ()) -> Report:
+    """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and points.
+
+    uncertain: what the uncertainties of the machine's data make of its quantities.
+    """
     scenes = built_in(quick, loads) if machine is None else [Scene(machine)]
     with np.errstate(all="ignore"):
-        found = [_measured(scene, quick) for scene in scenes]
+        found = [_measured(scene, quick, uncertain) for scene in scenes]
     name = "built-in scenes" if machine is None else machine.name
     parts = tuple(
         Part(one.name, (), left_out=tuple(LeftOut(*lack) for lack in one.lacking), place_tables=tuple(_tables(one)))
@@ -51,7 +54,7 @@ def accuracy_report(machine: Machine | None, quick: bool, loads: Loads) -> Repor
     return report if machine is None else report._replace(provenance=provenance(machine))
 
 
-def _measured(scene: Scene, quick: bool) -> Measured:
+def _measured(scene: Scene, quick: bool, uncertain: Sequence[Difference]) -> Measured:
     rows, lacking = examined(scene, quick)
     machine = scene.machine
     worth = bool(machine.cylinders) and any(one.masses or one.pistons for one in machine.cylinders)
@@ -60,7 +63,7 @@ def _measured(scene: Scene, quick: bool) -> Measured:
         tuple(rows),
         tuple(lacking),
         tuple(model_errors(machine)),
-        tuple(data_errors(machine)),
+        (*data_errors(machine), *uncertain),
         tuple(savings(machine, everything, Patience.of(quick))) if worth else (),
     )
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import groupby
 from typing import TypeVar
 
+from kurbel.machine.alike import gathered
 from kurbel.report.tables import Part, Report
 
 Item = TypeVar("Item")
@@ -34,15 +35,6 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
     for item in items:
         groups.setdefault(key(item), []).append(item)
     return list(groups.values())
-
-
-def gathered(items: Iterable[Item], equal: Callable[[Item, Item], bool]) -> list[list[Item]]:
-    """Return the items in groups of equal ones, in the order of their first ones."""
-    groups: list[list[Item]] = []
-    for item in items:
-        found = next((group for group in groups if equal(group[0], item)), None)
-        groups.append([item]) if found is None else found.append(item)
-    return groups
 
 
 def told_once(report: Report) -> Report:

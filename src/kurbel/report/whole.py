@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
-from kurbel.machine.alike import work_alike
-from kurbel.report.alike import gathered, together
+from kurbel.machine.alike import gathered, work_alike
+from kurbel.report.alike import together
 from kurbel.report.angles import stepped
 from kurbel.report.check import Checked, checked
 from kurbel.report.document import Document, Grid, Item, Section

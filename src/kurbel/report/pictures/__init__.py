@@ -11,9 +11,9 @@ import numpy as np
 
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.machine.alike import work_alike
+from kurbel.machine.alike import gathered, work_alike
 from kurbel.near_words import did_you_mean
-from kurbel.report.alike import gathered, together
+from kurbel.report.alike import together
 from kurbel.report.pictures.picture import Panel, Picture
 from kurbel.report.tables import cylinder_meant
 

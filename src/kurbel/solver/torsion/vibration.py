@@ -87,7 +87,9 @@ class ShaftVibration(Results):
         """Return J in kg m²: what is given, the flywheel, and the mean of what the parts of the cylinders reduce to."""
         wheel = self.machine.flywheel.inertia if self.machine.flywheel else None
         moving = [self._forces[name] for name in mass.cylinders if self._forces[name].drive.cylinder.masses]
-        reduced = (MovingInertia([CylinderEffort(one, self.cycle, reduced_inertia)], self.cycle).mean for one in moving)
+        reduced = (
+            MovingInertia([CylinderEffort((one,), self.cycle, reduced_inertia)], self.cycle).mean for one in moving
+        )
         inertia = math.fsum((mass.inertia, mass.flywheel * (wheel or 0.0), *reduced))
         if not inertia > 0:
             raise UsageError(f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'")
