@@ -52,7 +52,7 @@ def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
 
 
 def _left_out(balance: MachineBalance, compare: bool) -> Iterable[LeftOut]:
-    moving = {throw.drive.name for throw in balance.throws}
+    moving = {throw.name for throw in balance.throws}
     for cylinder in balance.machine.cylinders:
         if cylinder.name not in moving:
             yield LeftOut(f"inertia of {cylinder.name}", "no masses given")
@@ -65,7 +65,7 @@ def _left_out(balance: MachineBalance, compare: bool) -> Iterable[LeftOut]:
 
 
 def _without_place(balance: MachineBalance) -> Iterable[str]:
-    yield from (throw.drive.name for throw in balance.throws if throw.place is None)
+    yield from (throw.name for throw in balance.throws if throw.place is None)
     if any(one.place is None for one in balance.loose_counterweights):
         yield "counterweights of the machine"
     if any(one.axial_position is None for one in balance.machine.balance_shafts):

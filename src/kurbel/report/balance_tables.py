@@ -13,7 +13,7 @@ from kurbel.report.tables import Column, PlaceTable
 from kurbel.solver.balance.circles import Circles
 from kurbel.solver.balance.free import Free
 from kurbel.solver.balance.machine_balance import MachineBalance
-from kurbel.solver.balance.weights import Weight
+from kurbel.solver.shaft.weights import Weight
 
 _Entry = tuple[Quantity, "list[float | None]"]
 _DIGITS = 4

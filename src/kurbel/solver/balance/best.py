@@ -9,7 +9,7 @@ import numpy as np
 
 from kurbel.numerics.enclosing import Circle, PlaneCurve, carried, smallest_circle
 from kurbel.solver.balance.circles import Circles
-from kurbel.solver.balance.weights import Weight
+from kurbel.solver.shaft.weights import Weight
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, ComplexArray

@@ -21,9 +21,9 @@ from kurbel.solver.balance.free import Free
 from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.products import Products, of_throws
 from kurbel.solver.balance.rolling import rolling_moment, swirls
-from kurbel.solver.balance.weights import Throw, Weight, counterweights_of, shafts_of
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Results, crank_angles
+from kurbel.solver.shaft.weights import OwnThrow, Weight, counterweights_of, middle_of, shafts_of, wheels_of
 from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.torques import Sum
 
@@ -47,12 +47,13 @@ class MachineBalance(Results):
         self.machine = machine
         self._cylinders = cylinders
         first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
-        self.throws = tuple(Throw(one.drive, first) for one in cylinders if one.drive.cylinder.masses)
-        if not any(one.drive.mass or one.rotating for one in self.throws):
+        own = (OwnThrow(number, one, first) for number, one in enumerate(machine.cylinders) if one.masses)
+        self.throws = tuple(own)
+        if not any(one.mass or one.rotating for one in self.throws):
             raise UsageError(f"{machine.name}: nothing moves that could be balanced; give 'masses' to its cylinders")
         for throw in self.throws:
-            if throw.drive.mechanism.quick_return:
-                raise UsageError(f"{throw.drive.name}: the masses of what drives a ram back quickly are not known")
+            if throw.mechanism.quick_return:
+                raise UsageError(f"{throw.name}: the masses of what drives a ram back quickly are not known")
         self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
 
     @property
@@ -77,18 +78,12 @@ class MachineBalance(Results):
     @cached_property
     def z_0(self) -> float | None:
         """Place in m from where moments are taken: the one given, or the middle of the outer cylinders."""
-        places = [one.axial_position for one in self.machine.cylinders if one.axial_position is not None]
-        given = self.machine.moment_reference
-        return given if given is not None or not places else (min(places) + max(places)) / 2
+        return middle_of(self.machine)
 
     @cached_property
     def wheels(self) -> tuple[float, ...]:
         """Places in m of the counterweights in the wheels of a locomotive; of another machine none."""
-        locomotive = self.machine.locomotive
-        if locomotive is None:
-            return ()
-        middle, half = self.z_0 or 0.0, locomotive.wheel_distance / 2
-        return middle - half, middle + half
+        return wheels_of(self.machine)
 
     @property
     def loose_counterweights(self) -> tuple[Weight, ...]:
@@ -98,7 +93,7 @@ class MachineBalance(Results):
     @cached_property
     def counterweights(self) -> tuple[Weight, ...]:
         """The counterweights of the machine file."""
-        return tuple(counterweights_of(self.machine, self.throws, self.wheels))
+        return tuple(counterweights_of(self.machine, self.throws))
 
     @cached_property
     def _throws_alone(self) -> Products:
@@ -222,9 +217,9 @@ class MachineBalance(Results):
         """Share of the reciprocating mass with which a counterweight opposite the only throw is the least one's."""
         (throw, *others) = self.throws
         opposite = -self.least.weight / throw.weight(1.0).product
-        if others or not throw.drive.mass or abs(opposite.imag) > _REAL * abs(opposite):
+        if others or not throw.mass or abs(opposite.imag) > _REAL * abs(opposite):
             return None
-        return (opposite.real - throw.rotating) / throw.drive.mass
+        return (opposite.real - throw.rotating) / throw.mass
 
     @cached_property
     def planes(self) -> tuple[float, ...]:
