@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Physical
-from kurbel.declared.keys import Key, Keys, check
+from kurbel.declared.forms import positive
+from kurbel.declared.keys import Keys, check
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import KeyOffer, Offer, own_force, own_motion
@@ -14,15 +14,11 @@ from kurbel.numerics.arithmetic import where
 from kurbel.numerics.extreme import Extreme
 
 PIN_KEYS: Keys = {
-    "pin_diameter": Key(
-        Physical("length", above=0),
-        "Diameter of the crank pin; needs `pin_length`",
-        "d_z",
-        absent="no pin pressure",
-        needs="pin_length",
+    "pin_diameter": positive(
+        "length", "Diameter of the crank pin; needs `pin_length`", "d_z", absent="no pin pressure", needs="pin_length"
     ),
-    "pin_length": Key(
-        Physical("length", above=0),
+    "pin_length": positive(
+        "length",
         "Length of the crank pin in its block; needs `pin_diameter`",
         "l_z",
         absent="same",

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Physical
-from kurbel.declared.keys import Key, Keys
+from kurbel.declared.forms import positive
+from kurbel.declared.keys import Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
@@ -77,10 +77,10 @@ class FourBar(Mechanism):
     )
     far_pin: ClassVar[str] = "rocker_pin"
     KEYS: ClassVar[Keys] = {
-        "crank": Key(Physical("length", above=0), "Crank radius", "a", required=True),
-        "coupler": Key(Physical("length", above=0), "Length of the coupler", "b", required=True),
-        "rocker": Key(Physical("length", above=0), "Length of the rocker", "c", required=True),
-        "frame": Key(Physical("length", above=0), "Distance of the rocker's pivot from the shaft", "d", required=True),
+        "crank": positive("length", "Crank radius", "a", required=True),
+        "coupler": positive("length", "Length of the coupler", "b", required=True),
+        "rocker": positive("length", "Length of the rocker", "c", required=True),
+        "frame": positive("length", "Distance of the rocker's pivot from the shaft", "d", required=True),
     }
 
     def __post_init__(self) -> None:

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.declared.forms import Physical
-from kurbel.declared.keys import Key, Keys
+from kurbel.declared.forms import positive
+from kurbel.declared.keys import Keys
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Offer, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
@@ -47,8 +47,8 @@ class YokeFrame(SliderCrank):
     )
     KEYS: ClassVar[Keys] = {
         **SliderCrank.KEYS,
-        "gland": Key(
-            Physical("length", above=0),
+        "gland": positive(
+            "length",
             "Distance from the stuffing box to the crosshead pin at the inner dead centre",
             "l_g",
             absent="no bending of the piston rod",
