@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -35,6 +35,22 @@ class Shown:
 
     def _repr_html_(self) -> str | None:
         return Shown.as_html(self) if Shown.as_html else None
+
+
+class Columns:
+    """Columns at crank angles φ (n,) in degrees: attributes by their ids, in SI, each (n,), computed when asked for.
+
+    formulas: what computes each column; None comes of one that the machine does not have.
+    """
+
+    def __init__(self, phi: Array, formulas: Mapping[str, Callable[[], Any]]) -> None:
+        self.phi, self.formulas = phi, formulas
+
+    def __getattr__(self, id: str) -> Any:
+        if id == "formulas" or id not in self.formulas:
+            raise AttributeError(f"no column is called {id}")
+        self.__dict__[id] = self.formulas[id]()
+        return self.__dict__[id]
 
 
 class Results(Shown):
@@ -82,7 +98,7 @@ class Results(Shown):
         names: ids or printed symbols. Raises UsageError for angles that are no numbers and for what is no column here.
         """
         angles = np.atleast_1d(crank_angles(degrees))
-        state: Any = self.at(angles)
+        state = self.at(angles)
         known = self.lists.columns(self.command)
         ids = [_only(name, known, "column") for name in names] if names else list(known)
         found = {id: getattr(state, id, None) for id in ids if id != "phi"}
@@ -90,6 +106,18 @@ class Results(Shown):
             if values is None:
                 raise UsageError(f"this machine has no {id}: {known[id].text}")
         return {"phi": angles, **{id: np.asarray(one, float) for id, one in found.items() if one is not None}}
+
+    def at(self, degrees: Any, within: Array | None = None) -> Any:
+        """Return every column at crank angles (n,) in degrees; of the whole machine those of crank 1.
+
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        """
+        angles = crank_angles(degrees)
+        return self._columns(angles, angles if within is None else within)
+
+    def _columns(self, phi: Array, within: Array) -> Columns:
+        """Return the columns at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
+        return Columns(phi, {})
 
     @property
     def _of(self) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,22 +16,36 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.search import Extremes
 from kurbel.solver.balance.best import Least, in_planes, least, shafts
 from kurbel.solver.balance.circles import Circles
-from kurbel.solver.balance.columns import BalanceColumns
 from kurbel.solver.balance.free import Free
 from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.products import Products, of_throws
 from kurbel.solver.balance.rolling import rolling_moment, swirls
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Results, crank_angles
+from kurbel.solver.figures import Columns, Results
 from kurbel.solver.shaft.weights import OwnThrow, Weight, counterweights_of, middle_of, shafts_of, wheels_of
 from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.torques import Sum
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
+    from kurbel.arrays import Array, ComplexArray
 
 _REAL = 1e-12
 """Beside its size, what a counterweight opposite the throw may point aside by rounding."""
+
+
+_VECTORS: dict[str, tuple[str, str, Callable[[Any], Any]]] = {
+    "F_x": ("free", "force", np.real),
+    "F_y": ("free", "force", np.imag),
+    "F_free": ("free", "force", np.abs),
+    "M_x": ("free", "moment", np.real),
+    "M_y": ("free", "moment", np.imag),
+    "M_free": ("free", "moment", np.abs),
+    "F_x_book": ("book", "force", np.real),
+    "F_y_book": ("book", "force", np.imag),
+    "M_x_book": ("book", "moment", np.real),
+    "M_y_book": ("book", "moment", np.imag),
+}
+"""Column -> the part of the free force in N or moment in N m that it is, of the true one (`free`) or of the book."""
 
 
 class MachineBalance(Results):
@@ -61,12 +75,20 @@ class MachineBalance(Results):
         """What answers key values, the first that knows one."""
         return (self, *((self.locomotive,) if self.locomotive else ()))
 
-    def at(self, degrees: Any, within: Array | None = None) -> BalanceColumns:
-        """Return every column at crank angles (n,) of crank 1 in degrees.
+    def _columns(self, phi: Array, within: Array) -> Columns:
+        @cache
+        def vector(of: str, name: str) -> ComplexArray | None:
+            circles: Circles | None = getattr(getattr(self, of), name, None)
+            return None if circles is None or self.omega is None else circles.at(phi) * (self.omega * self.omega)
 
-        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
-        """
-        return BalanceColumns(self, crank_angles(degrees), within)
+        def part(of: str, name: str, taken: Callable[[ComplexArray], Array]) -> Array | None:
+            found = vector(of, name)
+            return None if found is None else taken(found)
+
+        def roll() -> Array | None:
+            return None if self.roll is None else np.asarray(self.roll.torque(phi, within).value)
+
+        return Columns(phi, {id: partial(part, *each) for id, each in _VECTORS.items()} | {"M_roll": roll})
 
     @property
     def breaks(self) -> Array:

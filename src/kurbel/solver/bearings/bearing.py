@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ from kurbel.numerics.grid import Cuts, Grid, Pieces, integral
 from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
 from kurbel.solver.bearings.directions import Plane, Unloaded, unloaded
 from kurbel.solver.cylinder.following import Following
-from kurbel.solver.figures import Results, crank_angles
+from kurbel.solver.figures import Columns, Results
 from kurbel.solver.shaft.statics import norm
 
 if TYPE_CHECKING:
@@ -31,16 +31,6 @@ class Loads(NamedTuple):
 
     frames: dict[str, Plane]
     rate: Any = 1.0
-
-
-class BearingColumns(NamedTuple):
-    """What is told over the crank angle, by the ids of the columns: N, and degrees in each frame; None without it."""
-
-    phi: Array
-    load: Array
-    load_throw: Array | None
-    load_engine: Array | None
-    load_rod: Array | None
 
 
 class Size(NamedTuple):
@@ -79,16 +69,16 @@ class Bearing(Results):
     def work_rubbing(self) -> float | None:
         """Work of its friction in J per cycle of the machine; None without a coefficient."""
 
-    def at(self, degrees: Any, within: Array | None = None) -> BearingColumns:
-        """Return the load at angles (n,) of crank 1 in degrees.
+    def _columns(self, phi: Array, within: Array) -> Columns:
+        """Return the load in N, and its direction in degrees in each frame; None without it."""
+        found = self._evaluate(phi, within)
 
-        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
-        """
-        angles = crank_angles(degrees)
-        found = self._evaluate(angles, angles if within is None else within)
-        # of the two names of one direction the positive one
-        directions = (np.where(one.value == -180, 180.0, one.value) if one else None for one in map(found.get, FRAMES))
-        return BearingColumns(angles, found["load"].value, *directions)
+        def direction(frame: str) -> Array | None:
+            # of the two names of one direction the positive one
+            return np.where(found[frame].value == -180, 180.0, found[frame].value) if frame in found else None
+
+        directions = {f"load_{frame}": partial(direction, frame) for frame in FRAMES}
+        return Columns(phi, {"load": lambda: found["load"].value, **directions})
 
     # the cycle
 
