@@ -96,7 +96,7 @@ def test_what_fails_half_way_leaves_the_old_file_and_nothing_beside_it(tmp_path:
 def test_a_full_disk_leaves_the_old_file_whole(tmp_path: Path) -> None:
     limited = (
         "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN); "
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (512, 512)); from kurbel.cli import main; main()"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (512, 512)); from kurbel.__main__ import main; main()"
     )
     (tmp_path / "out.csv").write_text("old")
     # -B: under such a limit Python would leave its compiled modules torn behind

@@ -22,7 +22,7 @@ WATERWORKS = Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml"
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
     known = COMMON.key_values(command)
     asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
-    found = Uncertainty(source.read(WATERWORKS), (), tuple(spreads.items())).of(asked)
+    found = Uncertainty(source.read(WATERWORKS), (), spreads).of(asked)
     return {one.answer.quantity.id: one for one in found}
 
 
@@ -113,3 +113,35 @@ def test_an_uncertainty_of_the_file_that_is_none() -> None:
         kurbel.loads("{stroke: 1 m, rod_ratio: 5, uncertainty: {stroke: 0 mm}}")
     with pytest.raises(kurbel.KurbelError, match="expected a mapping of keys"):
         kurbel.loads("{stroke: 1 m, rod_ratio: 5, uncertainty: 1 mm}")
+
+
+@pytest.mark.parametrize("asked", ["check", "forces"])
+def test_all_that_is_wrong_with_uncertainties_is_told_at_its_place(asked: str) -> None:
+    text = """\
+crank: 400 mm
+rod: 2 m
+uncertainty:
+  rd: 1 %
+  rod: 3 kg
+  name: 2 %
+  crank: 0.1 mm
+"""
+    result = CliRunner().invoke(command, [asked, "-"], input=text)
+    assert result.exit_code == 2
+    told = [line for line in result.stderr.splitlines() if line.startswith("<stdin>")]
+    assert [line.split(":")[1:4] for line in told] == [
+        ["4", "7", " uncertainty.rd"],
+        ["5", "8", " uncertainty.rod"],
+        ["6", "9", " uncertainty.name"],
+    ]
+    assert "did you mean 'rod'" in told[0]
+    assert "kg is a unit of mass" in told[1]
+
+
+def test_an_uncertainty_from_outside_is_told_as_such() -> None:
+    asked = ["forces", str(WATERWORKS), "--uncertainty", "bor=1 mm", "--uncertainty", "speed=1 kg"]
+    result = CliRunner().invoke(command, asked)
+    assert result.exit_code == 2
+    assert "--uncertainty bor: no value stands under this key in the file; did you mean 'bore'?" in result.stderr
+    assert "--uncertainty speed: " in result.stderr
+    assert "kg is a unit of mass" in result.stderr

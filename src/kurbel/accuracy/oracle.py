@@ -4,8 +4,6 @@ Nothing is shared with the solver: angles are reduced, pressures found and signs
 nearly equal numbers are left as they stand in the books; the digits of the decimal context pay for them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from decimal import Decimal
 from functools import cached_property, lru_cache
@@ -39,7 +37,7 @@ class CrankMotion:
         self.at = lru_cache(maxsize=4096)(self._at)
 
     @classmethod
-    def of(cls, mechanism: Mechanism) -> CrankMotion:
+    def of(cls, mechanism: Mechanism) -> "CrankMotion":
         """Return that of a slider-crank, or of a Scotch yoke, its rod infinite."""
         return cls(mechanism.crank, mechanism.rod_length, mechanism.offset)
 

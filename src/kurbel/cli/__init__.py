@@ -6,7 +6,6 @@ with inside its function.
 
 from __future__ import annotations
 
-import gc
 import os
 import sys
 import warnings
@@ -195,12 +194,3 @@ def kurbel() -> None:
 
     Results go to standard output, everything else to standard error.
     """
-
-
-def main() -> NoReturn:
-    """Run the command line."""
-    gc.disable()  # a run is too short for its garbage to matter; looking for it costs a twentieth of the time
-    try:
-        kurbel.main()
-    finally:
-        gc.freeze()  # saves the collector's last tour through everything imported, a tenth of the run of `kurbel table`

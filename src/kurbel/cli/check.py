@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
 from kurbel.cli.exit_status import BROKEN, DONE, NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import format_of, loaded, machine_file, width_option
+
+if TYPE_CHECKING:
+    from kurbel.machine import Machine
 
 
 @click.command(short_help="Read and check a machine file and its limits.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
@@ -36,7 +41,7 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
     from kurbel.render.listing import listing
     from kurbel.render.output import stdout_look, write_out
 
-    result = checked(loaded(file, overrides, file_name))
+    result = checked(_loaded(file, overrides, file_name))
     look = Look() if file_name else stdout_look()
     look = look._replace(width=width or look.width)
     write_out((listing(result, look),), file_name)
@@ -44,6 +49,16 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
         gravest = min(result.errors, key=lambda error: error.exit_status)
         raise type(gravest)("\n".join(map(str, result.errors)))
     return BROKEN if result.broken else DONE
+
+
+def _loaded(file: str, overrides: tuple[str, ...], file_name: str | None = None) -> Machine:
+    """Read the machine, whose uncertainties are told of what stands in the file."""
+    machine = loaded(file, overrides, file_name)
+    if machine.uncertainty:
+        from kurbel.designs.uncertainty import given_uncertainty
+
+        given_uncertainty(machine)
+    return machine
 
 
 def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> int:
@@ -58,7 +73,7 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
 
     refuse_overwriting(file_name, (file,))
     try:
-        machine = loaded(file, overrides)
+        machine = _loaded(file, overrides)
     except KurbelError as error:
         found, status = faults_found(file, error), error.exit_status
     else:

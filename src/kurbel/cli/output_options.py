@@ -1,7 +1,5 @@
 """Options shared by the commands that print a table, and what they mean."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -10,11 +8,11 @@ import click
 
 from kurbel.cli.completion import complete_columns, complete_cylinder, complete_override
 from kurbel.render import FORMATS, LAYOUTS, Look
+from kurbel.report.tables import Report
 
 if TYPE_CHECKING:
     from kurbel.declared.quantity import Quantity
     from kurbel.machine import Machine
-    from kurbel.report.tables import Report
     from kurbel.solver.case import Case
 
     _NumberType = click.ParamType[float]
@@ -88,7 +86,7 @@ class Columns(Words):
         known = [column for column in every_quantity().all_columns if column.commands]
         return tuple(self._only(name, called(name, known), known, param, ctx) for name in joined(words, known))
 
-    def _only(self, name: str, found: tuple[str, ...], known: list[Quantity], *place: Any) -> str:
+    def _only(self, name: str, found: tuple[str, ...], known: "list[Quantity]", *place: Any) -> str:
         from kurbel.declared.quantity import ambiguity
 
         if wrong := ambiguity(name, found):
@@ -240,7 +238,7 @@ def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts:
     return angles
 
 
-def loaded(file: str, overrides: Sequence[str], *outputs: str | None) -> Machine:
+def loaded(file: str, overrides: Sequence[str], *outputs: str | None) -> "Machine":
     """Read the machine, with these values over those of its file.
 
     Raises UsageError where an output would overwrite its file, or a trace that it names.
@@ -267,7 +265,7 @@ class Asked(NamedTuple):
     key_values_only: bool
     output: Output
 
-    def case(self) -> Case:
+    def case(self) -> "Case":
         """Read the machine and return it with its results, none of which is computed yet."""
         from kurbel.solver.case import Case
 
@@ -277,7 +275,7 @@ class Asked(NamedTuple):
         """Return the crank angles in degrees to print for each part, from 0 to `end` where none are named."""
         return crank_angles(self.step, self.angles, end, parts)
 
-    def write(self, report: Report, case: Case | None = None, spreads: Sequence[tuple[str, str]] = ()) -> None:
+    def write(self, report: Report, case: "Case | None" = None, spreads: Sequence[tuple[str, str]] = ()) -> None:
         """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""
         if self.key_values_only and self.columns:
             raise click.UsageError("--columns names columns of the table that --key-values leaves out.")

@@ -1,7 +1,5 @@
 """Options of the commands that tell of a cylinder alone: rows elsewhere than at crank angles, and approximations."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -21,7 +19,7 @@ class AskedRows(NamedTuple):
     over: str | None = None
     compare: bool = False
 
-    def rows(self, asked: Asked, command: str = "forces") -> Rows | None:
+    def rows(self, asked: Asked, command: str = "forces") -> "Rows | None":
         """Return what finds the crank angles, None for a table over the angle itself; command: whose columns."""
         ways = {"--where": self.where, "--over": self.over, "--angles": asked.angles or None}
         if len(given := [way for way, said in ways.items() if said is not None]) > 1:

@@ -1,7 +1,5 @@
 """`kurbel sweep`: key values over a grid, a list or a sample of machines."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -11,11 +9,11 @@ import click
 from kurbel.cli.completion import complete_override
 from kurbel.cli.exit_status import exit_statuses
 from kurbel.cli.output_options import Words, format_of, machine_file, stacked, units_option
+from kurbel.render import Look
 
 if TYPE_CHECKING:
     from kurbel.designs.chosen import Aim
     from kurbel.designs.sweep import Row, Spec, Sweep
-    from kurbel.render import Look
     from kurbel.render.sweep_output import SweepOutput
 
 _SUFFIXES = {".csv": "csv", ".json": "json", ".jsonl": "json", ".md": "markdown", ".parquet": "parquet"}
@@ -132,6 +130,7 @@ class _Asked(NamedTuple):
         named = self.file_name not in (None, "-")
         for wrong, message in (
             (self.top and not self.sort, "--top N takes the first rows of --sort ID; give --sort too."),
+            (self.sobol and not self.sample, "--sobol is a way to draw a sample; give --sample N too."),
             (self.resume and not named, "--resume goes on in a file; give --output FILE."),
             (self.resume and self._written not in ("csv", "json"), "--resume goes on in csv or json lines."),
             (self.resume and not self._in_order, "--resume cannot go on where rows are sorted, chosen or summed up."),
@@ -164,7 +163,7 @@ class _Asked(NamedTuple):
         kept: Iterable[Row] = (row for row in told if all(one.holds(row) for one in conditions))
         out.write(summary(kept, found.heads) if self.summary else self._chosen(kept, aims, order))
 
-    def _spec(self) -> Spec:
+    def _spec(self) -> "Spec":
         from kurbel.designs.sweep import Spec
         from kurbel.machine_file import source
         from kurbel.render.output import refuse_overwriting
@@ -174,7 +173,7 @@ class _Asked(NamedTuple):
         plan = self.vary, self.side_by_side, self.sample, self.seed, self.sobol
         return Spec(source.read(self.file), self.overrides, *plan, self.columns or (), self.with_angles, system)
 
-    def _out(self, found: Sweep, rows: range) -> SweepOutput:
+    def _out(self, found: "Sweep", rows: range) -> "SweepOutput":
         from kurbel.designs.chosen import summary_heads
         from kurbel.render.sweep_output import SweepOutput
         from kurbel.render.sweep_rows import Titles
@@ -184,7 +183,7 @@ class _Asked(NamedTuple):
             titles = Titles(summary_heads(found.heads), row="column", failing=False)
         return SweepOutput(titles, self._look, self.file_name, rows, self.resume)
 
-    def _chosen(self, rows: Iterable[Row], aims: Sequence[Aim], order: Aim | None) -> Iterable[Row]:
+    def _chosen(self, rows: "Iterable[Row]", aims: "Sequence[Aim]", order: "Aim | None") -> "Iterable[Row]":
         from kurbel.designs.chosen import sorted_rows, unbettered
 
         if aims:
@@ -194,7 +193,7 @@ class _Asked(NamedTuple):
         return rows
 
 
-def _counted(rows: Iterable[Row], count: int, file_name: str | None) -> Iterator[Row]:
+def _counted(rows: "Iterable[Row]", count: int, file_name: str | None) -> "Iterator[Row]":
     """Yield the rows, with a bar on the terminal where they do not go there themselves."""
     if not sys.stderr.isatty() or (file_name is None and sys.stdout.isatty()):
         yield from rows

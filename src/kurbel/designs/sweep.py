@@ -1,7 +1,5 @@
 """A sweep: rows of inputs and answers, computed chunk by chunk in their order, here or by other processes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple

@@ -5,25 +5,25 @@ beside the value, extrapolated to none (Richardson). Jets carry slopes by the cr
 Where an answer bends over the width of an uncertainty, so that its first order does not hold, a sample tells instead.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from statistics import NormalDist
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from kurbel.declared.numerals import parse_ratio
+from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import answers_of
-from kurbel.designs.binding import Binder, Unbound, written_texts
+from kurbel.designs.binding import Binder, Unbound, tree_of, written
 from kurbel.designs.columns import Answer, subjects
 from kurbel.designs.sampling import latin_hypercube
 from kurbel.designs.sweep import kind_of_form
-from kurbel.errors import UnitError, UsageError
+from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine_file.positions import located
 from kurbel.machine_file.source import Source, decode
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.tables import Column, Part, PlaceTable, Report
@@ -42,6 +42,8 @@ _ROUNDING = 1e-9
 """What is less than this beside the value itself bends nothing."""
 
 
+Found = TypeVar("Found")
+
 _NOISE = 1e-12
 """Of a value: what is less is no uncertainty but rounding."""
 
@@ -59,20 +61,33 @@ class Uncertain(NamedTuple):
     sample: int = 0
 
 
+class WrongUncertainty(UsageError):
+    """What is wrong with uncertainties; faults: dotted key -> message."""
+
+    def __init__(self, faults: dict[str, str]) -> None:
+        self.faults = faults
+        super().__init__("; ".join(f"uncertainty of {key}: {message}" for key, message in faults.items()))
+
+
 class Uncertainty:
     """What uncertain inputs make of key values; spreads: dotted key -> `0.2 mm` or `2 %`, its standard uncertainty.
 
-    Raises UsageError for keys under which no number stands, and for units that do not fit.
+    Raises WrongUncertainty for keys under which no number stands, and for units that do not fit: all of them.
     """
 
-    def __init__(self, source: Source, overrides: Sequence[str], spreads: Sequence[tuple[str, str]]) -> None:
-        self.keys = tuple(key for key, _ in spreads)
-        texts = written_texts(source, overrides, self.keys)
-        self._binder = Binder(source, overrides, self.keys, texts)
-        self._kinds = [kind_of_form(self._binder.form(number)) for number in range(len(spreads))]
-        self._values = [_number(text, kind, key) for text, kind, key in zip(texts, self._kinds, self.keys)]
-        told = zip(spreads, self._kinds, self._values)
-        self._spreads = [_spread(text, kind, value, key) for (key, text), kind, value in told]
+    def __init__(self, source: Source, overrides: Sequence[str], spreads: Mapping[str, str]) -> None:
+        tree, wrong = tree_of(source, overrides), dict[str, str]()
+        texts = _of_each(spreads, lambda key: written(tree, key), wrong)
+        self.keys = tuple(texts)
+        self._binder = Binder(source, overrides, self.keys, list(texts.values()))
+        self._kinds = [kind_of_form(self._binder.form(number)) for number in range(len(self.keys))]
+        kinds = dict(zip(self.keys, self._kinds))
+        values = _of_each(self.keys, lambda key: _number(texts[key], kinds[key]), wrong)
+        self._values = list(values.values())
+        widths = _of_each(values, lambda key: _spread(spreads[key], kinds[key], values[key]), wrong)
+        self._spreads = list(widths.values())
+        if wrong:
+            raise WrongUncertainty(wrong)
 
     def _machine(self, shifts: Sequence[float]) -> Machine | None:
         """Return the machine with inputs off by so many of their uncertainties each; None where there is none."""
@@ -142,32 +157,43 @@ def _float(value: Any) -> float:
     return number if isinstance(number, (int, float)) else math.nan
 
 
-def _number(text: str, kind: str, key: str) -> float:
+def _of_each(keys: Iterable[str], told: Callable[[str], Found], wrong: dict[str, str]) -> dict[str, Found]:
+    """Return what is told of every key; what is wrong with one is noted."""
+    found = {}
+    for key in keys:
+        try:
+            found[key] = told(key)
+        except UsageError as error:
+            wrong[key] = str(error)
+    return found
+
+
+def _number(text: str, kind: str) -> float:
     try:
         return parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
     except (UnitError, KeyError):
-        raise UsageError(f"uncertainty of {key}: '{text}' is no number that could be off") from None
+        raise UsageError(f"{shown(text)!r} is no number that could be off") from None
 
 
-def _spread(text: str, kind: str, value: float, key: str) -> float:
+def _spread(text: str, kind: str, value: float) -> float:
     try:
         if text.endswith("%"):
             spread = abs(value) * parse_ratio(text)
         else:
             spread = parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
     except UnitError as error:
-        raise UsageError(f"uncertainty of {key}: {error}") from None
+        raise UsageError(str(error)) from None
     if not spread > 0:
-        raise UsageError(f"uncertainty of {key}: it must be more than 0, got {text}")
+        raise UsageError(f"it must be more than 0, got {text}")
     return spread
 
 
 def with_uncertainty(report: Report, case: Case, more: Sequence[tuple[str, str]], system: str) -> Report:
     """Return a report with a table of the uncertainties of its key values; more: those that no file gives.
 
-    Raises UsageError, as `Uncertainty`.
+    Raises what `given_uncertainty` does.
     """
-    uncertainty = _given(case.machine, more)
+    uncertainty = given_uncertainty(case.machine, more)
     if uncertainty is None:
         return report
     found = uncertainty.of(_asked(case, report.command))
@@ -183,11 +209,11 @@ _COMPARED = (("forces", ("c_max", "b_max", "work", "T_max")), ("flywheel", ("dE"
 def data_uncertainty(machine: Machine) -> tuple[Difference, ...]:
     """Return what the uncertainties in a machine's file make of motion, work and torques, relatively.
 
-    Of the first cylinder and of the whole machine. Raises UsageError, as `Uncertainty`.
+    Of the first cylinder and of the whole machine; errors: see `given_uncertainty`.
     """
     from kurbel.accuracy.inexact import Difference
 
-    uncertainty = _given(machine)
+    uncertainty = given_uncertainty(machine)
     if uncertainty is None:
         return ()
     case = Case(machine)
@@ -201,15 +227,25 @@ def data_uncertainty(machine: Machine) -> tuple[Difference, ...]:
     )
 
 
-def _given(machine: Machine, more: Sequence[tuple[str, str]] = ()) -> Uncertainty | None:
-    """Return the uncertainties of a machine's file, and those that no file gives; None where there are none."""
-    spreads = tuple((dict(machine.uncertainty) | dict(more)).items())
-    origin = machine.origin
+def given_uncertainty(machine: Machine, more: Sequence[tuple[str, str]] = ()) -> Uncertainty | None:
+    """Return the uncertainties of a machine's file, and those that no file gives; None where there are none.
+
+    Raises MachineFileError or UsageError with all that is wrong with them.
+    """
+    outside, origin = dict(more), machine.origin
+    spreads = dict(machine.uncertainty) | outside
     if not spreads or origin is None:
         return None
     import os
 
-    return Uncertainty(decode(origin.name, origin.content, os.path.dirname(origin.name)), origin.overrides, spreads)
+    source = decode(origin.name, origin.content, os.path.dirname(origin.name))
+    try:
+        return Uncertainty(source, origin.overrides, spreads)
+    except WrongUncertainty as error:
+        wrong = error.faults
+    if told := [f"--uncertainty {key}: {wrong[key]}" for key in outside if key in wrong]:
+        raise UsageError("; ".join(told))
+    raise source.error(*located(source.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
 
 
 def _asked(case: Case, command: str) -> list[Answer]:

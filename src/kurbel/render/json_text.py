@@ -1,19 +1,15 @@
 """JSON as the contract says: one object, numbers in full, missing values null."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from kurbel import __version__
 from kurbel.errors import UsageError
+from kurbel.render import Look
 from kurbel.render.numbers import rounded, whole_if_integral
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import Column, KeyValue, Part, Provenance, Report, Value
+from kurbel.report.tables import Column, KeyValue, Part, Provenance, Report, Value
 
 FORMAT = 1
 """Number of the output format; it changes when a script that reads it would break."""

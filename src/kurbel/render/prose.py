@@ -1,20 +1,16 @@
 """What stands below the table: notes, key values, what was left out and why, warnings."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from kurbel.declared.quantity import NOISE_POWER
+from kurbel.render import Look
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import Line, Piece, line
 from kurbel.render.numbers import angle, single
 from kurbel.render.sheet import part_name
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import KeyValue, LeftOut, Part, Report
+from kurbel.report.tables import KeyValue, LeftOut, Part, Report
 
 _LONGEST = 16  # of a number, or two angles; a longer list stands out, its sentence on the next line
 _MOST_LISTED = 12

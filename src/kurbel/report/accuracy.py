@@ -1,7 +1,5 @@
 """The reports of `kurbel accuracy`: error against run time, and the verdicts on stiff and extreme cases."""
 
-from __future__ import annotations
-
 import platform
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple

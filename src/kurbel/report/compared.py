@@ -1,7 +1,5 @@
 """How key values stand against the limits and the expectations of a machine file."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple, Union

@@ -1,7 +1,5 @@
 """The report of `kurbel flywheel`: turning effort, excess work, flywheel and speed line of the whole machine."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The frame of every report on a machine: from the results of a command and its declared quantities to tables."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 

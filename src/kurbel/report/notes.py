@@ -1,7 +1,5 @@
 """What looks wrong in what was given: one list for a whole machine, from which every command takes what concerns it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,7 +19,7 @@ class Note(NamedTuple):
     text: str
 
 
-def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...]:
+def machine_notes(machine: Machine, case: "Case | None" = None) -> tuple[Note, ...]:
     """Return the notes on a machine, each once: on what was given, on measurements, and on what comes out.
 
     case: the machine with its results; of a machine that only moves nothing is computed.
@@ -66,7 +64,7 @@ def _acts(cylinder: Cylinder) -> bool:
     return bool(cylinder.pistons or cylinder.masses or cylinder.ram_force or cylinder.moment)
 
 
-def _on_results(case: Case) -> Iterable[Note]:
+def _on_results(case: "Case") -> Iterable[Note]:
     from kurbel.report.plausibility import brake_warnings, trace_warnings
     from kurbel.report.warnings import cylinder_warnings, strength_warnings, turning_warnings
 

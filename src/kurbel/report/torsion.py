@@ -1,7 +1,5 @@
 """The report of `kurbel torsion`: natural vibrations, Holzer's table, critical speeds, and forced vibration."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple

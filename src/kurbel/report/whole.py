@@ -1,7 +1,5 @@
 """The report of `kurbel report`: all that a machine has, section by section; or several machines side by side."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """What turns with the crank or on balance shafts: the masses of the cylinders, and the weights against them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 

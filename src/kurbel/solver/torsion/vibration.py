@@ -1,14 +1,13 @@
 """What `kurbel torsion` answers: natural vibrations of the shaft line, critical speeds, and forced vibration."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
@@ -22,9 +21,6 @@ from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.turning.effort import CylinderEffort, reduced_inertia
 from kurbel.solver.turning.harmonics import MachineOrders, every_order, phases
 from kurbel.solver.turning.machine_effort import MachineEffort, MovingInertia
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 NEAR = 0.1
 """A critical speed so near the working speed, relatively, is worth a note."""
@@ -208,7 +204,7 @@ class ShaftVibration(Results):
         )
 
     @cached_property
-    def pieces(self) -> tuple[PieceTorque, ...]:
+    def pieces(self) -> "tuple[PieceTorque, ...]":
         """The torque in every piece at the working speed; none where no forced vibration can be told."""
         if self.vibration is None:
             return ()

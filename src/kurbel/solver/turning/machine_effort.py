@@ -1,14 +1,13 @@
 """The turning effort of the whole machine, what it works against, and the masses that move with it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -20,9 +19,6 @@ from kurbel.solver.cylinder.state import State
 from kurbel.solver.turning.effort import CylinderEffort, efforts, inertia_torque, reduced_inertia
 from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.torques import Diagram, Sum, Torque, known_torque
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
@@ -112,7 +108,7 @@ class MachineEffort:
         return Excess(Sum(*self.effort.parts, *whole), self.excess.load)
 
     @cached_property
-    def inertia(self) -> MovingInertia:
+    def inertia(self) -> "MovingInertia":
         """What the moving masses add to the inertia of the shaft."""
         return MovingInertia(efforts(self._moving, self.cycle, reduced_inertia), self.cycle)
 
