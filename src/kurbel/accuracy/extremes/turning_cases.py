@@ -6,14 +6,14 @@ from decimal import Decimal
 
 from kurbel.accuracy.decimals import pi
 from kurbel.accuracy.extremes import Absent, Oracle, Probe, Refusal
-from kurbel.accuracy.extremes.force_cases import _STEAM
+from kurbel.accuracy.scenes import STEAM
 
 _TRAIN = "crank: 400 mm, rod: 2000 mm, bore: 450 mm"
 
 
 def _engine(more: str, masses: str = "200 kg") -> str:
     heavy = f"masses: {{piston: {masses}}}, " if masses else ""
-    return f"{{speed: 50 rpm, {_TRAIN}, indicator: {{head_end: {_STEAM}, crank_end: mirrored}}, {heavy}{more}}}"
+    return f"{{speed: 50 rpm, {_TRAIN}, indicator: {{head_end: {STEAM}, crank_end: mirrored}}, {heavy}{more}}}"
 
 
 def _loaded(inertia: str, load: str, masses: str = "") -> str:
@@ -35,7 +35,7 @@ def _delta_of_block() -> Decimal:
 
 
 def _twins(position: int) -> str:
-    cylinder = f"{_TRAIN}, indicator: {{head_end: {_STEAM}, crank_end: mirrored}}"
+    cylinder = f"{_TRAIN}, indicator: {{head_end: {STEAM}, crank_end: mirrored}}"
     other = f"{cylinder}, crank_position: {position} deg"
     return f"{{speed: 50 rpm, cylinders: [{{name: a, {cylinder}}}, {{name: b, {other}}}]}}"
 
