@@ -287,9 +287,9 @@ def _lists(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...]) -> Lists
     return Lists.of(dict.fromkeys(offer.quantity for offer in offers), dict.fromkeys(key_values))
 
 
-def check_lengths(**lengths: float) -> None:
-    """Raise RuleError for every length that is not positive and finite."""
-    wrong = [name for name, value in lengths.items() if not 0 < value < float("inf")]
+def check_lengths(**lengths: float | None) -> None:
+    """Raise RuleError for every length that is not positive and finite; None is one that is not given."""
+    wrong = [name for name, value in lengths.items() if value is not None and not 0 < value < float("inf")]
     refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
 
 

@@ -8,8 +8,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys, check
 from kurbel.declared.quantity import Quantity
-from kurbel.errors import Fault, RuleError
-from kurbel.mechanisms import KeyOffer, Offer, own_force, own_motion
+from kurbel.mechanisms import KeyOffer, Offer, check_lengths, own_force, own_motion
 from kurbel.numerics.arithmetic import where
 from kurbel.numerics.extreme import Extreme
 
@@ -37,12 +36,8 @@ def projected_area(diameter: float | None, length: float | None) -> float | None
     Raises RuleError where only one of both is given, or one is not positive and finite.
     """
     check(PIN_KEYS, {"pin_diameter": diameter, "pin_length": length})
-    if diameter is None or length is None:
-        return None
-    for name, value in (("pin_diameter", diameter), ("pin_length", length)):
-        if not 0 < value < float("inf"):
-            raise RuleError(Fault((name,), "must be a positive, finite length"))
-    return diameter * length
+    check_lengths(pin_diameter=diameter, pin_length=length)
+    return None if diameter is None or length is None else diameter * length
 
 
 _SPEED = "Speed at which the block on the crank pin slides along its slot"

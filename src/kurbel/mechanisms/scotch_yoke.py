@@ -83,9 +83,7 @@ class ScotchYoke(Mechanism):
         return Sketch(joints, links, (SHAFT,), blocks, (guide,), "rod", (-1.0, 0.0), (0.0, -1.0))
 
     def __post_init__(self) -> None:
-        check_lengths(crank=self.crank)
-        if self.guide_length is not None:
-            check_lengths(guide_length=self.guide_length)
+        check_lengths(crank=self.crank, guide_length=self.guide_length)
         projected_area(self.pin_diameter, self.pin_length)
 
     @property

@@ -72,7 +72,7 @@ class SlottedLever(Mechanism):
     }
 
     def __post_init__(self) -> None:
-        check_lengths(crank=self.crank, frame=self.frame, **({"lever": self._end} if self.slides else {}))
+        check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
         if not (self.slides or self._forked):
             raise RuleError(Fault(("link",), "has no lever's end to hang on; give 'lever' with it"))
         projected_area(self.pin_diameter, self.pin_length)
