@@ -124,6 +124,16 @@ class Results(Shown):
         return f"<kurbel {self.command} of {self._of}: ['id'], key_values(), columns(degrees)>"
 
 
+def passed_on(part: str, name: str, text: str) -> Any:
+    """Return a key value that a part of the results has under this name; None where there is no such part."""
+
+    def answer(results: Any) -> Any:
+        one = getattr(results, part)
+        return None if one is None else getattr(one, name)
+
+    return property(answer, doc=text)
+
+
 def crank_angles(degrees: Any) -> Array:
     """Return crank angles in degrees as an array; raises UsageError for what are no finite numbers."""
     try:

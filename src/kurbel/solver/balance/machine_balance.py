@@ -21,7 +21,7 @@ from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.products import Products, of_throws
 from kurbel.solver.balance.rolling import rolling_moment, swirls
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Columns, Results
+from kurbel.solver.figures import Columns, Results, passed_on
 from kurbel.solver.shaft.weights import OwnThrow, Weight, counterweights_of, middle_of, shafts_of, wheels_of
 from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.torques import Sum
@@ -177,15 +177,8 @@ class MachineBalance(Results):
     def _roll_extremes(self) -> Extremes | None:
         return Excess(self.roll).effort_extremes if self.roll else None
 
-    @property
-    def M_roll_max(self) -> Extreme | None:
-        """Largest rolling moment on the frame in N m."""
-        return self._roll_extremes.largest if self._roll_extremes else None
-
-    @property
-    def M_roll_min(self) -> Extreme | None:
-        """Smallest rolling moment on the frame in N m."""
-        return self._roll_extremes.smallest if self._roll_extremes else None
+    M_roll_max = passed_on("_roll_extremes", "largest", "Largest rolling moment on the frame in N m.")
+    M_roll_min = passed_on("_roll_extremes", "smallest", "Smallest rolling moment on the frame in N m.")
 
     # counterweights
 

@@ -14,7 +14,7 @@ from kurbel.numerics.grid import Cuts, Grid, Pieces, integral
 from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
 from kurbel.solver.bearings.directions import Plane, Unloaded, unloaded
 from kurbel.solver.cylinder.following import Following
-from kurbel.solver.figures import Columns, Results
+from kurbel.solver.figures import Columns, Results, passed_on
 from kurbel.solver.shaft.statics import norm
 
 FRAMES = ("throw", "engine", "rod")
@@ -111,15 +111,8 @@ class Bearing(Results):
     def _load(self) -> Extremes:
         return extremes_of(self._curves["load"])
 
-    @property
-    def load_max(self) -> Extreme:
-        """Largest load in N."""
-        return self._load.largest
-
-    @property
-    def load_min(self) -> Extreme:
-        """Smallest load in N."""
-        return self._load.smallest
+    load_max = passed_on("_load", "largest", "Largest load in N.")
+    load_min = passed_on("_load", "smallest", "Smallest load in N.")
 
     @cached_property
     def _means(self) -> tuple[float, float]:
@@ -187,25 +180,10 @@ class Bearing(Results):
     def _of_shell(self) -> Unloaded | None:
         return self._unloaded(self.shell)
 
-    @property
-    def unloaded_arc(self) -> float | None:
-        """Degrees of the surface of pin or journal that are never loaded."""
-        return self._of_journal and self._of_journal.arc
-
-    @property
-    def unloaded_middle(self) -> float | None:
-        """Direction in degrees of the middle of its widest piece; None where all of it is loaded."""
-        return self._of_journal and self._of_journal.middle
-
-    @property
-    def unloaded_arc_shell(self) -> float | None:
-        """Degrees of the surface of the shell that are never loaded."""
-        return self._of_shell and self._of_shell.arc
-
-    @property
-    def unloaded_middle_shell(self) -> float | None:
-        """Direction in degrees of the middle of its widest piece; None where all of it is loaded."""
-        return self._of_shell and self._of_shell.middle
+    unloaded_arc = passed_on("_of_journal", "arc", "Degrees of the surface of pin or journal that are never loaded.")
+    unloaded_middle = passed_on("_of_journal", "middle", "Direction in degrees of the middle of its widest piece.")
+    unloaded_arc_shell = passed_on("_of_shell", "arc", "Degrees of the surface of the shell that are never loaded.")
+    unloaded_middle_shell = passed_on("_of_shell", "middle", "Direction in degrees of the middle of its widest piece.")
 
     # pressures and rubbing
 
