@@ -23,6 +23,7 @@ from kurbel.render.output import write_file
 from kurbel.report import shown
 from kurbel.report.angles import MOST_ROWS, check_rows, stepped
 from kurbel.report.forces import forces_report
+from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 from representative import few
 
@@ -268,8 +269,8 @@ def peak(work: Callable[[], object]) -> tuple[object, int]:
 def test_columns_are_computed_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shown, "_AT_ONCE", 100)
     case, angles = Case(loads(MACHINE + PRESSURE)), stepped(0.02, 360)
-    forces_report(case, [0.0], ("P", "T"), "si")  # the extremes, and what is imported
-    _, needed = peak(lambda: forces_report(case, angles, ("P", "T"), "si"))
+    forces_report(case, Frame("forces", [0.0], ("P", "T"), "si"))  # the extremes, and what is imported
+    _, needed = peak(lambda: forces_report(case, Frame("forces", angles, ("P", "T"), "si")))
     assert needed < 1.3 * 3 * len(angles) * 8  # three columns of doubles
 
 
@@ -280,7 +281,7 @@ LOOKS = [(format, layout) for format in FORMATS for layout in ("book", "rows")]
 def test_rows_are_written_as_they_are_made(format: str, layout: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(json_text, "_AT_ONCE", 100)
     case, look = Case(loads(MACHINE + PRESSURE)), Look(format, layout)
-    short, long = (forces_report(case, stepped(step, 360), ("P", "T"), "si") for step in (90, 0.1))
+    short, long = (forces_report(case, Frame("forces", stepped(step, 360), ("P", "T"), "si")) for step in (90, 0.1))
     text = len(render(short, look))
     longer, needed = peak(lambda: sum(map(len, pieces(long, look))))
     assert longer > text + 3600 * 12
@@ -290,7 +291,9 @@ def test_rows_are_written_as_they_are_made(format: str, layout: str, monkeypatch
 def test_columns_do_not_hang_on_how_many_angles_are_computed_at_once() -> None:
     case = Case(loads(MACHINE + PRESSURE))
     angles = stepped(0.02, 360)
-    (whole,), (some,) = (forces_report(case, list(one), None, "si").parts for one in (angles, angles[8000:8400]))
+    (whole,), (some,) = (
+        forces_report(case, Frame("forces", list(one), None, "si")).parts for one in (angles, angles[8000:8400])
+    )
     for column, piece in zip(whole.columns, some.columns):
         assert column.id == piece.id
         assert list(column.values[8000:8400]) == pytest.approx(list(piece.values), rel=1e-15, abs=1e-300)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from kurbel import __version__
-from kurbel.cli.exit_status import BROKEN, DONE, INTERNAL, INTERRUPTED, NO_SOLUTION, WRONG, exit_statuses
+from kurbel.cli.exit_status import DONE, INTERNAL, INTERRUPTED, WRONG, exit_statuses
 from kurbel.errors import KurbelError, MachineFileError
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ class _Kurbel(click.Group):
         from importlib import import_module
 
         command: click.Command = getattr(import_module(f"kurbel.cli.{cmd_name}"), cmd_name)
-        command.context_class = _Context
+        command.context_class, command.epilog = _Context, exit_statuses(cmd_name)
         return command
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
@@ -171,7 +171,7 @@ def _output_failed(error: OSError) -> int:
 @click.group(
     cls=_Kurbel,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog=exit_statuses(BROKEN, NO_SOLUTION),
+    epilog=exit_statuses("kurbel"),
 )
 @click.version_option(__version__, prog_name="kurbel", message="%(prog)s %(version)s")
 def kurbel() -> None:

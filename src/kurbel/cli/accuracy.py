@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kurbel.cli.exit_status import BROKEN, NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import Output, loaded, output_options, set_option
 
 if TYPE_CHECKING:
@@ -14,7 +13,7 @@ if TYPE_CHECKING:
     from kurbel.machine import Machine
 
 
-@click.command(short_help="Error against run time; stiff and extreme cases.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
+@click.command(short_help="Error against run time; stiff and extreme cases.")
 @click.argument("file", metavar="[FILE]", required=False, type=click.Path(allow_dash=True))
 @set_option
 @click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kurbel.cli.exit_status import BROKEN, DONE, NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import format_of, loaded, machine_file, width_option
+from kurbel.cli.exit_status import BROKEN, DONE
+from kurbel.cli.output_options import format_of, loaded, machine_file, output_option, width_option
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
 
 
-@click.command(short_help="Read and check a machine file and its limits.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
+@click.command(short_help="Read and check a machine file and its limits.")
 @machine_file
 @click.option(
     "--format",
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     type=click.Choice(["table", "json"]),
     help="json: every finding with its place. By the suffix of --output, or table, if not given.",
 )
-@click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
+@output_option
 @width_option
 def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: str | None, width: int | None) -> int:
     """Read the machine in FILE and say what will be computed, what is left out and why.
@@ -66,7 +66,7 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
     from kurbel.errors import KurbelError
     from kurbel.machine_file.positions import located_in
     from kurbel.render import Look
-    from kurbel.render.findings_json import findings_json
+    from kurbel.render.json_text import findings_json
     from kurbel.render.output import refuse_overwriting, stdout_look, write_out
     from kurbel.report.check import checked
     from kurbel.report.findings import faults_found, findings

@@ -2,13 +2,14 @@
 
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from kurbel.cli.completion import complete_override
-from kurbel.cli.exit_status import exit_statuses
-from kurbel.cli.output_options import Words, format_of, machine_file, stacked, units_option
+from kurbel.cli.output_options import format_of, machine_file, output_option, stacked, units_option
+from kurbel.cli.readings import words
 from kurbel.render import Look
 
 if TYPE_CHECKING:
@@ -34,19 +35,17 @@ _what_varies = stacked(
     click.option("--sobol", is_flag=True, help="The sequence of Sobol instead of a Latin hypercube."),
 )
 _what_is_told = stacked(
-    click.option("--columns", type=Words(), metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
+    click.option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
     click.option("--angles", "with_angles", is_flag=True, help="Beside every extreme the crank angle where it stands."),
     click.option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only rows with 'c_max < 5 m/s'."),
     click.option("--sort", metavar="ID", help="The smallest of this column first; -ID: the largest."),
     click.option("--top", type=click.IntRange(1), metavar="N", help="Only the first N rows of --sort."),
-    click.option(
-        "--pareto", type=Words(), metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."
-    ),
+    click.option("--pareto", type=words, metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."),
     click.option("--summary", is_flag=True, help="Quantiles, and rank correlation with every input, instead of rows."),
 )
 _where_it_goes = stacked(
     click.option("--format", "-f", "format", type=click.Choice(_FORMATS), help="By the suffix of --output, or table."),
-    click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."),
+    output_option,
     click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign."),
     click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4, and all in csv and json."),
     click.option("--resume", is_flag=True, help="Go on where the --output file of an interrupted run ends."),
@@ -63,7 +62,7 @@ _who_computes = stacked(
 )
 
 
-@click.command(short_help="Key values of many designs of a machine.", epilog=exit_statuses())
+@click.command(short_help="Key values of many designs of a machine.")
 @machine_file
 @_what_varies
 @_what_is_told
@@ -81,33 +80,8 @@ def sweep(**options: Any) -> None:
     asked.run()
 
 
-class _Asked(NamedTuple):
+class _Asked(SimpleNamespace):
     """The options, by the names above."""
-
-    file: str
-    overrides: tuple[str, ...]
-    vary: tuple[str, ...]
-    side_by_side: bool
-    sample: int | None
-    seed: int
-    sobol: bool
-    columns: tuple[str, ...] | None
-    with_angles: bool
-    conditions: tuple[str, ...]
-    sort: str | None
-    top: int | None
-    pareto: tuple[str, ...] | None
-    summary: bool
-    units: str | None
-    format: str | None
-    file_name: str | None
-    decimal: str
-    digits: int | None
-    resume: bool
-    shard: str | None
-    jobs: int
-    dask: str | None
-    yes: bool
 
     @property
     def _look(self) -> Look:

@@ -213,7 +213,7 @@ def _size(value: Any) -> float:
 
 def _limit_answers(machine: Machine) -> Iterable[tuple[Answer, float]]:
     """Yield whose value each limit of the file is for, with its bound."""
-    from kurbel.report.limits import commands_for
+    from kurbel.report.compared import commands_for
     from kurbel.solver.case import Case
 
     case = Case(machine)

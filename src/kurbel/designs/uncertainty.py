@@ -206,7 +206,7 @@ _COMPARED = (("forces", ("c_max", "b_max", "work", "T_max")), ("flywheel", ("dE"
 """Command -> ids of the quantities whose other errors stand beside those of the data."""
 
 
-def data_uncertainty(machine: Machine) -> tuple[Difference, ...]:
+def data_uncertainty(machine: Machine) -> "tuple[Difference, ...]":
     """Return what the uncertainties in a machine's file make of motion, work and torques, relatively.
 
     Of the first cylinder and of the whole machine; errors: see `given_uncertainty`.

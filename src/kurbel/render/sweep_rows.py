@@ -8,8 +8,6 @@ from kurbel.render import Look
 from kurbel.render.csv_text import _harmless, _quoted
 from kurbel.render.numbers import exact, single
 
-FORMATS = ("table", "csv", "json", "markdown", "parquet")
-
 
 class Titles(NamedTuple):
     """Names of the columns with their units, in order, without those of the row itself.

@@ -1,7 +1,7 @@
 """The reports of `kurbel accuracy`: error against run time, and the verdicts on stiff and extreme cases."""
 
 import platform
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +13,8 @@ from kurbel.accuracy.scenes import Loads, Scene, built_in
 from kurbel.accuracy.timing import Patience
 from kurbel.accuracy.trials import Lacking, Row, dominating, examined
 from kurbel.machine import Machine
+from kurbel.report.commands import report_of
+from kurbel.report.frame import Frame
 from kurbel.report.provenance import provenance
 from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report, Value
 from kurbel.solver.case import Case
@@ -200,7 +202,7 @@ def answer(machine: Machine, asked: str) -> float | None:
     """
     command, _, quantity = asked.partition(" ")
     name, _, at = quantity.partition("@")
-    report = _reports()[command](Case(machine), (float(at or 0),), None, "si")
+    report = report_of(Case(machine), Frame(command, (float(at or 0),), None, "si"))
     for part in (report.whole, *report.parts):
         for column in part.columns if part and at else ():
             if column.id == name:
@@ -213,11 +215,3 @@ def answer(machine: Machine, asked: str) -> float | None:
 
 def _number(value: Any) -> float | None:
     return None if value is None else float(value)
-
-
-def _reports() -> dict[str, Callable[..., Any]]:
-    from kurbel.report.flywheel import flywheel_report
-    from kurbel.report.forces import forces_report
-    from kurbel.report.motion import motion_report
-
-    return {"motion": motion_report, "forces": forces_report, "flywheel": flywheel_report}

@@ -7,7 +7,6 @@ from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import groupby
 from typing import TypeVar
 
-from kurbel.machine.alike import gathered
 from kurbel.report.tables import Part, Report
 
 Item = TypeVar("Item")
@@ -41,6 +40,8 @@ def told_once(report: Report) -> Report:
     """Return the report with its equal cylinders as one part; its title names them where no other part is left."""
     if len(report.parts) < 2 or report.group != "cylinders":
         return report
+    from kurbel.machine.alike import gathered  # not for a table of factors, which knows no machine
+
     groups = gathered(report.parts, _equal)
     if len(groups) == len(report.parts):
         return report

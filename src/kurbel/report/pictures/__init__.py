@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kurbel.declared.reading import shown
+from kurbel.declared.shaft import SHAFT_PARTS
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.near_words import did_you_mean
@@ -101,21 +102,21 @@ PICTURES = (
         "Turning effort of the whole machine and the resistance, its lobes numbered with their work; below the excess "
         "work and the speed (R Abb. 1064 to 1067).",
         "flywheel",
-        "whole_machine:effort",
+        "effort:effort",
     ),
     Declared(
         "throw-stress",
         "Beanspruchung der Kurbelwelle",
         "Largest combined stress of each part of the crank throw over the cycle.",
         "stress",
-        "whole_machine:throw_stress",
+        rows=(tuple(f"sigma_{part}" for part in SHAFT_PARTS),),
     ),
     Declared(
         "bearing-loads",
         "Lagerkräfte in polarer Darstellung",
         "The way of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod.",
         "bearings",
-        "bearings:polar_loads",
+        "vectors:polar_loads",
         across=2,
     ),
     Declared(
@@ -137,21 +138,21 @@ PICTURES = (
         "Massenausgleich: freie Kräfte und Momente",
         "The way that the tip of the free force, and of the free moment, runs over a turn.",
         "balance",
-        "balance:free_vectors",
+        "vectors:free_vectors",
     ),
     Declared(
         "free-angle",
         "Freie Kräfte und Momente über dem Kurbelwinkel",
         "Free force, free moment and rolling moment on the frame over the crank angle.",
         "balance",
-        "balance:free_over_angle",
+        rows=(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",)),
     ),
     Declared(
         "free-orders",
         "Ordnungen der freien Kräfte und Momente",
         "The circles of each order, with the rotation and against it.",
         "balance",
-        "balance:free_orders",
+        "orders:free_orders",
     ),
     Declared(
         "motion",
