@@ -17,7 +17,7 @@ from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, tu
 from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.four_bar_loop import Loop
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
-from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
+from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing, turning_offers
 from kurbel.numerics.arithmetic import bearing
 from kurbel.numerics.extreme import Extreme
 
@@ -34,21 +34,11 @@ def _coupler_column(end: str, symbol: str, kind: str, text: str) -> Quantity:
     return turning_column(f"theta_coupler{end}", symbol, plain, kind, f"{text} of the coupler", "theta_ddot")
 
 
-COUPLER_OFFERS = (
-    Offer(
-        _coupler_column("", "θ_K", "angle", "Angle, from the line crank pivot → rocker pivot,"),
-        lambda one, angle: one.coupler_at(angle).degrees,
-    ),
-    Offer(
-        _coupler_column("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
-        lambda one, angle: one.coupler_at(angle).slope,
-        ("omega",),
-    ),
-    Offer(
-        _coupler_column("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
-        lambda one, angle: one.coupler_at(angle).curvature,
-        ("omega", "omega"),
-    ),
+COUPLER_OFFERS = turning_offers(
+    "coupler_at",
+    _coupler_column("", "θ_K", "angle", "Angle, from the line crank pivot → rocker pivot,"),
+    _coupler_column("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
+    _coupler_column("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
 )
 
 

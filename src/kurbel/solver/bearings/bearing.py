@@ -78,10 +78,7 @@ class Bearing(Results):
 
     # the cycle
 
-    @property
-    def breaks(self) -> Array:
-        """The crank angles in degrees between which every quantity is smooth."""
-        return self._grid.breaks
+    breaks = passed_on("_grid", "breaks", "The crank angles in degrees between which every quantity is smooth.")
 
     def _evaluate(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return size and directions of the load, and the rate at which its surfaces rub."""

@@ -14,10 +14,9 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
-from kurbel.solver.shaft.statics import FreeBody, Vector, weight_in_throw
+from kurbel.solver.shaft.statics import FreeBody, Vector, flywheel_weight
 from kurbel.solver.shaft.weights import OwnThrow, counterweights_of, unit_vector
 
 if TYPE_CHECKING:
@@ -80,15 +79,10 @@ class ShaftLine:
 
         pin: force on its pin in N; own: a cylinder on it, and its own crank angle, for the weight of the flywheel.
         """
-        body = FreeBody(self.shaft, own.mechanism.crank, pin, self._weight(throw, own, angle))
+        weight = flywheel_weight(self.machine, own, angle) if throw.flywheel else Vector(0.0, 0.0)
+        body = FreeBody(self.shaft, own.mechanism.crank, pin, weight)
         omega = 2 * math.pi * (self.machine.speed or 0.0)
         return _pulled(body.A, throw.at_A * omega * omega), _pulled(body.B, throw.at_B * omega * omega)
-
-    def _weight(self, throw: Throw, own: Cylinder, angle: CrankAngle) -> Vector:
-        lean = self.machine.lean_of(self.machine.cylinders[0])
-        if not throw.flywheel or lean is None or not self.shaft.flywheel_mass:
-            return Vector(0.0, 0.0)
-        return weight_in_throw(self.shaft.flywheel_mass * GRAVITY, angle, lean + own.bank_angle)
 
 
 def shaft_obstacle(machine: Machine) -> str:

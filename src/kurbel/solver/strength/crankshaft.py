@@ -19,8 +19,8 @@ from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.pins import on_pin
 from kurbel.solver.cylinder.state import State
-from kurbel.solver.figures import Columns, Results
-from kurbel.solver.shaft.statics import FreeBody, Vector, equilibrium_residual, norm, weight_in_throw
+from kurbel.solver.figures import Columns, Results, passed_on
+from kurbel.solver.shaft.statics import FreeBody, Vector, equilibrium_residual, flywheel_weight, norm
 from kurbel.solver.strength.places import PARTS, Place, Stresses, places
 
 
@@ -61,11 +61,8 @@ class CrankshaftStrength(Results):
         return self.shaft.flywheel_mass * GRAVITY
 
     def _body(self, pin: Vector, angle: CrankAngle) -> FreeBody:
-        inclination = self.machine.lean_of(self.forces.drive.cylinder)
-        turned = Vector(0.0, 0.0)
-        if self.weight is not None and inclination is not None:
-            turned = weight_in_throw(self.weight, angle, inclination)
-        return FreeBody(self.shaft, self.forces.drive.mechanism.crank, pin, turned)
+        cylinder = self.forces.drive.cylinder
+        return FreeBody(self.shaft, cylinder.mechanism.crank, pin, flywheel_weight(self.machine, cylinder, angle))
 
     @property
     def C_rod(self) -> float | None:
@@ -86,10 +83,7 @@ class CrankshaftStrength(Results):
             found[f"mises_{part}"] = _largest([one.von_mises() for one, _ in own])
         return Columns(phi, {id: partial(found.get, id) for id in found})
 
-    @property
-    def breaks(self) -> Array:
-        """The crank angles in degrees between which every quantity is smooth."""
-        return self._grid.breaks
+    breaks = passed_on("_grid", "breaks", "The crank angles in degrees between which every quantity is smooth.")
 
     # the cycle
 
