@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurbel.accuracy.given import Given
-from kurbel.accuracy.periodic import SAMPLE_STEP
+from kurbel.accuracy.periodic import SAMPLE_STEP, around
 from kurbel.accuracy.textbook import Moved, TextbookMachine
 from kurbel.machine import Machine
 
@@ -185,15 +185,8 @@ def implicit_trapezoid(problem: SpeedProblem, steps: int) -> March:
 
 def _cyclic(before: Array, after: Array, left: Array) -> Array:
     """Solve after_i d_(i+1) − before_i d_i = −left_i around the cycle."""
-    alpha, beta = (before / after).tolist(), (-left / after).tolist()
-    a, b = 1.0, 0.0
-    for factor, rest in zip(alpha, beta):
-        a, b = factor * a, factor * b + rest
-    value, found = b / (1 - a), []
-    for factor, rest in zip(alpha, beta):
-        found.append(value)
-        value = factor * value + rest
-    return np.array(found)
+    moves = zip((-left / after).tolist(), (before / after).tolist())
+    return np.roll([end for (end,) in around([[move] for move in moves])], 1)
 
 
 def scipy_march(problem: SpeedProblem, method: str, tolerance: float, turns: int) -> March:
