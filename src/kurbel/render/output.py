@@ -83,12 +83,15 @@ def stdout_look() -> Look:
     return Look(encoding=stdout_charset().encoding, width=stdout_width())
 
 
-def write_out(texts: Iterable[str], file_name: str | None) -> None:
-    """Write to a file as UTF-8, or to standard output in the encoding of that; raises UsageError as both do."""
+def write_out(texts: Iterable[str], file_name: str | None, encoding: str | None = None) -> None:
+    """Write to a file as UTF-8, or to standard output, in its own encoding if none is given; UsageError as both.
+
+    What is to be piped on as a file is UTF-8 whatever the encoding of standard output.
+    """
     if file_name is not None and file_name != "-":
         write_file(file_name, texts)
     else:
-        write_stdout(texts)
+        write_stdout(texts, encoding)
 
 
 def write_stdout(texts: Iterable[str], encoding: str | None = None) -> None:
@@ -116,14 +119,6 @@ def silence(stream: Any) -> None:
     """Let what is still buffered go nowhere: Python would complain about it at its end, and change the exit status."""
     with suppress(OSError, ValueError, AttributeError):  # there may be no real file behind it
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-
-
-def write_text(texts: Iterable[str], file_name: str | None = None) -> None:
-    """Write UTF-8 text unchanged to a file, or to standard output whatever its encoding: a file that is piped on."""
-    if file_name is not None and file_name != "-":
-        write_file(file_name, texts)
-    else:
-        write_stdout(texts, "utf-8")
 
 
 def write_file(file_name: str, texts: Iterable[str]) -> None:

@@ -43,19 +43,8 @@ def csv_rows(titles: Titles, rows: Iterable[Any], look: Look, headed: bool = Tru
     if headed:
         yield separator.join(_quoted(_harmless(name), separator) for name in titles.whole) + "\n"
     for row in rows:
-        texts = (_csv_cell(value, look) for value in titles.values(row))
+        texts = (_cell(value, look, in_full=True) for value in titles.values(row))
         yield separator.join(_quoted(text, separator) for text in texts) + "\n"
-
-
-def _csv_cell(value: Any, look: Look) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, str):
-        return _harmless(look.charset.text(value))
-    if isinstance(value, tuple):
-        return " ".join(_csv_cell(one, look) for one in value)
-    text = exact(value, look.digits)
-    return text.replace(".", ",") if look.comma else text
 
 
 def json_rows(titles: Titles, rows: Iterable[Any], look: Look) -> Iterator[str]:
@@ -81,13 +70,17 @@ def _escaped(text: str) -> str:
     return text.replace("\\", "\\\\").replace("|", "\\|")
 
 
-def _cell(value: Any, look: Look) -> str:
+def _cell(value: Any, look: Look, in_full: bool = False) -> str:
+    """Return a value as text, its number to four digits, or in full as csv has it."""
     if value is None:
         return ""
     if isinstance(value, str):
-        return look.charset.text(value)
+        return _harmless(look.charset.text(value)) if in_full else look.charset.text(value)
     if isinstance(value, tuple):
-        return " ".join(_cell(one, look) for one in value)
+        return " ".join(_cell(one, look, in_full) for one in value)
+    if in_full:
+        text = exact(value, look.digits)
+        return text.replace(".", ",") if look.comma else text
     text, power = single(value, look.digits, look.comma)
     return f"{text}e{power}" if power else text
 
