@@ -1,7 +1,8 @@
 """The frame of every report on a machine: from the results of a command and its declared quantities to tables."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_value
 from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.figures import answered
+
+if TYPE_CHECKING:
+    from kurbel.solver.case import Case
 
 
 class Subject(NamedTuple):
@@ -183,3 +187,22 @@ class Frame(NamedTuple):
                 )
             if there:
                 raise UsageError(f"--columns: '{name}' is left out for this machine, which has {', '.join(there)}")
+
+
+# what every command has in its own file, by its word
+
+
+def report_of(case: "Case", frame: Frame) -> Report:
+    """Return the report of the command that the frame is of."""
+    report: Report = getattr(_room(frame.command), f"{frame.command}_report")(case, frame)
+    return report
+
+
+def subjects_of(case: "Case", command: str) -> Iterable[Subject]:
+    """Return what a command speaks of, with the key values that it has."""
+    subjects: Iterable[Subject] = _room(command).subjects(case)
+    return subjects
+
+
+def _room(command: str) -> Any:
+    return import_module(f"kurbel.report.{command}")

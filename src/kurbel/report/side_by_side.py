@@ -12,9 +12,8 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import Extreme
-from kurbel.report.commands import subjects_of
 from kurbel.report.document import Document, Grid, Pair, Section
-from kurbel.report.frame import Subject
+from kurbel.report.frame import Subject, subjects_of
 from kurbel.report.pictures import PICTURES, Wish, pictures
 from kurbel.report.pictures.picture import Picture
 from kurbel.report.provenance import provenance
