@@ -35,15 +35,12 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
         return
     encoding = "utf-8" if look.format in _SAYING_UTF_8 else stdout_charset().encoding
     look = look._replace(encoding=encoding, width=look.width or stdout_width())
-    if look.format == "table" and write_coloured(_page(report, look), look):
-        return
+    if look.format == "table":
+        from kurbel.render.page import page
+
+        if write_coloured(page(report, look), look):
+            return
     write_stdout(pieces(report, look), encoding)
-
-
-def _page(report: Report, look: Look) -> Iterator[Line]:
-    from kurbel.render.page import page
-
-    return page(report, look)
 
 
 def write_coloured(page: Iterable[Line], look: Look) -> bool:

@@ -206,11 +206,8 @@ class SweepOutput:
 def _column(values: tuple[Any, ...]) -> list[Any]:
     """Return values of one type: texts, numbers, or lists of them."""
     texts = any(isinstance(one, str) for one in values)
-    return [one if one is None or not texts else str(one) for one in map(_listed, values)]
-
-
-def _listed(value: Any) -> Any:
-    return list(value) if isinstance(value, tuple) else value
+    listed = (list(one) if isinstance(one, tuple) else one for one in values)
+    return [one if one is None or not texts else str(one) for one in listed]
 
 
 def _flow(texts: Iterable[str], file: Any, encoding: str) -> None:

@@ -15,7 +15,7 @@ from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_value
-from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
+from kurbel.report.tables import Column, Later, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.figures import answered
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ class Frame(NamedTuple):
         return Part(
             subject.name,
             columns,
-            self._later(lambda: self._key_values(subject)),
+            self._later(lambda: (shown_key_value(*one, self.system) for one in subject.key_values(self.command))),
             self._later(subject.left_out),
             self._later(subject.warnings),
             subject.place_tables,
@@ -153,10 +153,6 @@ class Frame(NamedTuple):
 
     def _adds(self, column: Quantity) -> bool:
         return column.id == self.over or (self.compare and column.id.endswith("_book"))
-
-    def _key_values(self, subject: Subject) -> Iterator[KeyValue]:
-        for quantity, value in subject.key_values(self.command):
-            yield shown_key_value(quantity, value, self.system)
 
     def _nothing_compared(self, parts: Sequence[Part]) -> Iterator[str]:
         compared = any(column.id.endswith("_book") for part in parts for column in part.columns)
