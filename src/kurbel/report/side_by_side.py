@@ -15,7 +15,7 @@ from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.document import Document, Grid, Pair, Section
 from kurbel.report.frame import Subject
-from kurbel.report.pictures import PICTURES, Wish, pictures
+from kurbel.report.pictures import PICTURES, Declared, Wish, pictures_if_any
 from kurbel.report.pictures.picture import Picture
 from kurbel.report.provenance import provenance
 from kurbel.report.whole import COMMANDS, Command, Given, Progress
@@ -61,7 +61,7 @@ def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterato
             yield Grid(title, heads, rows, (1, 2, 4), (3,))
     for declared in PICTURES:
         if declared.command == command.word:
-            drawn = [_pictures(case, declared.id, system) for case in cases]
+            drawn = [_pictures(case, declared, system) for case in cases]
             yield from (Pair(left, right) for left, right in zip_longest(*drawn))
 
 
@@ -72,9 +72,9 @@ def _subjects(case: Case, command: str) -> list[Subject]:
         return []
 
 
-def _pictures(case: Case, id: str, system: str) -> list[Picture]:
+def _pictures(case: Case, declared: Declared, system: str) -> list[Picture]:
     try:
-        return list(pictures(case, (id,), Wish(system)))
+        return pictures_if_any(case, declared, Wish(system))
     except KurbelError:
         return []
 
