@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from importlib import import_module
 
 import click
 
@@ -161,7 +160,8 @@ def _example(word: str, key: Key) -> str:
 
 
 def _command(name: str) -> str:
-    command: click.Command = getattr(import_module(f"kurbel.cli.{name}"), name)
+    command = kurbel.get_command(click.Context(kurbel), name)
+    assert command
     # as the group names it: a command keeps the first help option that it is asked for
     names = kurbel.context_settings["help_option_names"]
     context = click.Context(command, info_name=f"kurbel {name}", help_option_names=names)

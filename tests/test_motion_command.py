@@ -286,7 +286,7 @@ def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) ->
     code = (
         "from kurbel.declared.forms import Record\nfrom kurbel.mechanisms import MECHANISMS\n"
         "MECHANISMS['harmonic-cam'] = Record('toy_mechanism:HarmonicCam')\n"
-        "from kurbel.cli import main\nmain()\n"
+        "from kurbel.__main__ import main\nmain()\n"
     )
 
     def called(command: str) -> dict[str, Any]:

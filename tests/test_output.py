@@ -23,6 +23,7 @@ from kurbel.render.output import write_file
 from kurbel.report import shown
 from kurbel.report.angles import MOST_ROWS, check_rows, stepped
 from kurbel.report.forces import forces_report
+from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 from representative import few
 
@@ -96,7 +97,7 @@ def test_what_fails_half_way_leaves_the_old_file_and_nothing_beside_it(tmp_path:
 def test_a_full_disk_leaves_the_old_file_whole(tmp_path: Path) -> None:
     limited = (
         "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN); "
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (512, 512)); from kurbel.cli import main; main()"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (512, 512)); from kurbel.__main__ import main; main()"
     )
     (tmp_path / "out.csv").write_text("old")
     # -B: under such a limit Python would leave its compiled modules torn behind
@@ -272,8 +273,8 @@ def peak(work: Callable[[], object]) -> tuple[object, int]:
 def test_columns_are_computed_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shown, "_AT_ONCE", 100)
     case, angles = Case(loads(MACHINE + PRESSURE)), stepped(0.02, 360)
-    forces_report(case, [0.0], ("P", "T"), "si")  # the extremes, and what is imported
-    _, needed = peak(lambda: forces_report(case, angles, ("P", "T"), "si"))
+    forces_report(case, Frame("forces", [0.0], ("P", "T"), "si"))  # the extremes, and what is imported
+    _, needed = peak(lambda: forces_report(case, Frame("forces", angles, ("P", "T"), "si")))
     assert needed < 1.3 * 3 * len(angles) * 8  # three columns of doubles
 
 
@@ -284,7 +285,7 @@ LOOKS = [(format, layout) for format in FORMATS for layout in ("book", "rows")]
 def test_rows_are_written_as_they_are_made(format: str, layout: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(json_text, "_AT_ONCE", 100)
     case, look = Case(loads(MACHINE + PRESSURE)), Look(format, layout)
-    short, long = (forces_report(case, stepped(step, 360), ("P", "T"), "si") for step in (90, 0.1))
+    short, long = (forces_report(case, Frame("forces", stepped(step, 360), ("P", "T"), "si")) for step in (90, 0.1))
     text = len(render(short, look))
     longer, needed = peak(lambda: sum(map(len, pieces(long, look))))
     assert longer > text + 3600 * 12
@@ -294,7 +295,9 @@ def test_rows_are_written_as_they_are_made(format: str, layout: str, monkeypatch
 def test_columns_do_not_hang_on_how_many_angles_are_computed_at_once() -> None:
     case = Case(loads(MACHINE + PRESSURE))
     angles = stepped(0.02, 360)
-    (whole,), (some,) = (forces_report(case, list(one), None, "si").parts for one in (angles, angles[8000:8400]))
+    (whole,), (some,) = (
+        forces_report(case, Frame("forces", list(one), None, "si")).parts for one in (angles, angles[8000:8400])
+    )
     for column, piece in zip(whole.columns, some.columns):
         assert column.id == piece.id
         assert list(column.values[8000:8400]) == pytest.approx(list(piece.values), rel=1e-15, abs=1e-300)

@@ -19,6 +19,7 @@ from kurbel.machine.masses import Masses
 from kurbel.mechanisms import Mechanism, every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.forces import forces_report
+from kurbel.report.frame import Frame
 from kurbel.solver.balance.columns import BalanceColumns
 from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
@@ -95,7 +96,9 @@ class TestACamFromOutside:
     machine = Machine((Cylinder(HarmonicCam(0.02, 0.002), masses=Masses(2.0)),), speed=10.0)
 
     def test_its_own_column_and_its_extremes(self) -> None:
-        (part,) = forces_report(Case(self.machine), np.arange(0.0, 361.0, 1.0).tolist(), None, "si").parts
+        (part,) = forces_report(
+            Case(self.machine), Frame("forces", np.arange(0.0, 361.0, 1.0).tolist(), None, "si")
+        ).parts
         columns = {column.id: column.values for column in part.columns}
         values = {value.id: value.value for value in part.key_values}
         ids = [column.id for column in part.columns]

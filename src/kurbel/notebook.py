@@ -1,7 +1,5 @@
 """What a notebook shows of results: the tables of the reports, and pictures."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.errors import KurbelError
@@ -16,7 +14,7 @@ if TYPE_CHECKING:
 class Drawing(NamedTuple):
     """Pictures of a machine, one below the other; a notebook shows them."""
 
-    pictures: tuple[Picture, ...]
+    pictures: "tuple[Picture, ...]"
 
     def _repr_svg_(self) -> str:
         from kurbel.render import Look

@@ -47,6 +47,15 @@ def test_a_crank_that_leads_by_90_degrees_is_ahead_by_90_degrees() -> None:
     assert pytest.approx(alone.at(ANGLES).M + alone.at(ANGLES + 90).M, rel=1e-12, abs=1e-9) == both.at(ANGLES).M
 
 
+def test_cylinders_that_work_alike_give_what_each_gives_by_itself() -> None:
+    """They are asked as one, each at its own angles; one that is heavier, and one on the next bank, by themselves."""
+    heavier = replace(ENGINE, masses=Masses(900.0), crank_position=200.0)
+    across = replace(ENGINE, bank_angle=60.0, crank_position=260.0)
+    machine = turning(ENGINE, replace(ENGINE, crank_position=90.0), heavier, across, efficiency=0.9)
+    each = (part.effort.torque(ANGLES, ANGLES).value for part in machine.turned.of_cylinders)
+    np.testing.assert_allclose(machine.at(ANGLES).M, 0.9 * sum(each), rtol=1e-13, atol=1e-9)
+
+
 def test_the_efficiency_scales_the_turning_effort_only() -> None:
     """R p. 611."""
     whole, less = turning(ENGINE), turning(ENGINE, efficiency=0.9)

@@ -24,7 +24,7 @@ from kurbel.machine_file import load, loads
 from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.check import checked
-from kurbel.report.plausibility import brake_warnings, trace_warnings
+from kurbel.report.warnings import brake_warnings, trace_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from machines import one_cylinder
@@ -499,10 +499,13 @@ def test_indicated_below_brake_power(tmp_path: Path) -> None:
 
 def test_samples_too_far_apart_are_told() -> None:
     from kurbel.report.forces import forces_report
+    from kurbel.report.frame import Frame
 
     def told(points: list[tuple[float, float]]) -> bool:
         piston = Piston(0.3, indicator=Indicator(Measured.from_keys(unit=(BAR, 1), points=points)))
-        (part,) = forces_report(Case(Machine((Cylinder(CRANK, pistons=(piston,)),))), [0.0], None, "si").parts
+        (part,) = forces_report(
+            Case(Machine((Cylinder(CRANK, pistons=(piston,)),))), Frame("forces", [0.0], None, "si")
+        ).parts
         return any("the samples stand too far apart" in warning for warning in part.warnings)
 
     coarse = [(a, float(smooth(a))) for a in range(0, 361, 60)]

@@ -3,8 +3,6 @@
 Both are differences between two calculations that are alike otherwise, relative to the exact one.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """What leaving out saves: the same machine with less and less in it, the stages evaluated, and their time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cached_property, partial

@@ -3,8 +3,6 @@
 Each method returns ω (n,) in rad/s at every 30° of the last turn, and says in `state` what went wrong.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -4,8 +4,6 @@ Nothing is shared with the solver: angles are reduced, pressures found and signs
 nearly equal numbers are left as they stand in the books; the digits of the decimal context pay for them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from decimal import Decimal
 from functools import cached_property, lru_cache

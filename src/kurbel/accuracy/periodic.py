@@ -4,8 +4,6 @@ K is the kinetic energy ½ J(φ) ω², K′ = M(φ) − M_load(ω) per radian. T
 the solver's, on another mesh, with other unknowns and 40 digits; floats only find where the decimals begin.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from decimal import Decimal, getcontext

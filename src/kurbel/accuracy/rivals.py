@@ -1,7 +1,5 @@
 """The methods side by side for every quantity: kurbel's own, and what people do otherwise."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The machines of `kurbel accuracy` where no file is given, and what they are there for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

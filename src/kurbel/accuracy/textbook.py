@@ -4,8 +4,6 @@
 velocity factor to three decimals, as Zusammenstellung 112 has it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """How long a method takes: one warm-up, then the median and the least of some repeats."""
 
-from __future__ import annotations
-
 import statistics
 import time
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """One row for every method of every quantity of a scene: error against the reference, time, state."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal

@@ -6,7 +6,6 @@ with inside its function.
 
 from __future__ import annotations
 
-import gc
 import os
 import sys
 import warnings
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from kurbel import __version__
-from kurbel.cli.exit_status import BROKEN, DONE, INTERNAL, INTERRUPTED, NO_SOLUTION, WRONG, exit_statuses
+from kurbel.cli.exit_status import DONE, INTERNAL, INTERRUPTED, WRONG, exit_statuses
 from kurbel.errors import KurbelError, MachineFileError
 
 if TYPE_CHECKING:
@@ -61,7 +60,7 @@ class _Kurbel(click.Group):
         from importlib import import_module
 
         command: click.Command = getattr(import_module(f"kurbel.cli.{cmd_name}"), cmd_name)
-        command.context_class = _Context
+        command.context_class, command.epilog = _Context, exit_statuses(cmd_name)
         return command
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
@@ -172,7 +171,7 @@ def _output_failed(error: OSError) -> int:
 @click.group(
     cls=_Kurbel,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog=exit_statuses(BROKEN, NO_SOLUTION),
+    epilog=exit_statuses("kurbel"),
 )
 @click.version_option(__version__, prog_name="kurbel", message="%(prog)s %(version)s")
 def kurbel() -> None:
@@ -195,12 +194,3 @@ def kurbel() -> None:
 
     Results go to standard output, everything else to standard error.
     """
-
-
-def main() -> NoReturn:
-    """Run the command line."""
-    gc.disable()  # a run is too short for its garbage to matter; looking for it costs a twentieth of the time
-    try:
-        kurbel.main()
-    finally:
-        gc.freeze()  # saves the collector's last tour through everything imported, a tenth of the run of `kurbel table`

@@ -7,7 +7,6 @@ import os
 import click
 
 from kurbel.cli.completion import complete_example
-from kurbel.cli.exit_status import exit_statuses
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # a wheel carries the machines inside the package; in a checkout they lie beside src, where people look for them
@@ -15,7 +14,7 @@ _PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, 
 _SUFFIX = ".yaml"
 
 
-@click.command(short_help="List the shipped machines, or print one.", epilog=exit_statuses())
+@click.command(short_help="List the shipped machines, or print one.")
 @click.argument("name", required=False, shell_complete=complete_example)
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
 def example(name: str | None, file_name: str | None) -> None:

@@ -14,11 +14,18 @@ _MEANINGS = {
 }
 
 
-def exit_statuses(*own: int) -> str:
-    """Return the last sentence of a help: the statuses of every command, and those that only some return."""
+_OF_SOME = {
+    BROKEN: ("kurbel", "check", "accuracy"),
+    NO_SOLUTION: (
+        *("kurbel", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
+        *("plot", "check", "accuracy"),
+    ),
+}
+"""Statuses that only some commands return."""
+
+
+def exit_statuses(command: str) -> str:
+    """Return the last sentence of the help of a command, or of `kurbel` itself."""
     return "Exit status: " + "; ".join(
-        f"{status} {meaning}" for status, meaning in _MEANINGS.items() if status in own or status not in _OF_SOME
+        f"{status} {meaning}" for status, meaning in _MEANINGS.items() if command in _OF_SOME.get(status, (command,))
     )
-
-
-_OF_SOME = (BROKEN, NO_SOLUTION)

@@ -1,7 +1,5 @@
 """Every quantity that kurbel prints, declared once: reports, CSV heads, JSON, limits and docs read it here."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
@@ -247,7 +245,7 @@ class Lists(NamedTuple):
     all_key_values: tuple[Quantity, ...]
 
     @classmethod
-    def of(cls, columns: Iterable[Quantity] = (), key_values: Iterable[Quantity] = ()) -> Lists:
+    def of(cls, columns: Iterable[Quantity] = (), key_values: Iterable[Quantity] = ()) -> "Lists":
         """Return what every machine may have, and these quantities, which a mechanism adds."""
         found = placed((*_COLUMNS, *columns))
         common = (
@@ -268,7 +266,7 @@ class Lists(NamedTuple):
         return cls(found, placed((*common, *key_values)))
 
     @property
-    def absolute(self) -> Lists:
+    def absolute(self) -> "Lists":
         """The same for a machine whose pressures are absolute."""
         return Lists(*(tuple(one.absolute() for one in each) for each in self))
 

@@ -4,8 +4,6 @@ In a machine file it is a list that is read along the shaft; it becomes a `Shaft
 of the cranks.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -81,7 +79,7 @@ class ShaftPart(Described):
     }
 
     @classmethod
-    def of_keys(cls, cylinder: str | tuple[str, ...] | None = None, **keys: object) -> ShaftPart:
+    def of_keys(cls, cylinder: str | tuple[str, ...] | None = None, **keys: object) -> "ShaftPart":
         """Return the item that these keys of a machine file describe; raises RuleError."""
         names = (cylinder,) if isinstance(cylinder, str) else cylinder
         return cls(cylinder=names, **keys)  # type: ignore[arg-type]

@@ -1,7 +1,5 @@
 """The keys that say how a file of samples is laid out, and the samples that are read by them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -61,7 +59,7 @@ class Layout(NamedTuple):
     decimal: str = "point"
 
     @classmethod
-    def of_keys(cls, what: str, **keys: Any) -> Layout:
+    def of_keys(cls, what: str, **keys: Any) -> "Layout":
         """Return the layout that the keys describe; raises RuleError for those that contradict one another."""
         several = keys.pop(f"{what}_columns", None)
         key, columns = (f"{what}_columns", several) if several else (f"{what}_column", (keys.pop(f"{what}_column", 2),))
@@ -78,7 +76,7 @@ class Layout(NamedTuple):
         refuse(*faults)
         return layout
 
-    def degrees(self, column: Array | None, rows: int) -> Array:
+    def degrees(self, column: "Array | None", rows: int) -> "Array":
         """Return the angles (rows,) in degrees that a column of the file tells, or none."""
         import numpy as np
 
@@ -89,7 +87,9 @@ class Layout(NamedTuple):
         return np.asarray(column * math.degrees(1.0) if self.angle_unit == "rad" else column)
 
 
-def samples_of(file: str, layout: Layout, what: str, base: Callable[[Array], Array], against: bool = False) -> Samples:
+def samples_of(
+    file: str, layout: Layout, what: str, base: "Callable[[Array], Array]", against: bool = False
+) -> "Samples":
     """Return the laps of what was measured from a file; raises RuleError.
 
     base: turns figures of the file into the base of their unit; against: angles count against the rotation.
@@ -119,8 +119,8 @@ def samples_of(file: str, layout: Layout, what: str, base: Callable[[Array], Arr
 
 
 def turned(
-    angles: Array, values: Array, named: Callable[[int], Fault], against: bool
-) -> tuple[Array, Array, Callable[[int], Fault]]:
+    angles: "Array", values: "Array", named: Callable[[int], Fault], against: bool
+) -> "tuple[Array, Array, Callable[[int], Fault]]":
     """Return samples as they are, or those that were counted `against` the rotation in the order of time."""
     if not against:
         return angles, values, named

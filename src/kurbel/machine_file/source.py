@@ -1,7 +1,5 @@
 """The bytes of a machine file and the text they make, before any YAML is looked at."""
 
-from __future__ import annotations
-
 import os
 import re
 from typing import NamedTuple

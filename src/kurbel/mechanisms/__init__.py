@@ -4,12 +4,11 @@ A mechanism is one file with one class, and one line in `MECHANISMS`. None impor
 the crank angle is made of. What a new mechanism must supply stands in `Mechanism`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Described, Keys
 from kurbel.declared.quantities import Lists
@@ -19,7 +18,6 @@ from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
-    from kurbel.crank_angle import CrankAngle
     from kurbel.mechanisms.coupler import Coupler
     from kurbel.mechanisms.sketch import Sketch
 
@@ -212,11 +210,11 @@ class Mechanism(Described):
         """Return (sin ψ, cos ψ) of the connecting rod, or None where there is none."""
         return None
 
-    def coupler_at(self, angle: CrankAngle) -> Coupler | None:
+    def coupler_at(self, angle: CrankAngle) -> "Coupler | None":
         """Return how the connecting rod or coupler on the crank pin lies and turns, or None where there is none."""
         return None
 
-    def sketch(self, angle: CrankAngle) -> Sketch | None:
+    def sketch(self, angle: CrankAngle) -> "Sketch | None":
         """Return what is drawn of the mechanism at the crank angle, or None where that cannot be drawn."""
         return None
 

@@ -1,7 +1,5 @@
 """Slotted lever (schwingende Kurbelschleife): the quick return of shapers, R p. 617, and Whitworth's rotating lever."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple

@@ -1,7 +1,5 @@
 """The swinging member of a mechanism: what a lever, a rocker or a second crank, and its coupler, offer."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 

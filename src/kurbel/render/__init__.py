@@ -1,14 +1,10 @@
 """From a neutral report to text: the page of the book, one line per angle, CSV, JSON, Markdown, HTML and LaTeX."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from kurbel.render.charset import Charset
-
-if TYPE_CHECKING:
-    from kurbel.report.tables import Report
+from kurbel.report.tables import Report
 
 FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
 LAYOUTS = ("book", "rows")

@@ -1,18 +1,14 @@
 """Tables whose rows are named places: the names on the left, quantities across."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from kurbel.render import Look
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import Line, Piece, line
 from kurbel.render.numbers import Scale, alone, angle, cell, scale_of
 from kurbel.render.prose import folded
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import Column, PlaceTable, Report, Value
+from kurbel.report.tables import Column, PlaceTable, Report, Value
 
 _GAP = 2
 
@@ -33,7 +29,7 @@ class Cells(NamedTuple):
         """The widths of the columns."""
         return [max(map(width, texts)) for texts in zip(*zip(*self.heads), *self.rows)]
 
-    def fitting(self, room: int | None, over: tuple[str, ...]) -> Iterator[Cells]:
+    def fitting(self, room: int | None, over: tuple[str, ...]) -> "Iterator[Cells]":
         """Yield the table in parts that fit into so many columns; without names the first column says again which row.
 
         A part has one column more than what says the row, however narrow it must be.
@@ -48,7 +44,7 @@ class Cells(NamedTuple):
             chosen.append(number)
         yield self._of(*range(first), *chosen)
 
-    def _of(self, *columns: int) -> Cells:
+    def _of(self, *columns: int) -> "Cells":
         return Cells(
             self.names,
             tuple(self.heads[k] for k in columns),

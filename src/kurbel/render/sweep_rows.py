@@ -1,18 +1,12 @@
 """Rows of a sweep as text: csv, json lines, markdown, or a table; each row is made when it is asked for."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from kurbel.render import Look
 from kurbel.render.csv_text import _harmless, _quoted
 from kurbel.render.numbers import exact, single
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-
-FORMATS = ("table", "csv", "json", "markdown", "parquet")
 
 
 class Titles(NamedTuple):

@@ -1,9 +1,7 @@
 """The reports of `kurbel accuracy`: error against run time, and the verdicts on stiff and extreme cases."""
 
-from __future__ import annotations
-
 import platform
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +13,8 @@ from kurbel.accuracy.scenes import Loads, Scene, built_in
 from kurbel.accuracy.timing import Patience
 from kurbel.accuracy.trials import Lacking, Row, dominating, examined
 from kurbel.machine import Machine
+from kurbel.report.commands import report_of
+from kurbel.report.frame import Frame
 from kurbel.report.provenance import provenance
 from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report, Value
 from kurbel.solver.case import Case
@@ -34,11 +34,14 @@ class Measured(NamedTuple):
     savings: tuple[Saving, ...]
 
 
-def accuracy_report(machine: Machine | None, quick: bool, loads: Loads) -> Report:
-    """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and points."""
+def accuracy_report(machine: Machine | None, quick: bool, loads: Loads, uncertain: Sequence[Difference] = ()) -> Report:
+    """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and points.
+
+    uncertain: what the uncertainties of the machine's data make of its quantities.
+    """
     scenes = built_in(quick, loads) if machine is None else [Scene(machine)]
     with np.errstate(all="ignore"):
-        found = [_measured(scene, quick) for scene in scenes]
+        found = [_measured(scene, quick, uncertain) for scene in scenes]
     name = "built-in scenes" if machine is None else machine.name
     parts = tuple(
         Part(one.name, (), left_out=tuple(LeftOut(*lack) for lack in one.lacking), place_tables=tuple(_tables(one)))
@@ -51,7 +54,7 @@ def accuracy_report(machine: Machine | None, quick: bool, loads: Loads) -> Repor
     return report if machine is None else report._replace(provenance=provenance(machine))
 
 
-def _measured(scene: Scene, quick: bool) -> Measured:
+def _measured(scene: Scene, quick: bool, uncertain: Sequence[Difference]) -> Measured:
     rows, lacking = examined(scene, quick)
     machine = scene.machine
     worth = bool(machine.cylinders) and any(one.masses or one.pistons for one in machine.cylinders)
@@ -60,7 +63,7 @@ def _measured(scene: Scene, quick: bool) -> Measured:
         tuple(rows),
         tuple(lacking),
         tuple(model_errors(machine)),
-        tuple(data_errors(machine)),
+        (*data_errors(machine), *uncertain),
         tuple(savings(machine, everything, Patience(5, 0.1) if quick else Patience())) if worth else (),
     )
 
@@ -199,7 +202,7 @@ def answer(machine: Machine, asked: str) -> float | None:
     """
     command, _, quantity = asked.partition(" ")
     name, _, at = quantity.partition("@")
-    report = _reports()[command](Case(machine), (float(at or 0),), None, "si")
+    report = report_of(Case(machine), Frame(command, (float(at or 0),), None, "si"))
     for part in (report.whole, *report.parts):
         for column in part.columns if part and at else ():
             if column.id == name:
@@ -212,11 +215,3 @@ def answer(machine: Machine, asked: str) -> float | None:
 
 def _number(value: Any) -> float | None:
     return None if value is None else float(value)
-
-
-def _reports() -> dict[str, Callable[..., Any]]:
-    from kurbel.report.flywheel import flywheel_report
-    from kurbel.report.forces import forces_report
-    from kurbel.report.motion import motion_report
-
-    return {"motion": motion_report, "forces": forces_report, "flywheel": flywheel_report}

@@ -1,7 +1,5 @@
 """The report of `kurbel check`: what a machine has, what is left out, and how its limits and expectations stand."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple

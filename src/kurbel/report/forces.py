@@ -8,7 +8,7 @@ from typing import Any
 
 from kurbel.declared.indicated import CYCLE_VALUES
 from kurbel.errors import UsageError
-from kurbel.report.frame import Frame, Rows, Subject, refuse_without_cylinder, rows_of
+from kurbel.report.frame import Frame, Subject, refuse_without_cylinder
 from kurbel.report.guide import guide_notes
 from kurbel.report.left_out import left_out
 from kurbel.report.motion import mechanism_notes
@@ -19,17 +19,10 @@ from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
 
-def forces_report(
-    case: Case,
-    angles: Sequence[float] | Rows,
-    columns: Sequence[str] | None,
-    system: str,
-    also: Sequence[str] = (),
-) -> Report:
-    """Return the forces of every cylinder; angles: crank angles, or what finds them; see `Frame`."""
+def forces_report(case: Case, frame: Frame) -> Report:
+    """Return the forces of every cylinder."""
     machine = case.machine
     refuse_without_cylinder(machine, "forces")
-    frame = Frame("forces", rows_of(angles, 360.0 * machine.revolutions), columns, system, also)
     notes = (*mechanism_notes(machine), *guide_notes(case), *_rod_notes(case), *_rod_load_notes(case))
     return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=notes)
 

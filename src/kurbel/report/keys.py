@@ -1,7 +1,5 @@
 """The keys of the machine file, from their declarations: a line each, or one in full."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,8 @@ _EVERYWHERE = np.arange(0.0, 720.0, 7.5)
 """Crank angles in degrees over the longest cycle, of which one shows the size of a curve."""
 _ROUNDING = 1e-12
 """Values no larger than this beside the largest of their curve are the rounding of a zero."""
+
+_COUNTS = ("order", "mode", "distance")
 
 
 def shown_columns(
@@ -77,6 +79,17 @@ def _filled(values: Sequence[float | None], given: list[float]) -> tuple[float |
     """Return the given values in the places of those that are not None."""
     following = iter(given)
     return tuple(None if value is None else next(following) for value in values)
+
+
+def counted(columns: Iterable[Column]) -> tuple[Column, ...]:
+    """Return columns with orders and numbers of modes written as such, 1.5, but 1 and 2; a distance in thousandths."""
+    return tuple(one._replace(decimals=_decimals(one)) if one.id in _COUNTS else one for one in columns)
+
+
+def _decimals(column: Column) -> int:
+    if column.id == "distance":
+        return 3
+    return 1 if any(value and value % 1 for value in column.values) else 0
 
 
 def shown_key_value(quantity: Quantity, value: Any, system: str) -> KeyValue:

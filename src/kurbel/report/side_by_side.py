@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from importlib import import_module
 from itertools import zip_longest
 from typing import Any
 
@@ -13,6 +12,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import Extreme
+from kurbel.report.commands import subjects_of
 from kurbel.report.document import Document, Grid, Pair, Section
 from kurbel.report.frame import Subject
 from kurbel.report.pictures import PICTURES, Declared, Wish, pictures_if_any
@@ -67,7 +67,7 @@ def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterato
 
 def _subjects(case: Case, command: str) -> list[Subject]:
     try:
-        return list(import_module(f"kurbel.report.{command}").subjects(case))
+        return list(subjects_of(case, command))
     except KurbelError:
         return []
 

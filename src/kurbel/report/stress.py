@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -24,20 +24,17 @@ _TITLES = {
 }
 
 
-def stress_report(
-    case: Case, angles: Sequence[float], columns: Sequence[str] | None, system: str, places_only: bool = False
-) -> Report:
-    """Return the stresses of the crankshaft; angles, columns, system: see `Frame`.
+def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report:
+    """Return the stresses of the crankshaft; places_only: no columns over the crank angle.
 
-    places_only: no columns over the crank angle. Raises UsageError where no crankshaft can be examined.
+    Raises UsageError where no crankshaft can be examined.
     """
     with np.errstate(all="ignore"):  # what overflows is refused, by name
         (whole,) = subjects(case)
-        tables = tuple(_place_tables(case.strength, system))
+        tables = tuple(_place_tables(case.strength, frame.system))
         whole = whole._replace(name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
         cool, verdict = shell_verdict(case.strength)
         notes = (*_NOTES, *((_TURNING_ROD,) if case.strength.C_rod else ()), *(verdict if cool else ()))
-    frame = Frame("stress", angles, columns, system)
     return frame.report(case.machine, "Festigkeit der Kurbelwelle", (), whole, notes)
 
 

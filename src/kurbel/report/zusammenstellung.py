@@ -1,7 +1,5 @@
 """Zusammenstellung 112: the factors of the straight slider-crank over the crank angle, for any L/R. Needs no numpy."""
 
-from __future__ import annotations
-
 import math
 from array import array
 from collections.abc import Callable, Sequence

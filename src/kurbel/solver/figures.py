@@ -1,12 +1,11 @@
 """Results by name: key values by id or printed symbol, and all columns at once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.quantities import COMMON, Lists
 from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import shown
@@ -14,9 +13,6 @@ from kurbel.declared.unit_systems import SI
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 
 class Figure(NamedTuple):

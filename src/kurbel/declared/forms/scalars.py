@@ -305,19 +305,19 @@ class UnitName(Scalar):
     """The name of a unit of this kind; becomes the factor pair that turns numbers into its base."""
 
     def __init__(self, kind: str) -> None:
-        self.kind = kind
+        self.unit_of = kind
 
     def parse(self, text: str, folder: str) -> Any:
-        return unit_factor(text, self.kind)
+        return unit_factor(text, self.unit_of)
 
     def expected(self) -> str:
-        return f"a unit of {self.kind}, such as '{self.example()}'"
+        return f"a unit of {self.unit_of}, such as '{self.example()}'"
 
     def example(self) -> str:
-        return example(self.kind).split(" ", 1)[1]
+        return example(self.unit_of).split(" ", 1)[1]
 
     def schema(self, definitions: Schema) -> Schema:
-        return {"type": "string", "pattern": f"^\\s*{_units(self.kind)}\\s*$"}
+        return {"type": "string", "pattern": f"^\\s*{_units(self.unit_of)}\\s*$"}
 
 
 @cache

@@ -1,21 +1,17 @@
 """The free force over ω², order by order: what every throw and every weight gives to it, a mass times a length."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.fourier import coefficients
 from kurbel.solver.balance.circles import Circles, unit_vectors
 from kurbel.solver.balance.weights import Throw, Weight
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
 
 _ROUNDING = 16 * np.finfo(float).eps
 """What is left of terms that cancel, beside the sum of their sizes, is rounding."""
@@ -33,7 +29,7 @@ class Products(NamedTuple):
         factors = np.ones(len(self.places)) if levers is None else levers
         return Circles(*(_sum(terms * factors[:, None]) for terms in (self.forward, self.backward)))
 
-    def with_weights(self, weights: Iterable[Weight]) -> Products:
+    def with_weights(self, weights: Iterable[Weight]) -> "Products":
         """Return them with further weights."""
         given = tuple(one for one in weights if one.product)
         orders = max((self.forward.shape[1], *(abs(one.order) for one in given)))

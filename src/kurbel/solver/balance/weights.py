@@ -1,7 +1,5 @@
 """The throws of a machine, and the weights that turn with the crank or on balance shafts."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple

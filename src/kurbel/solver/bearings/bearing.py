@@ -1,15 +1,14 @@
 """What one pin or main bearing carries over the cycle: directions in every frame, means, pressures, friction."""
 
-from __future__ import annotations
-
 import math
 from abc import abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Cuts, Grid, Pieces, integral
 from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
@@ -17,9 +16,6 @@ from kurbel.solver.bearings.directions import Plane, Unloaded, unloaded
 from kurbel.solver.cylinder.following import Following
 from kurbel.solver.figures import Results, crank_angles
 from kurbel.solver.shaft.statics import norm
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 FRAMES = ("throw", "engine", "rod")
 _NO_LOAD = 1e-12

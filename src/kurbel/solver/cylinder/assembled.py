@@ -1,19 +1,15 @@
 """The state of a cylinder at the nodes of a grid, put together from states on some of its pieces each."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.state import State
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
 
 _BLOCK = 2048
 """Pieces of many variants that are computed at once: their arrays stay in the cache of a processor."""
@@ -23,7 +19,7 @@ class _Known(NamedTuple):
     """Rows (k,) whose nodes other samples have already, and theirs there."""
 
     rows: Indices
-    samples: Assembled
+    samples: "Assembled"
     there: Indices
 
 
@@ -35,7 +31,7 @@ class Assembled:
     """
 
     def __init__(
-        self, drive: Drive, grid: Grid, together: Sequence[str] = (), coarser: Assembled | None = None
+        self, drive: Drive, grid: Grid, together: Sequence[str] = (), coarser: "Assembled | None" = None
     ) -> None:
         self.drive, self.grid, self._together = drive, grid, tuple(together)
         self._known = None if coarser is None else _shared(grid, coarser)

@@ -9,8 +9,6 @@ The shaft counts as hinged in every bearing between two throws, which carries wh
 shaft goes on through its bearings; what each of them carries then hangs on how stiff shaft and frame are.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -49,7 +47,7 @@ class Throw(NamedTuple):
 class ShaftLine:
     """The crankshaft of a machine. throws: in order along the shaft; bearings: how many main bearings there are."""
 
-    def __init__(self, machine: Machine, shaft: Crankshaft) -> None:
+    def __init__(self, machine: Machine, shaft: "Crankshaft") -> None:
         self.machine = machine
         self.shaft = shaft
         found = sorted(throws_of(machine.cylinders), key=lambda throw: throw.place)
@@ -147,7 +145,7 @@ def _turning(machine: Machine, throws: Sequence[Throw]) -> Iterator[tuple[int, c
 
 
 def _weights(
-    given: SharedCounterweights | tuple[Counterweight, ...],
+    given: "SharedCounterweights | tuple[Counterweight, ...]",
     whose: Sequence[tuple[int, Cylinder]],
     angle: float,
     throws: Sequence[Throw],

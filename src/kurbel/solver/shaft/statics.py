@@ -14,20 +14,18 @@ pin gives A_D and B_D of its own sign. An overhung crank has nothing before its 
 its only web and bearing B.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.arithmetic import where
 from kurbel.numerics.jet import Jet
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.machine.crankshaft import Crankshaft
 
 
@@ -97,7 +95,7 @@ class FreeBody:
     The torque T r leaves the shaft at the flywheel; nothing is taken off at A.
     """
 
-    def __init__(self, shaft: Crankshaft, crank: float, pin: Vector, weight: Vector) -> None:
+    def __init__(self, shaft: "Crankshaft", crank: float, pin: Vector, weight: Vector) -> None:
         self.shaft = shaft
         self.crank = crank
         self.pin = pin

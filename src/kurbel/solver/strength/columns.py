@@ -1,17 +1,13 @@
 """What `kurbel stress` tells over the crank angle: forces on pin and bearings, and the largest stress of each part."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.shaft.statics import FreeBody
 from kurbel.solver.strength.places import PARTS, Place
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 
 class StrengthColumns(NamedTuple):

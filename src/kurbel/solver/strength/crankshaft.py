@@ -1,13 +1,13 @@
 """The strength of one crankshaft over the whole cycle, and where each of its parts is strained most (G)."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
@@ -23,11 +23,6 @@ from kurbel.solver.figures import Results
 from kurbel.solver.shaft.statics import FreeBody, Vector, equilibrium_residual, norm, weight_in_throw
 from kurbel.solver.strength.columns import StrengthColumns, strength_columns
 from kurbel.solver.strength.places import Place, Stresses, places
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from kurbel.arrays import Array
 
 
 class Strained(NamedTuple):

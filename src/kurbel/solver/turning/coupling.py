@@ -3,14 +3,13 @@
 The equations are those of `kurbel.solver.shaft_line.periodic`; the load on the driven mass may depend on its speed.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
 from kurbel.numerics.collocation import Periodic, Unsettled
@@ -25,9 +24,6 @@ from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.harmonics import spectrum
 from kurbel.solver.turning.speed import SpeedLaw
 from kurbel.solver.turning.torques import Sum
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _NEAR = 0.1
 """A harmonic whose order lies so near the natural one, relatively, is worth a warning."""

@@ -1,4 +1,4 @@
-"""The pictures of the whole machine: turning effort with its lobes, speed, coupling, stresses of the throw."""
+"""The turning effort of the whole machine with its lobes; excess work, speed and coupling below it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kurbel.declared.shaft import SHAFT_PARTS
 from kurbel.declared.unit_systems import convert
 from kurbel.report.pictures.cylinder import between
 from kurbel.report.pictures.picture import Axis, Curve, Figure, Panel, Shade, Words, extent
@@ -41,7 +40,7 @@ def _effort(source: Source) -> Panel:
     unit = source.unit(kind, samples.values[1])
     x = samples.values[0]
     line, load = convert(samples.values[1], kind, unit), convert(samples.values[2] / over, kind, unit)
-    name = words(source.quantity(id))
+    name = source.words(id)
     level_load = results.machine.load is None or results.machine.load.diagram is None
     resistance = Words("W", "W") if at_crank else Words(*("M_m" if level_load else "M_W",) * 2)
     curves = (
@@ -50,9 +49,7 @@ def _effort(source: Source) -> Panel:
     )
     shades = list(between(x, load, line))
     marks = tuple(source.marks(id, unit))
-    return Panel(
-        Axis(words(source.quantity(PHI)), "deg"), Axis(name, unit), curves, tuple(_numbered(source, shades)), marks
-    )
+    return Panel(Axis(source.words(PHI), "deg"), Axis(name, unit), curves, tuple(_numbered(source, shades)), marks)
 
 
 def _numbered(source: Source, shades: list[Shade]) -> Iterator[Shade]:
@@ -71,10 +68,3 @@ def _numbered(source: Source, shades: list[Shade]) -> Iterator[Shade]:
         unit = source.unit("energy", results.lobes)
         name = Words(f"A_{owner + 1}", f"A_{owner + 1}")
         yield shade._replace(figure=Figure(name, float(convert(lobes[owner], "energy", unit)), unit))
-
-
-def throw_stress(source: Source) -> Iterator[Panel]:
-    """Yield the largest combined stress of each part of the throw."""
-    parts = source.having(f"sigma_{part}" for part in SHAFT_PARTS)
-    if parts:
-        yield source.panel(parts)
