@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kurbel.render.charset import width as cells
-from kurbel.render.pictures.labels import CHARACTER, Box, Taken, axis_text, figure_text, shade_texts, signed, symbol
-from kurbel.render.pictures.scale import Scale, tick_text, ticks
+from kurbel.render.pictures.labels import CHARACTER, Box, Taken, axis_text, figure_text, shade_texts, symbol, tick_texts
+from kurbel.render.pictures.scale import Scale, ticks
 from kurbel.render.pictures.scene import Dots, Item, Line, Places, Text, thinned
 from kurbel.render.pictures.style import SHAPES, looks_of
 
@@ -65,16 +65,15 @@ def _grid(panel: Panel, scales: Scales, look: Look) -> Iterator[Item]:
     lines += [((x.start, y.place(v)), (x.end, y.place(v))) for v in up]
     yield Line(tuple(lines), "g")
     yield Line((((x.start, y.end), (x.start, y.start), (x.end, y.start)),), "x")
-    texts = [panel.x.names[int(v)] if panel.x.names else _at_tick(v, across, panel.x.log, look) for v in across]
-    yield from _along([float(x.place(v)) for v in across], texts, x.end + _BESIDE, y.start + 14)
-    for value in up:
-        text = panel.y.names[int(value)] if panel.y.names else _at_tick(value, up, panel.y.log, look)
+    below = tick_texts(panel.x, across, look)
+    yield from _along([float(x.place(v)) for v in across], below, x.end + _BESIDE, y.start + 14)
+    for value, text in zip(up, tick_texts(panel.y, up, look)):
         yield Text(x.start - 6, y.place(value) + 3.5, text, "t", "end")
     yield Text(x.end, y.start + 26, axis_text(panel.x.name, panel.x.unit, look), "t", "end")
 
 
-def _along(places: list[float], texts: list[str], edge: float, base: float) -> Iterator[Item]:
-    """Yield what stands below the ticks, inside the edge of the picture; where two meet, the nearer to an end stands."""
+def _along(places: list[float], texts: Sequence[str], edge: float, base: float) -> Iterator[Item]:
+    """Yield what stands below the ticks, inside the edge of the picture; of two that meet the outer one stands."""
     taken: list[tuple[float, float]] = []
     for place, text in sorted(zip(places, texts), key=lambda one: min(one[0] - places[0], places[-1] - one[0])):
         half = CHARACTER * cells(text) / 2
@@ -82,12 +81,6 @@ def _along(places: list[float], texts: list[str], edge: float, base: float) -> I
         if all(middle + half <= left or middle - half >= right for left, right in taken):
             taken.append((middle - half, middle + half))
             yield Text(middle, base, text, "t", "middle")
-
-
-def _at_tick(value: float, values: list[float], log: bool, look: Look) -> str:
-    if log:
-        return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e")
-    return signed(tick_text(value, values, look.comma), look)
 
 
 def _shade(shade: Shade, scales: Scales) -> Iterator[Item]:
