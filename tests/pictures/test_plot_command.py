@@ -151,3 +151,13 @@ def test_a_machine_without_solution_ends_with_status_3() -> None:
 
 def test_the_decimal_comma_stands_in_pictures_too() -> None:
     assert "T_max 87,70 kN, 67,3°" in run(WATERWORKS, "effort", "--decimal", "comma", "--width", "100").stdout
+
+
+@pytest.mark.parametrize("width", [40, 80, 120])
+def test_letters_with_marks_take_one_place(width: int) -> None:
+    """The figures of θ̈, a letter with a mark on it, were written past the end of the line: a fault of kurbel."""
+    file = str(ROOT / "configs" / "crank-rocker.yaml")
+    result = CliRunner().invoke(kurbel, ["plot", file, "motion", "--width", str(width)])
+    assert result.exit_code == 0, result.output
+    assert "θ̈_max" in result.stdout or "θ̈_min" in result.stdout
+    assert max(cells(line) for line in result.stdout.splitlines()) <= width
