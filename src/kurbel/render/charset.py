@@ -53,10 +53,10 @@ class Charset(NamedTuple):
             printed = unit
         return f"{self._power(exponent)} {printed}".strip() if exponent else printed
 
-    def times_power(self, exponent: int) -> str:
-        """Return what follows a number that is counted in a power of ten: `·10⁶`, or `e6`."""
+    def counted(self, number: str, exponent: int) -> str:
+        """Return a number that is counted in a power of ten: `2.4·10⁶`, or `2.4e6`."""
         printed = "·" + self._power(exponent)
-        return printed if self.has(printed) else f"e{exponent}"
+        return f"{number}{printed if self.has(printed) else f'e{exponent}'}" if exponent else number
 
     def below(self, exponent: int) -> str:
         """Return what stands for a value that is only known to be less than a power of ten.

@@ -1,7 +1,6 @@
 """What a picture is made of, whatever draws it: curves, shades and marks on panels with two axes, in units as shown."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -138,9 +137,3 @@ class Picture(NamedTuple):
     def heading(self) -> str:
         """What stands over the picture."""
         return ". ".join(filter(None, (self.machine, f"{self.title}: {self.of}" if self.of else self.title)))
-
-
-def extent(pieces: Sequence[Any], part: str) -> tuple[float, float]:
-    """Return the smallest and the largest value of a part (x, y, low, high) of several pieces or shades."""
-    ends = [(float(values.min()), float(values.max())) for one in pieces if len(values := getattr(one, part))]
-    return min((low for low, _ in ends), default=0.0), max((high for _, high in ends), default=0.0)
