@@ -95,7 +95,8 @@ class Arrow(NamedTuple):
 class Panel(NamedTuple):
     """Two axes with what stands on them; equal: both have one scale; plain: nothing is written at the axes.
 
-    title: what tells it from the other panels of its picture; frames: how it moves, round and round.
+    title: what tells it from the other panels of its picture; frames: how it moves, round and round,
+    by panels with as many curves, points and arrows.
     """
 
     x: Axis
@@ -107,14 +108,7 @@ class Panel(NamedTuple):
     equal: bool = False
     plain: bool = False
     title: str = ""
-    frames: "tuple[Frame, ...]" = ()
-
-
-class Frame(NamedTuple):
-    """A moving panel at one moment: its curves and arrows, in the order and with as many points as in the panel."""
-
-    curves: tuple[Curve, ...]
-    arrows: tuple[Arrow, ...]
+    frames: "tuple[Panel, ...]" = ()
 
 
 class Picture(NamedTuple):
