@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from kurbel.machine import Machine
 
 
-@click.command(short_help="Read and check a machine file and its limits.")
+@click.command()
 @machine_file
 @click.option(
     "--format",

@@ -14,7 +14,7 @@ _PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, 
 _SUFFIX = ".yaml"
 
 
-@click.command(short_help="List the shipped machines, or print one.")
+@click.command()
 @click.argument("name", required=False, shell_complete=complete_example)
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
 def example(name: str | None, file_name: str | None) -> None:

@@ -15,7 +15,7 @@ _PATIENCE = 1.0
 """Seconds after which a terminal is told what is being done."""
 
 
-@click.command(short_help="Everything on one page of HTML; two machines side by side.")
+@click.command()
 @click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
 @set_option
 @click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")

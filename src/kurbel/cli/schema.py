@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 
-@click.command(short_help="JSON Schema of the machine file, for editors, or of the answers.")
+@click.command()
 @click.option("--answers", is_flag=True, help="The schema of what -f json prints instead, for programs.")
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
 def schema(answers: bool, file_name: str | None) -> None:

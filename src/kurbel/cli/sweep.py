@@ -62,7 +62,7 @@ _who_computes = stacked(
 )
 
 
-@click.command(short_help="Key values of many designs of a machine.")
+@click.command()
 @machine_file
 @_what_varies
 @_what_is_told

@@ -63,7 +63,7 @@ def _measured(scene: Scene, quick: bool, uncertain: Sequence[Difference]) -> Mea
         tuple(lacking),
         tuple(model_errors(machine)),
         (*data_errors(machine), *uncertain),
-        tuple(savings(machine, everything, Patience(5, 0.1) if quick else Patience())) if worth else (),
+        tuple(savings(machine, everything, Patience.of(quick))) if worth else (),
     )
 
 

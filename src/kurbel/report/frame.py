@@ -122,15 +122,17 @@ class Frame(NamedTuple):
         return Part(
             subject.name,
             columns,
-            self._later(lambda: (shown_key_value(*one, self.system) for one in subject.key_values(self.command))),
-            self._later(subject.left_out),
-            self._later(subject.warnings),
+            self.later(lambda: (shown_key_value(*one, self.system) for one in subject.key_values(self.command))),
+            self.later(subject.left_out),
+            self.later(subject.warnings),
             subject.place_tables,
             nowhere,
             subject.of,
         )
 
-    def _later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:
+    def later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:
+        """Return what is made when it is read."""
+
         def ignoring() -> tuple[Any, ...]:
             with np.errstate(all="ignore"):
                 return tuple(make())

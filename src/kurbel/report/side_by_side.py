@@ -15,7 +15,7 @@ from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.document import Document, Grid, Pair, Section
 from kurbel.report.frame import Subject, subjects_of
-from kurbel.report.pictures import PICTURES, Wish, pictures
+from kurbel.report.pictures import PICTURES, Wish, pictures_if_any
 from kurbel.report.provenance import provenance
 from kurbel.report.whole import COMMANDS, Command, Given, Progress
 from kurbel.solver.case import Case
@@ -61,7 +61,7 @@ def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterato
             yield Grid(title, heads, rows, (1, 2, 4), (3,))
     for declared in PICTURES:
         if declared.command == command.word:
-            drawn = [_had(partial(pictures, case, (declared.id,), Wish(system))) for case in cases]
+            drawn = [_had(partial(pictures_if_any, case, declared, Wish(system))) for case in cases]
             yield from (Pair(left, right) for left, right in zip_longest(*drawn))
 
 

@@ -13,7 +13,7 @@ from kurbel.report.check import Checked, checked
 from kurbel.report.document import Document, Grid, Item, Section
 from kurbel.report.frame import Frame, report_of
 from kurbel.report.keys import every_place, meaning
-from kurbel.report.pictures import PICTURES, Wish, pictures
+from kurbel.report.pictures import PICTURES, Wish, pictures_if_any
 from kurbel.report.provenance import provenance
 from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.case import Case
@@ -95,11 +95,9 @@ def _pictures_of(case: Case, command: str, wish: Wish) -> Iterator[Item]:
     for one in PICTURES:
         if one.command == command:
             try:
-                yield from pictures(case, (one.id,), wish)
+                yield from pictures_if_any(case, one, wish)  # what another would show is told among what is left out
             except NoSolutionError as error:
                 yield f"{one.title}: {error}"
-            except UsageError:
-                continue  # what it would show is told among what is left out
 
 
 def _verdicts(found: Checked) -> Section | None:

@@ -5,12 +5,11 @@ from array import array
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.factors import FACTORS
-from kurbel.declared.quantities import COLUMNS
+from kurbel.declared.factors import FACTORS, PHI
 from kurbel.declared.quantity import Quantity, called
 from kurbel.errors import UsageError
-from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.near_words import did_you_mean
 from kurbel.report.tables import Column, Part, Report, Value
 
@@ -118,7 +117,7 @@ def _part(ratio: float, ids: tuple[str, ...], angles: Sequence[float], formula: 
         for column, factor in zip(values, factors):
             column.append(factor(angle, rod))
     columns = (_column(FACTORS[id], column, formula) for id, column in zip(ids, values))
-    return Part(ratio, (_column(COLUMNS["phi"], angles, formula), *columns))
+    return Part(ratio, (_column(PHI, angles, formula), *columns))
 
 
 def _column(quantity: Quantity, values: Sequence[Value], formula: str) -> Column:

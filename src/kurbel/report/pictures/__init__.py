@@ -225,6 +225,13 @@ def pictures_of(case: "Case", wish: Wish) -> tuple[Declared, ...]:
     return tuple(found)
 
 
+def pictures_if_any(case: "Case", declared: Declared, wish: Wish) -> list[Picture]:
+    """Return one picture of a machine, as often as it has it, or none; raises NoSolutionError as `pictures` does."""
+    with np.errstate(all="ignore"), suppress(UsageError):
+        return list(_pictures(case, declared, wish))
+    return []
+
+
 def _first(case: "Case", wish: Wish) -> list[Picture]:
     """Return the first picture that there is; none is drawn only to see whether there is one."""
     for declared in PICTURES:
