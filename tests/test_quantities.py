@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +16,7 @@ from kurbel.declared.quantity import Quantity, ambiguity, by_id, called, placed
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.masses import Masses
-from kurbel.mechanisms import MECHANISMS, Mechanism, every_quantity
+from kurbel.mechanisms import Mechanism, every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.forces import forces_report
 from kurbel.report.frame import Frame
@@ -141,21 +139,6 @@ def test_weight_on_the_guide_of_an_inclined_yoke() -> None:
         found = forces.at([0.0, 77.0]).N
         assert found is None if weight is None else found == pytest.approx([weight] * 2, rel=1e-14)
         assert forces.at([0.0]).S is None
-
-
-def test_no_other_mechanism_is_imported() -> None:
-    code = (
-        "import sys, io, contextlib\nfrom kurbel.cli import kurbel\n"
-        "with contextlib.redirect_stdout(io.StringIO()):\n"
-        "    try: kurbel.main(sys.argv[1:])\n    except SystemExit as e: assert not e.code\n"
-        "print('\\n'.join(sys.modules))"
-    )
-    machine = str(CONFIGS / "waterworks.yaml")
-    done = subprocess.run([sys.executable, "-c", code, "forces", machine, "-f", "csv"], capture_output=True, text=True)
-    imported = {name for name in done.stdout.split() if name.startswith("kurbel.mechanisms.")}
-    others = {record.target.partition(":")[0] for word, record in MECHANISMS.items() if word != "slider-crank"}
-    assert "kurbel.mechanisms.slider_crank" in imported
-    assert not imported & others
 
 
 # printed symbols as names

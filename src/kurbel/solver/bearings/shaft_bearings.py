@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import jet_angle
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.numerics.grid import Pieces, integral
 from kurbel.solver.bearings.bearing import Bearing, Loads, Size
 from kurbel.solver.bearings.directions import Plane
