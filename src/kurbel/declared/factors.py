@@ -9,7 +9,6 @@ PHI = Quantity(
     "φ",
     "angle",
     "Crank angle from the inner dead centre, in the sense of rotation",
-    "phi",
     commands=("motion", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
 )
 """What these are told over, and so is all else."""
