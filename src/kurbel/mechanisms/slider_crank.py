@@ -96,12 +96,20 @@ class SliderCrank(Mechanism):
     }
 
     @classmethod
-    def of_keys(cls, offset: float = 0.0, **keys: Any) -> SliderCrank:
+    def of_keys(
+        cls,
+        crank: float | None = None,
+        stroke: float | None = None,
+        rod: float | None = None,
+        rod_ratio: float | None = None,
+        offset: float = 0.0,
+        **others: float,
+    ) -> SliderCrank:
         """Return the slider-crank that these keys of a machine file describe; raises RuleError."""
-        crank, stroke, rod, ratio = (keys.pop(name, None) for name in ("crank", "stroke", "rod", "rod_ratio"))
         if crank is None:
-            crank = _crank_of_stroke(stroke, rod, ratio, offset)
-        return cls(crank, rod if rod is not None else crank * (ratio or math.inf), offset, **keys)
+            assert stroke is not None
+            crank = _crank_of_stroke(stroke, rod, rod_ratio, offset)
+        return cls(crank, rod if rod is not None else crank * (rod_ratio or math.inf), offset, **others)
 
     def __post_init__(self) -> None:
         if not (0 < self.crank < math.inf and self.rod > 0 and math.isfinite(self.offset)):
