@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from kurbel.crank_angle import CrankAngle, jet_angle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
@@ -212,6 +214,12 @@ class Drive:
     def jets_at(self, degrees: Array, within: Array, beyond: Array | float = 0.0) -> State:
         """Return the state with slopes by φ at crank angles (n,), on the sides of jumps that hold `within`."""
         return State(self, jet_angle(degrees, beyond), within)
+
+    def on(self, grid: Grid, rows: Any = np.s_[:]) -> State:
+        """Return the state with slopes at the nodes of a grid, or of these pieces of it."""
+        drive = self if grid.variant is None else self.taken(grid.variant[rows][:, None])
+        within = np.broadcast_to(grid.within[rows, :1], grid.degrees[rows].shape)
+        return drive.jets_at(np.asfortranarray(grid.degrees[rows]), within, grid.beyond[rows])
 
     @cached_property
     def cuts(self) -> Cuts:

@@ -14,7 +14,6 @@ from kurbel.mechanisms import quantities_of
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, largest, smallest
 from kurbel.numerics.grid import Pieces, integral
-from kurbel.solver.cylinder.assembled import Assembled
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.searched import Searched
@@ -367,7 +366,7 @@ class CylinderForces(Searched, Results):
         turnover = self.grid.integral(np.abs(self.samples.M.value))
         pieces = self.drive.pieces.other()
         if self._is_cut:
-            pieces = self.cut_at_bends(Assembled(self.drive, pieces))
+            pieces = self.cut_at_bends(pieces, self.drive.on(pieces))
         return float(integral(pieces, self._torque) - self.work_left) / turnover if turnover else 0.0
 
     def _torque(self, pieces: Pieces) -> Array:

@@ -14,7 +14,7 @@ from kurbel.errors import NoSolutionError
 from kurbel.mechanisms import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.cycles import Unlike
-from kurbel.numerics.jet import once_each
+from kurbel.numerics.jet import Jet, once_each
 from kurbel.solver.cylinder.chamber import OfChamber
 from kurbel.solver.cylinder.rod_load import rod_load
 from kurbel.solver.cylinder.rod_point import OfPoint
@@ -40,7 +40,6 @@ class State(OfPoint, OfChamber):
         self._asked = angle, within
         self._rubs = rubs
         self.within = angle.degrees if within is None else within
-        self._beside = None if within is None else State(drive, CrankAngle.of(once_each(within)), rubs=rubs)
 
     def __getattr__(self, id: str) -> Any:
         """Return a column that the mechanism offers; None for one that only others do."""
@@ -61,19 +60,29 @@ class State(OfPoint, OfChamber):
         return self.drive.omega
 
     @property
-    def _inside(self) -> State:
-        """The state asked for within the piece; not kept as an attribute, or no state would be freed after use."""
-        return self if self._beside is None else self._beside
-
-    @property
     def phi(self) -> Array:
         """Crank angle in degrees."""
         return self.angle.degrees  # type: ignore[no-any-return]
 
     @cached_property
+    def _plain(self) -> CrankAngle:
+        """The crank angles without the slopes of jets."""
+        degrees, sin, cos = self.angle
+        return CrankAngle(degrees, getattr(sin, "value", sin), getattr(cos, "value", cos))
+
+    @property
+    def _is_jet(self) -> bool:
+        return isinstance(self.angle.sin, Jet)
+
+    @cached_property
+    def _coordinate(self) -> Any:
+        value = self.drive.mechanism.coordinate(self._plain)
+        return Jet(value, self.slope.value) if self._is_jet else value
+
+    @property
     def x(self) -> Any:
         """Displacement in m; of what only swings, None."""
-        return self.drive.mechanism.coordinate(self.angle) if self.drive.mechanism.slides else None
+        return self._coordinate if self.drive.mechanism.slides else None
 
     @property
     def way(self) -> Any:
@@ -83,7 +92,8 @@ class State(OfPoint, OfChamber):
     @cached_property
     def slope(self) -> Any:
         """dx/dφ in m per radian; of what only swings, dθ/dφ."""
-        return self.drive.mechanism.slope(self.angle)
+        value = self.drive.mechanism.slope(self._plain)
+        return Jet(value, self.curvature.value) if self._is_jet else value
 
     @cached_property
     def curvature(self) -> Any:
@@ -114,7 +124,7 @@ class State(OfPoint, OfChamber):
     def z(self) -> Any:
         """What of the stroke, or of the swing, is passed from the inner dead centre; of what turns on, None."""
         one = self.drive.mechanism
-        return None if one.turns else (one.coordinate(self.angle) - one.start) / one.stroke
+        return None if one.turns else (self._coordinate - one.start) / one.stroke
 
     @cached_property
     def direction(self) -> Array:
@@ -262,7 +272,15 @@ class State(OfPoint, OfChamber):
     @cached_property
     def _guide_side(self) -> Array:
         """+1 where N ≥ 0, else −1, asked for within the piece: where N vanishes at its end, rounding would pick one."""
-        return np.where(self._inside.guide_sense >= 0, 1.0, -1.0)
+        within = once_each(self.within)
+        if self._asked[1] is None:
+            sense = getattr(self.guide_sense, "value", self.guide_sense)
+        elif within.shape != self.within.shape:  # it has its nodes on both sides of the middle one
+            middle = self.within.shape[1] // 2
+            sense = self.guide_sense.value[:, middle : middle + 1]
+        else:
+            sense = State(self.drive, CrankAngle.of(within), rubs=self._rubs).guide_sense
+        return 2.0 * (sense >= 0) - 1.0
 
     @cached_property
     def _below(self) -> Any:
