@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
     from kurbel.machine.resistance import RamForce
     from kurbel.solver.cylinder.gas import PistonGas
+    from kurbel.solver.cylinder.inside import Inside
     from kurbel.solver.cylinder.pins import PinFriction
     from kurbel.solver.cylinder.rod import ExactRod
 
@@ -211,7 +212,7 @@ class Drive:
         """Return the state at crank angles (n,) in degrees, on the sides of jumps that hold `within`, or just after."""
         return State(self, CrankAngle.of(degrees), within)
 
-    def jets_at(self, degrees: Array, within: Array, beyond: Array | float = 0.0) -> State:
+    def jets_at(self, degrees: Array, within: Array | Inside, beyond: Array | float = 0.0) -> State:
         """Return the state with slopes by φ at crank angles (n,), on the sides of jumps that hold `within`."""
         return State(self, jet_angle(degrees, beyond), within)
 

@@ -16,7 +16,8 @@ from kurbel.numerics.cycles import later
 from kurbel.solver.pressure import Setting, pressure_in
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
+    from kurbel.arrays import Indices
+    from kurbel.solver.cylinder.inside import Inside
 
 
 class PistonGas:
@@ -60,15 +61,15 @@ class PistonGas:
         """Crank angles in degrees of a turn at which quadratures should split."""
         return tuple(angle for end in (self.head, self.crank) if end for angle in end.bends)
 
-    def force(self, x: Any, angle: CrankAngle, within: Array, alike: bool = False) -> Any:
+    def force(self, x: Any, angle: CrankAngle, inside: Inside, alike: bool = False) -> Any:
         """Return P = p_H A_H − p_C A_C in N, R 296, with gauge pressures; alike: with the mean of both areas, R 297."""
         mean = (self.piston.head_area + self.piston.crank_area) / 2
         at_head, at_crank = (mean, mean) if alike else (self.piston.head_area, self.piston.crank_area)
         force: Any = 0.0
         if self.head:
-            force = force + at_head * self.head(x, angle, within)
+            force = force + at_head * self.head(x, angle, inside.held(self.head))
         if self.crank:
-            force = force - at_crank * self.crank(x, angle, within)
+            force = force - at_crank * self.crank(x, angle, inside.held(self.crank))
         return force
 
     @cached_property

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.cycles import Flat
@@ -26,6 +27,7 @@ from kurbel.numerics.search import (
 )
 from kurbel.solver.cylinder.assembled import Assembled
 from kurbel.solver.cylinder.drive import Drive
+from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.motion import Motion
 
 if TYPE_CHECKING:
@@ -46,9 +48,13 @@ class Quantities:
     names: tuple[str, ...]
     rubs: bool = True
 
-    def __call__(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+    def __call__(self, degrees: Array, within: Array | Inside) -> dict[str, Sampled]:
         state = self.drive.jets_at(degrees, within)
         return self.of_state(state if self.rubs else state.unrubbed)
+
+    def inside(self, within: Array) -> Inside:
+        """Return what all angles in the pieces share that hold these."""
+        return Inside(self.drive, CrankAngle.of(within))
 
     def of_state(self, state: Any) -> dict[str, Sampled]:
         """Return them in a state."""

@@ -16,6 +16,7 @@ from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.cycles import Unlike
 from kurbel.numerics.jet import Jet, once_each
 from kurbel.solver.cylinder.chamber import OfChamber
+from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.rod_load import rod_load
 from kurbel.solver.cylinder.rod_point import OfPoint
 
@@ -29,17 +30,17 @@ class State(OfPoint, OfChamber):
     """A cylinder at crank angles (n,); its attributes are named by the ids of the columns, in SI, each of shape (n,).
 
     angle: the crank angles; with jets for sine and cosine every quantity becomes a jet with its slope by φ.
-    within: angles in degrees (n,) that say on which side of a jump each one is meant; the angles themselves mean the
-    side just after it. rubs: whether friction in pins and journals counts.
+    within: angles in degrees (n,) that say on which side of a jump each one is meant, or what is known of them; the
+    angles themselves mean the side just after it.
     A quantity that the machine does not have is None. What the mechanism offers is one of them.
     """
 
-    def __init__(self, drive: Drive, angle: CrankAngle, within: Array | None = None, rubs: bool = True) -> None:
+    def __init__(self, drive: Drive, angle: CrankAngle, within: Array | Inside | None = None) -> None:
         self.drive = drive
         self.angle = angle
-        self._asked = angle, within
-        self._rubs = rubs
-        self.within = angle.degrees if within is None else within
+        if within is None:
+            within = Inside(drive, angle)
+        self.inside = within if isinstance(within, Inside) else Inside(drive, CrankAngle.of(once_each(within)))
 
     def __getattr__(self, id: str) -> Any:
         """Return a column that the mechanism offers; None for one that only others do."""
@@ -126,35 +127,32 @@ class State(OfPoint, OfChamber):
         one = self.drive.mechanism
         return None if one.turns else (self._coordinate - one.start) / one.stroke
 
-    @cached_property
+    @property
     def direction(self) -> Array:
-        """+1 on the outstroke, −1 on the return stroke, shape (n,); +1 for what turns on and on."""
-        if self.drive.mechanism.turns:
-            return np.ones_like(self.within)
-        inner, outer = self.drive.mechanism.dead_centres()
-        return np.where(np.mod(once_each(self.within) - inner, 360.0) < outer - inner, 1.0, -1.0)
+        """+1 on the outstroke, −1 on the return stroke; +1 for what turns on and on."""
+        return self.inside.direction
 
     @cached_property
     def p_head(self) -> Any:
         """Pressure at the head end of the cylinder's own piston in Pa, counted as in the machine file."""
         gas = self.drive.own_gas
-        return gas.head(self.way, self.angle, self.within) + gas.base if gas and gas.head else None
+        return gas.head(self.way, self.angle, self.inside.held(gas.head)) + gas.base if gas and gas.head else None
 
     @cached_property
     def p_crank(self) -> Any:
         """Pressure at the crank end of the cylinder's own piston in Pa, counted as in the machine file."""
         gas = self.drive.own_gas
-        return gas.crank(self.way, self.angle, self.within) + gas.base if gas and gas.crank else None
+        return gas.crank(self.way, self.angle, self.inside.held(gas.crank)) + gas.base if gas and gas.crank else None
 
     @cached_property
     def P_gas(self) -> Any:
         """Force of gas, steam or water on all pistons in N, R 296."""
-        return sum(gas.force(self.way, self.angle, self.within) for gas in self.drive.gas) if self.drive.gas else None
+        return sum(gas.force(self.way, self.angle, self.inside) for gas in self.drive.gas) if self.drive.gas else None
 
     @property
     def P_gas_book(self) -> Any:
         """The same with both areas of a piston alike, in N, R 297."""
-        with_equal_areas = [gas.force(self.way, self.angle, self.within, alike=True) for gas in self.drive.gas]
+        with_equal_areas = [gas.force(self.way, self.angle, self.inside, alike=True) for gas in self.drive.gas]
         return sum(with_equal_areas) if with_equal_areas else None
 
     @cached_property
@@ -166,7 +164,7 @@ class State(OfPoint, OfChamber):
     def P_weight(self) -> Any:
         """Weight along the stroke line in N, positive toward the shaft."""
         weight = self.drive.weight
-        return np.full_like(self.within, weight[0]) if weight else None
+        return np.full_like(self.phi, weight[0]) if weight else None
 
     @cached_property
     def _resistance(self) -> Any:
@@ -238,7 +236,7 @@ class State(OfPoint, OfChamber):
     @cached_property
     def rubbing(self) -> Rubbing | None:
         """Moments of friction in pins and journals in N m; None where there is none."""
-        friction = self.drive.pin_friction if self._rubs else None
+        friction = self.drive.pin_friction if self.inside.rubs else None
         if friction is None or self.P is None:
             return None
         return friction.moments(self.unrubbed)
@@ -246,7 +244,7 @@ class State(OfPoint, OfChamber):
     @property
     def unrubbed(self) -> State:
         """The state as it would be if pins and journals did not rub: the loads that make them rub."""
-        return State(self.drive, *self._asked, rubs=False)
+        return State(self.drive, self.angle, self.inside.unrubbed)
 
     @property
     def _pin_side(self) -> Any:
@@ -264,23 +262,15 @@ class State(OfPoint, OfChamber):
             return None
         if self._rod is None:
             alone = self.drive.weight if self.drive.mechanism.known_across else None
-            return alone and np.full_like(self.within, alone[1])
+            return alone and np.full_like(self.phi, alone[1])
         if not self.drive.rubs:
             return self._after_steady_friction * (self._rod[0] / self._rod[1]) + self._guide_load
         return self.guide_sense / self._below
 
-    @cached_property
+    @property
     def _guide_side(self) -> Array:
         """+1 where N ≥ 0, else −1, asked for within the piece: where N vanishes at its end, rounding would pick one."""
-        within = once_each(self.within)
-        if self._asked[1] is None:
-            sense = getattr(self.guide_sense, "value", self.guide_sense)
-        elif within.shape != self.within.shape:  # it has its nodes on both sides of the middle one
-            middle = self.within.shape[1] // 2
-            sense = self.guide_sense.value[:, middle : middle + 1]
-        else:
-            sense = State(self.drive, CrankAngle.of(within), rubs=self._rubs).guide_sense
-        return 2.0 * (sense >= 0) - 1.0
+        return self.inside.guide_side(self)
 
     @cached_property
     def _below(self) -> Any:
