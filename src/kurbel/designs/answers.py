@@ -25,7 +25,7 @@ _FEWEST = 3
 AT_ONCE = 200
 """Machines side by side: enough to share the overhead of one run, few enough for the cache of a processor."""
 
-Values = Union[list[Any], str]
+Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, an Extreme, a tuple or None each; or why it answers nothing."""
 
 
@@ -90,12 +90,14 @@ class _Answers:
             self._together(rows[: len(rows) // 2])
             self._together(rows[len(rows) // 2 :])
         else:
-            for row, values in zip(rows, zip(*found)):
-                self._found[row] = list(values) if all(map(_is_finite, values)) else None
+            fit = np.all([np.broadcast_to(_is_finite(value), len(rows)) for value in found], axis=0)
+            values = zip(*(_listed(value, len(rows)) for value in found))
+            for row, finite, own in zip(rows, fit.tolist(), values):
+                self._found[row] = own if finite else None
 
-    def _columns(self, rows: list[int]) -> list[list[Any]]:
+    def _columns(self, rows: list[int]) -> list[Any]:
         cylinders = {name: self._stack(rows, name) for name in self._names}
-        return [_listed(answered(cylinders[one.subject].answering, one.quantity), len(rows)) for one in self._asked]
+        return [answered(cylinders[one.subject].answering, one.quantity) for one in self._asked]
 
     def _stack(self, rows: list[int], name: str) -> CylinderForces:
         machines = [self._machines[row] for row in rows]
@@ -113,16 +115,17 @@ class _Answers:
             return f"these numbers lead beyond what can be computed with ({error})"
 
 
-def _listed(value: Any, count: int) -> list[Any]:
+def _listed(value: Any, count: int) -> Sequence[Any]:
     """Return the values of so many machines side by side, one by one."""
     if isinstance(value, Extreme):
-        return [Extreme(*pair) for pair in zip(*(_listed(part, count) for part in value))]
+        return list(map(Extreme, *(_listed(part, count) for part in value)))
     if value is None or isinstance(value, tuple):
         each = isinstance(value, tuple) and len(value) == count and all(isinstance(one, tuple) for one in value)
-        return list(value) if each else [value] * count  # type: ignore[arg-type]
+        return value if each else [value] * count  # type: ignore[return-value]
     return np.broadcast_to(np.asarray(value, dtype=float), (count,)).tolist()  # type: ignore[no-any-return]
 
 
-def _is_finite(value: Any) -> bool:
+def _is_finite(value: Any) -> Any:
+    """Return whether a value, or that of every machine, can be told."""
     number = value.value if isinstance(value, Extreme) else value
-    return number is None or isinstance(number, tuple) or abs(number) < float("inf")
+    return number is None or isinstance(number, tuple) or np.isfinite(number)

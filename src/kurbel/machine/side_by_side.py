@@ -41,10 +41,10 @@ class Kinds:
         return None if own is _ALONE else (*kind, own)
 
     def _kind(self, value: Any) -> Any:
-        if isinstance(value, (float, int)) and not isinstance(value, bool):
-            return _number(value)
         if value is None or isinstance(value, (str, bool)):
             return value
+        if isinstance(value, (float, int)):
+            return _number(value)
         if id(value) not in self._known:  # beside it, so that no other takes its place in memory
             self._known[id(value)] = value, self._looked_at(value)
         return self._known[id(value)][1]
@@ -64,8 +64,8 @@ class Kinds:
         return value
 
     def _together(self, values: Iterable[Any]) -> Any:
-        found = tuple(self._kind(one) for one in values)
-        return _ALONE if any(one is _ALONE for one in found) else found
+        found = tuple([self._kind(one) for one in values])
+        return _ALONE if _ALONE in found else found
 
 
 def _number(value: Any) -> str | None:

@@ -49,17 +49,16 @@ def csv_rows(titles: Titles, rows: Iterable[Any], look: Look, headed: bool = Tru
     if headed:
         yield separator.join(_quoted(_harmless(name), separator) for name in titles.whole) + "\n"
     for row in rows:
-        texts = (_csv_cell(value, look) for value in titles.values(row))
-        yield separator.join(_quoted(text, separator) for text in texts) + "\n"
+        yield separator.join([_csv_cell(value, look, separator) for value in titles.values(row)]) + "\n"
 
 
-def _csv_cell(value: Any, look: Look) -> str:
+def _csv_cell(value: Any, look: Look, separator: str) -> str:
     if value is None:
         return ""
     if isinstance(value, str):
-        return _harmless(look.charset.text(value))
+        return _quoted(_harmless(look.charset.text(value)), separator)
     if isinstance(value, tuple):
-        return " ".join(_csv_cell(one, look) for one in value)
+        return " ".join([_csv_cell(one, look, separator) for one in value])
     text = exact(value, look.digits)
     return text.replace(".", ",") if look.comma else text
 

@@ -11,7 +11,6 @@ from kurbel.numerics.jet import Jet
 from kurbel.solver.cylinder.drive import Drive
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.solver.cylinder.state import State
 
 

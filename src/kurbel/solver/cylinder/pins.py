@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.mechanisms import fan
 from kurbel.numerics.grid import Grid
