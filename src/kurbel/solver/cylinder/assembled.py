@@ -22,10 +22,11 @@ class Assembled:
 
     def __init__(self, drive: Drive, grid: Grid, coarser: State, before: Grid) -> None:
         there = before.piece_at(grid.low, grid.variant)
-        whole = (before.low[there] == grid.low) & (before.high[there] == grid.high)
+        new = (before.low[there] != grid.low) | (before.high[there] != grid.high)
+        # of each piece the place among those of the coarser grid with the new ones after them
+        self._place = np.where(new, len(before.low) + np.cumsum(new) - 1, there)
         self.phi = grid.degrees
-        self._kept, self._there, self._new = np.flatnonzero(whole), there[whole], np.flatnonzero(~whole)
-        self._coarser, self._finer = coarser, drive.on(grid, self._new)
+        self._coarser, self._finer = coarser, drive.on(grid, np.flatnonzero(new))
         self._found: dict[str, Any] = {}
 
     def __getattr__(self, name: str) -> Any:
@@ -36,10 +37,8 @@ class Assembled:
         return self._found[name]
 
     def _joined(self, coarser: Any, finer: Any) -> Any:
-        if coarser is None or not len(self._new):
-            return coarser
+        if coarser is None:
+            return None
         if isinstance(coarser, Jet):
             return Jet(self._joined(coarser.value, finer.value), self._joined(coarser.slope, finer.slope))
-        joined = np.empty_like(self.phi)
-        joined[self._kept], joined[self._new] = coarser[self._there], finer
-        return joined
+        return np.concatenate((coarser.T, finer.T), axis=1).take(self._place, axis=1).T
