@@ -15,6 +15,7 @@ from kurbel.machine.side_by_side import Kinds, side_by_side
 from kurbel.numerics.cycles import Unlike
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.guide_load import GuideLoad
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.figures import answered
 
@@ -41,9 +42,9 @@ def answers_of(machines: Sequence[Machine], asked: Sequence[Answer]) -> list[Val
 
 
 def _stands_beside(quantity: Quantity) -> bool:
-    """Return whether a key value is one of forces or motion themselves, whose formulas take many machines."""
+    """Return whether a key value is one of forces, guide or motion themselves, whose formulas take many machines."""
     name = quantity.asks[0] if quantity.asks else quantity.id
-    return quantity.id not in _ALONE and any(hasattr(one, name) for one in (CylinderForces, Motion))
+    return quantity.id not in _ALONE and any(hasattr(one, name) for one in (CylinderForces, GuideLoad, Motion))
 
 
 def _merged(first: Values, second: Values, of_first: Sequence[bool]) -> Values:

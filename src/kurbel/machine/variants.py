@@ -51,4 +51,5 @@ def record_of(like: Any, varied: dict[str, Any]) -> Any:
 
 def _varied(record: Any) -> tuple[str, ...]:
     """Return which values may differ among the variants of a record: records of machines alone tell of none."""
-    return getattr(record, "__dict__", {}).get("_varied", ())
+    varied: tuple[str, ...] = getattr(record, "__dict__", {}).get("_varied", ())
+    return varied

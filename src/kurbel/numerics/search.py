@@ -125,9 +125,13 @@ def _with_peaks(
     place = np.searchsorted(row * nodes + node, brackets.row[own] * nodes + brackets.node[own]) + 1
     order = np.lexsort((peaks[own], place))
     into = place[order]
-    parts = ((grid.degrees[row, node], peaks), (row, brackets.row), (value[row, node], heights))
-    degrees, rows, values = (np.insert(at_nodes, into, at_peaks[own][order]) for at_nodes, at_peaks in parts)
-    return Curve(degrees, rows, values, np.searchsorted(rows, grid.first), grid, into + np.arange(len(into)))
+
+    def whole(at_nodes: Any, at_peaks: Any) -> Any:
+        return np.insert(at_nodes, into, at_peaks[own][order])
+
+    pieces = whole(row, brackets.row)
+    degrees, values = whole(grid.degrees[row, node], peaks), whole(value[row, node], heights)
+    return Curve(degrees, pieces, values, np.searchsorted(pieces, grid.first), grid, into + np.arange(len(into)))
 
 
 def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:

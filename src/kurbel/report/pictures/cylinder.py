@@ -42,8 +42,7 @@ def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
 
     def values(degrees: Array, within: Array) -> Array:
         state = source.results.at(degrees, within)
-        angle = CrankAngle.of(degrees)
-        return np.stack([state.way, *(end(state.way, angle, within) + gas.base for _, end in ends)])
+        return np.stack([state.way, *(state.pressure(end) + gas.base for _, end in ends)])
 
     samples = sampled(source.results.breaks, values, source.fineness)
     for (name, _), line in zip(ends, samples.values[1:]):

@@ -10,23 +10,25 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
-from kurbel.errors import NoSolutionError
 from kurbel.mechanisms import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
-from kurbel.numerics.cycles import Unlike
 from kurbel.numerics.jet import Jet, once_each
-from kurbel.solver.cylinder.chamber import OfChamber
+from kurbel.solver.cylinder.chamber import OF_CHAMBERS
+from kurbel.solver.cylinder.guide import OF_GUIDE
 from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.rod_load import rod_load
-from kurbel.solver.cylinder.rod_point import OfPoint
+from kurbel.solver.cylinder.rod_point import OF_POINT
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.cylinder.drive import Drive
     from kurbel.solver.cylinder.pins import Rubbing
+    from kurbel.solver.pressure import Pressure
+
+_ELSEWHERE = {**OF_GUIDE, **OF_CHAMBERS, **OF_POINT}
 
 
-class State(OfPoint, OfChamber):
+class State:
     """A cylinder at crank angles (n,); its attributes are named by the ids of the columns, in SI, each of shape (n,).
 
     angle: the crank angles; with jets for sine and cosine every quantity becomes a jet with its slope by φ.
@@ -43,17 +45,20 @@ class State(OfPoint, OfChamber):
         self.inside = within if isinstance(within, Inside) else Inside(drive, CrankAngle.of(once_each(within)))
 
     def __getattr__(self, id: str) -> Any:
-        """Return a column that the mechanism offers; None for one that only others do."""
+        """Return what is defined elsewhere, or a column that the mechanism offers; None for one that only others do."""
+        if id in _ELSEWHERE:
+            found = self.__dict__[id] = _ELSEWHERE[id](self)
+            return found
         offer = next((one for one in self.drive.mechanism.OFFERS if one.quantity.id == id), None)
         if offer is None:
             if id.startswith("_") or id not in by_id(every_quantity().all_columns):
                 raise AttributeError(f"no column is called {id}")
             return None
-        found = [getattr(self, name) for name in offer.times]
+        times = [getattr(self, name) for name in offer.times]
         factor = offer.factor(self.drive.mechanism, self.angle)
-        if factor is None or any(one is None for one in found):
+        if factor is None or any(one is None for one in times):
             return None
-        return reduce(mul, found) * factor if found else factor
+        return reduce(mul, times) * factor if times else factor
 
     @property
     def omega(self) -> Any:
@@ -85,7 +90,7 @@ class State(OfPoint, OfChamber):
         """Displacement in m; of what only swings, None."""
         return self._coordinate if self.drive.mechanism.slides else None
 
-    @property
+    @cached_property
     def way(self) -> Any:
         """Displacement in m from the inner dead centre, wherever the book counts x from: what the chambers see."""
         return self.x - self.drive.mechanism.start
@@ -113,13 +118,14 @@ class State(OfPoint, OfChamber):
         return None if w is None else self.curvature * (w * w)  # a power would raise where the product is inf
 
     @cached_property
-    def _rod(self) -> Any:
+    def rod_angle(self) -> Any:
+        """sin ψ and cos ψ; None without a rod."""
         return self.drive.mechanism.rod_angle(self.angle)
 
     @cached_property
     def psi(self) -> Any:
         """Rod angle in degrees."""
-        return None if self._rod is None else bearing(*self._rod)
+        return None if self.rod_angle is None else bearing(*self.rod_angle)
 
     @property
     def z(self) -> Any:
@@ -132,27 +138,31 @@ class State(OfPoint, OfChamber):
         """+1 on the outstroke, −1 on the return stroke; +1 for what turns on and on."""
         return self.inside.direction
 
+    def pressure(self, end: Pressure) -> Any:
+        """Return the gauge pressure in Pa at an end of a piston."""
+        return end(self.way, self.angle, self.inside.held(end))
+
     @cached_property
     def p_head(self) -> Any:
         """Pressure at the head end of the cylinder's own piston in Pa, counted as in the machine file."""
         gas = self.drive.own_gas
-        return gas.head(self.way, self.angle, self.inside.held(gas.head)) + gas.base if gas and gas.head else None
+        return self.pressure(gas.head) + gas.base if gas and gas.head else None
 
     @cached_property
     def p_crank(self) -> Any:
         """Pressure at the crank end of the cylinder's own piston in Pa, counted as in the machine file."""
         gas = self.drive.own_gas
-        return gas.crank(self.way, self.angle, self.inside.held(gas.crank)) + gas.base if gas and gas.crank else None
+        return self.pressure(gas.crank) + gas.base if gas and gas.crank else None
 
     @cached_property
     def P_gas(self) -> Any:
         """Force of gas, steam or water on all pistons in N, R 296."""
-        return sum(gas.force(self.way, self.angle, self.inside) for gas in self.drive.gas) if self.drive.gas else None
+        return sum(gas.force(self.pressure) for gas in self.drive.gas) if self.drive.gas else None
 
     @property
     def P_gas_book(self) -> Any:
         """The same with both areas of a piston alike, in N, R 297."""
-        with_equal_areas = [gas.force(self.way, self.angle, self.inside, alike=True) for gas in self.drive.gas]
+        with_equal_areas = [gas.force(self.pressure, alike=True) for gas in self.drive.gas]
         return sum(with_equal_areas) if with_equal_areas else None
 
     @cached_property
@@ -207,31 +217,10 @@ class State(OfPoint, OfChamber):
         return None if not masses or masses.crosshead is None else rod_load(self, without=masses.crosshead)
 
     @cached_property
-    def _after_steady_friction(self) -> Any:
+    def after_steady_friction(self) -> Any:
         """Force left for crosshead and rod after friction that is the same over the stroke, in N."""
         steady = self.drive.steady_friction
         return self.P - self.direction * steady if some(steady != 0) else self.P
-
-    @cached_property
-    def guide_sense(self) -> Any:
-        """The force whose sign is that of N: P sin ψ + G cos ψ with the load G on the guide, in N."""
-        sin_psi, cos_psi = self._rod if self._rod else (0.0, 1.0)
-        return self._after_steady_friction * sin_psi + cos_psi * self._guide_load
-
-    @cached_property
-    def _guide_load(self) -> Any:
-        """What rests on the guide beside the push of the rod in N: weight less the couple of an exact rod."""
-        return self.drive.guide_weight - self._rod_side if self._has_couple else self.drive.guide_weight
-
-    @property
-    def _has_couple(self) -> bool:
-        return self.drive.rod is not None or self.rubbing is not None
-
-    @cached_property
-    def _rod_side(self) -> Any:
-        """Side force in N of the couples on the rod: of an exact one, and of the friction in its pins."""
-        exact = self.drive.rod.side_force(self._rod, self.angle) if self.drive.rod else 0.0
-        return exact if self.rubbing is None else exact + self._pin_side
 
     @cached_property
     def rubbing(self) -> Rubbing | None:
@@ -246,73 +235,24 @@ class State(OfPoint, OfChamber):
         """The state as it would be if pins and journals did not rub: the loads that make them rub."""
         return State(self.drive, self.angle, self.inside.unrubbed)
 
+    @cached_property
+    def rod_side(self) -> Any:
+        """Side force in N of the couples on the rod: of an exact one, and of the friction in its pins; else None."""
+        exact = self.drive.rod.side_force(self.rod_angle, self.angle) if self.drive.rod else None
+        return exact if self.rubbing is None else _sum(exact, self._pin_side)
+
     @property
     def _pin_side(self) -> Any:
         """Side force in N of the friction in both pins of the rod."""
         assert self.rubbing is not None
-        return self.rubbing.couple / self.drive.mechanism.rod_length / self._rod[1]
-
-    @cached_property
-    def N(self) -> Any:
-        """Force on the guide in N, D 3 with signs: N = (P sin ψ + G cos ψ)/(cos ψ + f sin ψ sgn c sgn N).
-
-        With f = 0 and no weight this is R 301, N = P tan ψ. Raises NoSolutionError where the crosshead locks itself.
-        """
-        if self.P is None:
-            return None
-        if self._rod is None:
-            alone = self.drive.weight if self.drive.mechanism.known_across else None
-            return alone and np.full_like(self.phi, alone[1])
-        if not self.drive.rubs:
-            return self._after_steady_friction * (self._rod[0] / self._rod[1]) + self._guide_load
-        return self.guide_sense / self._below
-
-    @property
-    def _guide_side(self) -> Array:
-        """+1 where N ≥ 0, else −1, asked for within the piece: where N vanishes at its end, rounding would pick one."""
-        return self.inside.guide_side(self)
-
-    @cached_property
-    def _below(self) -> Any:
-        sin_psi, cos_psi = self._rod
-        below = cos_psi + sin_psi * (self._guide_side * self.direction * self.drive.crosshead_friction)
-        locked = getattr(below, "value", below) <= 0
-        if locked.any():
-            if self.drive.variant is not None:
-                raise Unlike(np.broadcast_to(self.drive.variant, locked.shape)[locked])
-            raise NoSolutionError(self._locks(float(self.phi[locked][0])))
-        return below
-
-    def _locks(self, degrees: float) -> str:
-        f = self.drive.crosshead_friction
-        bound = 1 / np.sqrt(1 + f * f)
-        return (
-            f"{self.drive.name}: the crosshead locks itself near φ = {degrees % 360:.4g}°, where the machine is driven "
-            f"and f tan ψ ≥ 1 (f = {f:g}); a driven machine needs (R + |e|)/L < 1/√(1 + f²) = {bound:.6g}"
-        )
-
-    @cached_property
-    def _crosshead_drag(self) -> Any:
-        """Crosshead friction f |N| in N, against the motion."""
-        return self.N * (self._guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
-
-    @cached_property
-    def p_guide(self) -> Any:
-        """|N| over the area of the shoe in Pa; None where its size is not given."""
-        area = self.drive.guide_area
-        return None if area is None or self.N is None else abs(self.N) / area
-
-    @cached_property
-    def wear(self) -> Any:
-        """f |N| |c| in W, the wear line of the guide (D); None without a shoe or a speed."""
-        return None if self.p_guide is None or self.c is None else self._crosshead_drag * self.c * self.direction
+        return self.rubbing.couple / self.drive.mechanism.rod_length / self.rod_angle[1]
 
     @cached_property
     def F_friction(self) -> Any:
         """All friction along the stroke line in N, positive toward the shaft."""
         if self.P is None or not self.drive.has_friction:
             return None
-        return (self._crosshead_drag + self.drive.steady_friction) * -self.direction
+        return (self.crosshead_drag + self.drive.steady_friction) * -self.direction
 
     @cached_property
     def along_rod(self) -> Any:
@@ -323,10 +263,10 @@ class State(OfPoint, OfChamber):
     @cached_property
     def S(self) -> Any:
         """Rod force in N, compression positive, R 300; of an exact rod, between the masses at its ends."""
-        if self.P is None or self._rod is None:
+        if self.P is None or self.rod_angle is None:
             return None
-        push = self.along_rod / self._rod[1]
-        return push - self._rod_side * self._rod[0] if self._has_couple else push
+        push = self.along_rod / self.rod_angle[1]
+        return push if self.rod_side is None else push - self.rod_side * self.rod_angle[0]
 
     @cached_property
     def S_crosshead(self) -> Any:
@@ -334,14 +274,14 @@ class State(OfPoint, OfChamber):
         if self.P is None or not self.drive.rod:
             return None
         b = self.b if self.drive.has_inertia else None
-        return self.drive.rod.at_crosshead(self._rod, self.along_rod, self.N - self.drive.guide_weight, b)
+        return self.drive.rod.at_crosshead(self.rod_angle, self.along_rod, self.N - self.drive.guide_weight, b)
 
     @cached_property
     def S_crank(self) -> Any:
         """Force along an exact rod at the crank pin in N."""
         if self.P is None or not self.drive.rod:
             return None
-        return self.drive.rod.at_crank(self._rod, self.angle, self.T, self.D)
+        return self.drive.rod.at_crank(self.rod_angle, self.angle, self.T, self.D)
 
     @cached_property
     def D(self) -> Any:
@@ -350,8 +290,8 @@ class State(OfPoint, OfChamber):
         if radial is None:
             return None
         push = self.along_rod * radial
-        if self.drive.rod is not None and self._rod is not None:
-            push = push + self.drive.rod.radial(self._rod, self.angle)
+        if self.drive.rod is not None and self.rod_angle is not None:
+            push = push + self.drive.rod.radial(self.rod_angle, self.angle)
         return push if self.rubbing is None else push + self.angle.sin * self._pin_side
 
     @property
@@ -390,12 +330,7 @@ class State(OfPoint, OfChamber):
     def _rod_tangential(self) -> Any:
         """What couple and weight of an exact rod give to T in N."""
         assert self.drive.rod is not None
-        return self.drive.rod.tangential(self._rod, self.angle)
-
-    @cached_property
-    def crosshead_power(self) -> Any:
-        """Crosshead friction times way by crank angle in J per radian, positive."""
-        return self._crosshead_drag * (self.slope * self.direction)
+        return self.drive.rod.tangential(self.rod_angle, self.angle)
 
 
 def _sum(first: Any, second: Any) -> Any:
