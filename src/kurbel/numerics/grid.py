@@ -54,11 +54,15 @@ class Pieces:
 
     def integral(self, value: Array) -> float:
         """Return ∫ value dφ (φ in radians) over all pieces by the rule, of every variant; value (pieces, nodes)."""
-        return float(self.half_widths @ (value @ self.weights))
+        return float(self.half_widths @ self._means(value))
 
     def integrals(self, value: Array) -> Array:
         """Return ∫ value dφ (φ in radians) over each piece; value (…, pieces, nodes)."""
-        return np.asarray(self.half_widths * (value @ self.weights))
+        return np.asarray(self.half_widths * self._means(value))
+
+    def _means(self, value: Array) -> Array:
+        # summed in one order, however the values lie in memory
+        return np.asarray(np.ascontiguousarray(value) @ self.weights)
 
 
 class Grid(Pieces):
