@@ -37,7 +37,7 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("stress",),
     ("balance",),
     ("balance", "--orders", "--compare", "-f", "json"),
-    ("balance", "--units", "technical", "-f", "md"),
+    ("balance", "--units", "technical", "-f", "markdown"),
     ("bearings",),
     ("bearings", "-f", "csv", "--units", "imperial"),
     ("bearings", "-f", "json", "--set", "rotation=under"),

@@ -1,11 +1,10 @@
-"""Types of arrays. For annotations alone: imported by type checkers, never when kurbel runs."""
+"""Types of arrays, said without numpy.typing, which would be one module more at every start."""
 
-from __future__ import annotations
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
-Flags = NDArray[np.bool_]
-Indices = NDArray[np.intp]
+Array = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
+ComplexArray = np.ndarray[tuple[Any, ...], np.dtype[np.complex128]]
+Flags = np.ndarray[tuple[Any, ...], np.dtype[np.bool_]]
+Indices = np.ndarray[tuple[Any, ...], np.dtype[np.intp]]

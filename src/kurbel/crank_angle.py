@@ -1,7 +1,5 @@
 """Crank angles in degrees, reduced exactly before any sine is taken, so that dead centres are exact zeros."""
 
-from __future__ import annotations
-
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -25,7 +23,7 @@ class CrankAngle(NamedTuple):
     cos: Any
 
     @classmethod
-    def of(cls, degrees: float | Array, beyond: float | Array = 0.0) -> CrankAngle:
+    def of(cls, degrees: "float | Array", beyond: "float | Array" = 0.0) -> "CrankAngle":
         """Return the angle for a number or an array of degrees.
 
         beyond: degrees to be added that are too small to show in `degrees`: 90 and 1e-20 are an angle just beyond 90°.
@@ -50,7 +48,7 @@ class CrankAngle(NamedTuple):
         return where(self.cos >= 0, 1 + abs(self.cos), self.sin * self.sin / (1 + abs(self.cos)))
 
 
-def within_cycle(degrees: Array, cycle: float) -> Array:
+def within_cycle(degrees: "Array", cycle: float) -> "Array":
     """Return angles (n,) in degrees as those of a cycle, from 0 on and less than its end."""
     import numpy as np
 
@@ -59,7 +57,7 @@ def within_cycle(degrees: Array, cycle: float) -> Array:
     return np.asarray(np.mod(degrees, cycle))
 
 
-def jet_angle(degrees: Array, beyond: Array | float = 0.0) -> CrankAngle:
+def jet_angle(degrees: "Array", beyond: "Array | float" = 0.0) -> CrankAngle:
     """Return the crank angles (n,) in degrees, as `CrankAngle.of`, with sine and cosine as jets."""
     from kurbel.numerics.jet import Jet
 
@@ -79,7 +77,7 @@ def _sin_cos_scalar(degrees: float, beyond: float) -> tuple[float, float]:
     return pair[0] + 0.0, pair[1] + 0.0
 
 
-def _sin_cos_array(degrees: float | Array, beyond: float | Array) -> tuple[Array, Array]:
+def _sin_cos_array(degrees: "float | Array", beyond: "float | Array") -> "tuple[Array, Array]":
     import numpy as np
 
     if not np.isfinite(degrees).all():

@@ -1,7 +1,5 @@
 """Every error kurbel raises on purpose: one root, raised where the rule lives, caught once at the top."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import NamedTuple, Union
 
@@ -47,11 +45,11 @@ class Fault(NamedTuple):
     source_line: str = ""
     override: str = ""
 
-    def below(self, path: Path) -> Fault:
+    def below(self, path: Path) -> "Fault":
         """Return it as seen from further up: its path with this one before it."""
         return self._replace(path=(*path, *self.path))
 
-    def at(self, line: int, column: int) -> Fault:
+    def at(self, line: int, column: int) -> "Fault":
         """Return it with its place, both counted from 0, as YAML counts them."""
         return self._replace(line=line + 1, column=column + 1)
 

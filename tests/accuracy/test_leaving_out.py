@@ -14,6 +14,7 @@ from kurbel.accuracy.timing import Patience
 from kurbel.machine_file import loads
 from kurbel.report.accuracy import everything
 from kurbel.report.forces import forces_report
+from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 
 BARE = "{name: bare, speed: 60 rpm, crank: 400 mm, rod: 2000 mm}"
@@ -85,14 +86,14 @@ def test_only_what_the_command_needs_is_computed() -> None:
 
 
 def test_nothing_is_printed_for_what_is_absent() -> None:
-    part = forces_report(Case(loads(BARE)), (0.0, 90.0), None, "si").parts[0]
+    part = forces_report(Case(loads(BARE)), Frame("forces", (0.0, 90.0), None, "si")).parts[0]
     assert [column.id for column in part.columns] == ["phi", "psi", "x", "c", "b"]
     assert not {"P_max", "T_max", "work", "friction_work", "loss_crosshead", "m"} & {one.id for one in part.key_values}
 
 
 def test_every_thing_left_out_saves_stages() -> None:
     found = list(savings(loads(FULL), everything, Patience(1, 0.0)))
-    assert [one.what for one in found] == [
+    assert [one.machine for one in found] == [
         "everything",
         "no friction",
         "no masses either",

@@ -13,7 +13,7 @@ import kurbel
 from kurbel.cli import kurbel as command
 from kurbel.declared.quantities import COMMON
 from kurbel.designs.columns import Answer
-from kurbel.designs.uncertainty import Uncertain, Uncertainty
+from kurbel.designs.uncertainty import Uncertain, Uncertainty, data_uncertainty
 from kurbel.machine_file import source
 
 WATERWORKS = Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml"
@@ -22,7 +22,7 @@ WATERWORKS = Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml"
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
     known = COMMON.key_values(command)
     asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
-    found = Uncertainty(source.read(WATERWORKS), (), tuple(spreads.items())).of(asked)
+    found = Uncertainty(source.read(WATERWORKS), (), spreads).of(asked)
     return {one.answer.quantity.id: one for one in found}
 
 
@@ -39,11 +39,21 @@ def test_first_order_is_that_of_closed_formulas() -> None:
     assert all(one.sample == 0 for one in found.values())
 
 
+def test_the_errors_of_the_data_are_those_of_the_file_too() -> None:
+    """`kurbel accuracy FILE`: without masses all that the gas does goes with bore², c_max with n, b_max with n²."""
+    machine = kurbel.loads("""
+        {speed: 50 rpm, crank: 400 mm, rod: 2000 mm, bore: 450 mm, indicator: {head_end: 9 bar, crank_end: 2 bar},
+         uncertainty: {bore: 0.9 mm, speed: 1 %}}
+        """)
+    found = {one.quantity: one.error for one in data_uncertainty(machine)}
+    assert found == pytest.approx({"c_max": 0.01, "b_max": 0.02, "T_max": 0.004, "ΔE": 0.004}, rel=1e-6)
+
+
 def test_what_bends_is_told_by_a_sample() -> None:
     """c_max with L/R = 5 ± 0.8 is far from straight; the spread is that of a sample drawn otherwise."""
     (one,) = of({"rod_ratio": "0.8"}, "c_max").values()
     assert one.sample > 1000
-    ratios = np.random.default_rng(4).normal(5, 0.8, 4000)
+    ratios = np.random.default_rng(4).normal(5, 0.8, 1500)
     machine = kurbel.load(WATERWORKS)
     drawn = kurbel.sweep(machine, {"rod_ratio": ratios[ratios > 1.01]}, ["c_max"])["c_max"]
     assert one.spread == pytest.approx(np.nanstd(drawn), rel=0.15)
@@ -103,3 +113,35 @@ def test_an_uncertainty_of_the_file_that_is_none() -> None:
         kurbel.loads("{stroke: 1 m, rod_ratio: 5, uncertainty: {stroke: 0 mm}}")
     with pytest.raises(kurbel.KurbelError, match="expected a mapping of keys"):
         kurbel.loads("{stroke: 1 m, rod_ratio: 5, uncertainty: 1 mm}")
+
+
+@pytest.mark.parametrize("asked", ["check", "forces"])
+def test_all_that_is_wrong_with_uncertainties_is_told_at_its_place(asked: str) -> None:
+    text = """\
+crank: 400 mm
+rod: 2 m
+uncertainty:
+  rd: 1 %
+  rod: 3 kg
+  name: 2 %
+  crank: 0.1 mm
+"""
+    result = CliRunner().invoke(command, [asked, "-"], input=text)
+    assert result.exit_code == 2
+    told = [line for line in result.stderr.splitlines() if line.startswith("<stdin>")]
+    assert [line.split(":")[1:4] for line in told] == [
+        ["4", "7", " uncertainty.rd"],
+        ["5", "8", " uncertainty.rod"],
+        ["6", "9", " uncertainty.name"],
+    ]
+    assert "did you mean 'rod'" in told[0]
+    assert "kg is a unit of mass" in told[1]
+
+
+def test_an_uncertainty_from_outside_is_told_as_such() -> None:
+    asked = ["forces", str(WATERWORKS), "--uncertainty", "bor=1 mm", "--uncertainty", "speed=1 kg"]
+    result = CliRunner().invoke(command, asked)
+    assert result.exit_code == 2
+    assert "--uncertainty bor: no value stands under this key in the file; did you mean 'bore'?" in result.stderr
+    assert "--uncertainty speed: " in result.stderr
+    assert "kg is a unit of mass" in result.stderr

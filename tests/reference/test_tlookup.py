@@ -6,8 +6,8 @@ import math
 
 import pytest
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.mechanisms.slider_crank import SliderCrank
 
 CRANK, LAM, OMEGA = 0.0285, 0.28, math.pi / 30

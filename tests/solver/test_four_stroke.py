@@ -21,6 +21,7 @@ from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.angles import stepped
 from kurbel.report.forces import forces_report
+from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from machines import STEAM_CARD, constant_pressure
@@ -129,7 +130,7 @@ def test_columns_repeat_after_720_degrees_and_not_before() -> None:
 
 def test_the_report_runs_over_the_cycle() -> None:
     forces = engine()
-    report = forces_report(Case(forces.drive.machine), stepped(10, 720), None, "si")
+    report = forces_report(Case(forces.drive.machine), Frame("forces", stepped(10, 720), None, "si"))
     assert report.parts[0].columns[0].values[-1] == 720
     assert not report.parts[0].warnings
 

@@ -140,12 +140,13 @@ def test_guides_and_pin_of_a_scotch_yoke() -> None:
 
 def test_pin_pressure_above_that_of_the_book_is_a_warning() -> None:
     from kurbel.report.forces import forces_report
+    from kurbel.report.frame import Frame
     from kurbel.solver.case import Case
 
     for width, warned in ((0.012, True), (0.5, False)):
         yoke = ScotchYoke(0.25, pin_diameter=0.05, pin_length=width)
         machine = Machine((Cylinder(yoke, pistons=(STEAM,)),))
-        (part,) = forces_report(Case(machine), (0.0,), None, "si").parts
+        (part,) = forces_report(Case(machine), Frame("forces", (0.0,), None, "si")).parts
         # R p. 617: up to 200 kgf/cm²
         assert any("above 196.133 bar" in warning for warning in part.warnings) == warned
         assert [left.why for left in part.left_out if left.what == "force on the guides"] == ["no guide_length given"]

@@ -26,6 +26,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.turning.flywheel import MachineTurning
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedEquation
 from machines import STEAM_CARD
+from representative import few
 from turning_machines import of_points
 
 POINTS = [(0, 500), (40, 1500), (40, 900), (120, 200), (200, 300), (200, 1300), (290, 100), (360, 250)]
@@ -79,7 +80,10 @@ def exact_energy(mean: Any, rate: Any, degrees: float) -> Any:
     return after(start, mp.radians(mp.mpf(degrees)))
 
 
-@pytest.mark.parametrize("relaxation", [1e-11, 1e-9, 1e-7, 1e-5, 1e-3, 1e-1, 1.0, 30.0, 1e3])
+RELAXATIONS = [1e-11, 1e-9, 1e-7, 1e-5, 1e-3, 1e-1, 1.0, 30.0, 1e3]
+
+
+@pytest.mark.parametrize("relaxation", few(RELAXATIONS, [1e-11, 1e-5, 1e-1, 1e3]))
 def test_relaxation_from_1e_11_to_1e3_revolutions(relaxation: float) -> None:
     """2e-14 in the kinetic energy at the angles of the table, against the closed solution."""
     mean = of_points(POINTS, RPM).M_mean
@@ -146,9 +150,9 @@ def test_a_stiff_generator_turns_the_torque_into_a_speed() -> None:
     machine = steam(50000, Load(slip=slip), replace(CYLINDER, crank_position=90.0))
     angles = np.array([10.0, 77.0, 150.0, 260.0])
     expected = slip * (machine.at(angles).M / machine.M_mean - 1)
-    assert machine.speed.z(angles, angles) / machine.speed.inertia.energy(angles, angles).value / 2 == pytest.approx(
-        expected, rel=1e-2
-    )
+    place = machine.speed.course.at(angles, angles)
+    ratio = machine.speed.z(place) / machine.speed.inertia.energy(place).value
+    assert ratio / 2 == pytest.approx(expected, rel=1e-2)
 
 
 def test_a_heavy_flywheel_keeps_the_digits_of_its_fluctuation() -> None:
@@ -164,9 +168,9 @@ def test_the_mean_speed_over_time_is_the_nominal_one() -> None:
     """A load that does not mind the speed: the time of a cycle is 2π/ω_n."""
     for inertia in (500.0, 3000.0, 1e6):
         machine = steam(inertia, None)
-        phi = np.linspace(0, 360, 200001)
+        phi = np.linspace(0, 360, 20001)
         slowness = 1 / machine.speed.omega(phi)
-        mean = np.sum((slowness[1:] + slowness[:-1]) / 2) / 200000
+        mean = np.sum((slowness[1:] + slowness[:-1]) / 2) / 20000
         assert 1 / mean == pytest.approx(machine.omega, rel=1e-8)
         assert machine.omega_mean == pytest.approx(machine.omega, rel=1e-12)
 
@@ -217,7 +221,7 @@ def test_masses_count_in_full_where_the_efficiency_takes_its_share() -> None:
     idle = replace(CYLINDER, pistons=())
     for eta in (1.0, 0.8):
         line = Case(Machine((idle,), speed=1.0, flywheel=Flywheel(500.0), efficiency=eta)).flywheel.speed
-        energy = line.inertia.at(ANGLES, ANGLES).value * line.omega(ANGLES) ** 2
+        energy = line.inertia.energy(line.course.at(ANGLES, ANGLES)).value * line.omega(ANGLES) ** 2
         assert energy == pytest.approx(energy[0], rel=1e-13)
 
 
@@ -241,7 +245,7 @@ def test_radau_rule_integrates_polynomials() -> None:
 
 @pytest.mark.parametrize(
     ("power", "inertia"),
-    [(-2.0, 800.0), (-1.5, 800.0), pytest.param(1000.0, 300.0, marks=pytest.mark.slow), (3000.0, 3000.0)],
+    few([(-2.0, 800.0), (-1.5, 800.0), (1000.0, 300.0), (3000.0, 3000.0)], [(-2.0, 800.0)]),
 )
 def test_the_speed_line_does_not_hang_on_where_the_angle_begins(power: float, inertia: float) -> None:
     lines = [
@@ -319,7 +323,8 @@ def test_the_turning_part_of_the_rod_counts_as_inertia() -> None:
     one, other = (steam(500.0, None, cylinder=cylinder) for cylinder in (share, exact))
     angles = np.array([0.0, 50.0, 90.0, 222.0])
     plain = steam(500.0, None, cylinder=replace(CYLINDER, masses=Masses(826.0 + 0.4 * 300.0)))
-    more = one.speed.inertia.at(angles, angles).value - plain.speed.inertia.at(angles, angles).value
+    with_rod, without = (machine.speed.course.at(angles, angles).moving.value for machine in (one, plain))
+    more = with_rod - without
     assert more == pytest.approx(0.6 * 300.0 * 0.4**2, rel=1e-11)
     assert other.delta == pytest.approx(one.delta, rel=1e-12)
 

@@ -9,6 +9,7 @@ from click.testing import CliRunner
 from kurbel.cli import kurbel
 from kurbel.machine_file import loads
 from kurbel.report.forces import forces_report
+from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 
 ENGINE = """
@@ -31,7 +32,7 @@ def case(rotation: str = "", out: str = "3 bar", back: str = "0 bar", **changed:
 
 
 def note(solved: Case) -> str:
-    report = forces_report(solved, (0.0,), None, "si")
+    report = forces_report(solved, Frame("forces", (0.0,), None, "si"))
     (found,) = (one for one in (*report.notes, *report.parts[0].warnings) if "guide" in one)
     return found
 
@@ -39,7 +40,7 @@ def note(solved: Case) -> str:
 def test_over_is_what_is_taken_without_it() -> None:
     plain, over = (case(rotation).cylinders[0].at(np.arange(0.0, 360.0, 5.0)) for rotation in ("", "over"))
     assert (plain.N == over.N).all()
-    assert forces_report(case(), (0.0,), None, "si").notes == ()
+    assert forces_report(case(), Frame("forces", (0.0,), None, "si")).notes == ()
 
 
 @pytest.mark.parametrize("inclination", [0.0, 30.0, 90.0])
@@ -93,7 +94,7 @@ def test_where_it_lifts() -> None:
 
 
 def test_standing_and_guideless_machines_have_no_lower_guide() -> None:
-    assert forces_report(case("under", inclination="90 deg"), (0.0,), None, "si").notes == ()
+    assert forces_report(case("under", inclination="90 deg"), Frame("forces", (0.0,), None, "si")).notes == ()
     assert case("under", inclination="90 deg").cylinders[0].lifted == ()
 
 

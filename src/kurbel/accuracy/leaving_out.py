@@ -1,7 +1,5 @@
 """What leaving out saves: the same machine with less and less in it, the stages evaluated, and their time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cached_property, partial
@@ -15,7 +13,7 @@ from kurbel.solver.case import Case
 class Saving(NamedTuple):
     """A machine with something left out: cached stages evaluated, seconds, and the time over that of the whole."""
 
-    what: str
+    machine: str
     stages: int
     median: float
     least: float

@@ -1,7 +1,5 @@
 """How long a method takes: one warm-up, then the median and the least of some repeats."""
 
-from __future__ import annotations
-
 import statistics
 import time
 from collections.abc import Callable
@@ -15,6 +13,11 @@ class Patience(NamedTuple):
 
     repeats: int = 20
     seconds: float = 0.5
+
+    @classmethod
+    def of(cls, quick: bool) -> "Patience":
+        """Return that of a run, which is less for a quick one."""
+        return cls(5, 0.1) if quick else cls()
 
 
 class Timed(NamedTuple):

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import Asked, machine_table
 
 
-@click.command(short_help="Free forces and moments, counterweights.", epilog=exit_statuses(NO_SOLUTION))
+@click.command()
 @machine_table
 @click.option("--compare", is_flag=True, help="What the books' cos phi + R/L cos 2phi (R 291) gives, beside it.")
 @click.option("--orders", "orders_only", is_flag=True, help="Only the tables of orders and weights, and key values.")
-def balance(asked: Asked, compare: bool, orders_only: bool) -> None:
+def balance(asked: Asked, orders_only: bool) -> None:
     """Print what the moving masses of FILE do to its frame, and which weights take that away.
 
     F_x is the free force along the stroke line of cylinder 1, outward from the shaft, F_y that across it, 90 degrees
@@ -23,5 +22,4 @@ def balance(asked: Asked, compare: bool, orders_only: bool) -> None:
     from kurbel.report.balance import balance_report
 
     case = asked.case()
-    angles = asked.crank_angles(case.balance.cycle)
-    asked.write(balance_report(case, angles, asked.columns, asked.units, compare, orders_only))
+    asked.write(balance_report(case, asked.frame("balance", case.balance.cycle), orders_only))

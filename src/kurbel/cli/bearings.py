@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import Asked, machine_table
 
 
-@click.command(short_help="Loads on pins and main bearings.", epilog=exit_statuses(NO_SOLUTION))
+@click.command()
 @machine_table
 def bearings(asked: Asked) -> None:
     """Print the loads on crank pins, crosshead pins and main bearings over the cycle.
@@ -21,5 +20,4 @@ def bearings(asked: Asked) -> None:
     from kurbel.report.bearings import bearings_report
 
     case = asked.case()
-    angles = asked.crank_angles(360.0 * case.machine.revolutions)
-    asked.write(bearings_report(case, angles, asked.columns, asked.units))
+    asked.write(bearings_report(case, asked.frame("bearings", 360.0 * case.machine.revolutions)))

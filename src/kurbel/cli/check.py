@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
-from kurbel.cli.exit_status import BROKEN, DONE, NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import format_of, loaded, machine_file, width_option
+from kurbel.cli import BROKEN, DONE
+from kurbel.cli.output_options import format_of, loaded, machine_file, output_option, width_option
+
+if TYPE_CHECKING:
+    from kurbel.machine import Machine
 
 
-@click.command(short_help="Read and check a machine file and its limits.", epilog=exit_statuses(BROKEN, NO_SOLUTION))
+@click.command()
 @machine_file
 @click.option(
     "--format",
@@ -17,7 +22,7 @@ from kurbel.cli.output_options import format_of, loaded, machine_file, width_opt
     type=click.Choice(["table", "json"]),
     help="json: every finding with its place. By the suffix of --output, or table, if not given.",
 )
-@click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
+@output_option
 @width_option
 def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: str | None, width: int | None) -> int:
     """Read the machine in FILE and say what will be computed, what is left out and why.
@@ -36,7 +41,7 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
     from kurbel.render.listing import listing
     from kurbel.render.output import stdout_look, write_out
 
-    result = checked(loaded(file, overrides, file_name))
+    result = checked(_loaded(file, overrides, file_name))
     look = Look() if file_name else stdout_look()
     look = look._replace(width=width or look.width)
     write_out((listing(result, look),), file_name)
@@ -46,19 +51,29 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
     return BROKEN if result.broken else DONE
 
 
+def _loaded(file: str, overrides: tuple[str, ...], file_name: str | None = None) -> Machine:
+    """Read the machine, whose uncertainties are told of what stands in the file."""
+    machine = loaded(file, overrides, file_name)
+    if machine.uncertainty:
+        from kurbel.designs.uncertainty import given_uncertainty
+
+        given_uncertainty(machine)
+    return machine
+
+
 def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> int:
     """Write all findings, those of a file that cannot be read, too, and return the status."""
     from kurbel.errors import KurbelError
     from kurbel.machine_file.positions import located_in
     from kurbel.render import Look
-    from kurbel.render.findings_json import findings_json
+    from kurbel.render.json_text import findings_json
     from kurbel.render.output import refuse_overwriting, stdout_look, write_out
     from kurbel.report.check import checked
     from kurbel.report.findings import faults_found, findings
 
     refuse_overwriting(file_name, (file,))
     try:
-        machine = loaded(file, overrides)
+        machine = _loaded(file, overrides)
     except KurbelError as error:
         found, status = faults_found(file, error), error.exit_status
     else:

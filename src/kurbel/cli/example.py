@@ -7,7 +7,6 @@ import os
 import click
 
 from kurbel.cli.completion import complete_example
-from kurbel.cli.exit_status import exit_statuses
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # a wheel carries the machines inside the package; in a checkout they lie beside src, where people look for them
@@ -15,7 +14,7 @@ _PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, 
 _SUFFIX = ".yaml"
 
 
-@click.command(short_help="List the shipped machines, or print one.", epilog=exit_statuses())
+@click.command()
 @click.argument("name", required=False, shell_complete=complete_example)
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
 def example(name: str | None, file_name: str | None) -> None:
@@ -26,12 +25,12 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks | kurbel forces -
     """
     from kurbel.render.listing import write_entries
-    from kurbel.render.output import write_text
+    from kurbel.render.output import write_out
 
     if name is None:
         write_entries([(each, _described(each)) for each in shipped_names()], file_name)
     else:
-        write_text((_read(_known(name)),), file_name)
+        write_out((_read(_known(name)),), file_name, "utf-8")
 
 
 def _folder() -> str:

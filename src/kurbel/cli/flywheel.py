@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option
-from kurbel.cli.row_options import AskedRows, where_option
+from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option, where_option
 
 
-@click.command(short_help="Turning effort, flywheel and speed line of the machine.", epilog=exit_statuses(NO_SOLUTION))
+@click.command()
 @machine_table
 @where_option
 @uncertainty_option
-def flywheel(asked: Asked, where: str | None, spreads: Spreads) -> None:
+def flywheel(asked: Asked, spreads: Spreads) -> None:
     """Print the turning effort of the whole machine, its excess work, and what the flywheel makes of it.
 
     Every cylinder counts at the angle of its crank; T is referred to the radius of crank 1, T_b is the share of the
@@ -23,5 +21,5 @@ def flywheel(asked: Asked, where: str | None, spreads: Spreads) -> None:
     from kurbel.report.flywheel import flywheel_report
 
     case = asked.case()
-    angles = AskedRows(where).rows(asked, "flywheel") or asked.crank_angles(360.0 * case.machine.revolutions)
-    asked.write(flywheel_report(case, angles, asked.columns, asked.units), case, spreads)
+    frame = asked.frame("flywheel", 360.0 * case.machine.revolutions)
+    asked.write(flywheel_report(case, frame), case, spreads)

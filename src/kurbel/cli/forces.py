@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option
-from kurbel.cli.row_options import AskedRows, row_options
+from kurbel.cli.output_options import Asked, Spreads, machine_table, row_options, uncertainty_option
 
 
-@click.command(short_help="Forces, work and friction loss of every cylinder.", epilog=exit_statuses(NO_SOLUTION))
+@click.command()
 @machine_table
 @uncertainty_option
 @row_options
@@ -17,7 +15,7 @@ from kurbel.cli.row_options import AskedRows, row_options
     "--cycle", type=click.IntRange(min=1), metavar="N", help="This measured cycle of a trace, not their mean."
 )
 @click.option("--each-cycle", is_flag=True, help="A line for every measured cycle instead of the table over the angle.")
-def forces(asked: Asked, rows: AskedRows, cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
+def forces(asked: Asked, cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
     """Print the forces in the crank train over the working cycle, and the key values, for every cylinder of FILE.
 
     P acts along the stroke line, S in the rod, N on the guide, D and T at the crank pin; forces toward the shaft
@@ -32,16 +30,16 @@ def forces(asked: Asked, rows: AskedRows, cycle: int | None, each_cycle: bool, s
 
         case = type(case)(of_cycle(case.machine, cycle))
     if each_cycle:
-        _refuse_columns(asked, rows, cycle)
+        _refuse_columns(asked, cycle)
         asked.write(cycles_report(case, asked.units))
         return
-    angles = rows.rows(asked) or asked.crank_angles(360.0 * case.machine.revolutions, len(case.cylinders))
-    asked.write(forces_report(case, angles, asked.columns, asked.units, rows.columns), case, spreads)
+    frame = asked.frame("forces", 360.0 * case.machine.revolutions, len(case.cylinders))
+    asked.write(forces_report(case, frame), case, spreads)
 
 
-def _refuse_columns(asked: Asked, rows: AskedRows, cycle: int | None) -> None:
+def _refuse_columns(asked: Asked, cycle: int | None) -> None:
     """Raise UsageError for what only a table over the angle has."""
     ways = {"--columns": asked.columns, "--cycle": cycle, "--angles": asked.angles}
-    for way, said in (ways | {"--where": rows.where, "--over": rows.over}).items():
+    for way, said in (ways | {"--where": asked.where, "--over": asked.over}).items():
         if said is not None:
             raise click.UsageError(f"--each-cycle has no table over the angle; leave out {way}.")

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import exit_statuses
-from kurbel.cli.output_options import Number, Output, output_options
+from kurbel.cli.output_options import Output, output_options
+from kurbel.cli.readings import number
 
 
-@click.command(short_help="Body on an inclined plane; needs no machine file.", epilog=exit_statuses())
-@click.option("--incline", type=Number(), required=True, metavar="DEGREES", help="Plane against the horizontal.")
-@click.option("--coefficient", type=Number(), required=True, metavar="F", help="Coefficient of friction, such as 0.1.")
+@click.command()
+@click.option("--incline", type=number, required=True, metavar="DEGREES", help="Plane against the horizontal.")
+@click.option("--coefficient", type=number, required=True, metavar="F", help="Coefficient of friction, such as 0.1.")
 @click.option(
     "--direction",
-    type=Number(),
+    type=number,
     default=0.0,
     metavar="DEGREES",
     help="Direction of the force above the plane; along the plane if not given.",

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import exit_statuses
-from kurbel.cli.order_options import orders_option, speeds_option
-from kurbel.cli.output_options import Asked, machine_places
+from kurbel.cli.output_options import Asked, machine_places, orders_option, speeds_option
 
 
-@click.command(short_help="Orders of the turning effort, gas and inertia apart.", epilog=exit_statuses())
+@click.command()
 @machine_places
 @orders_option
 @speeds_option
@@ -22,4 +20,4 @@ def harmonics(asked: Asked, orders: tuple[float, ...] | None, speeds: tuple[floa
     """
     from kurbel.report.harmonics import harmonics_report
 
-    asked.write(harmonics_report(asked.case(), orders, speeds, asked.units))
+    asked.write(harmonics_report(asked.case(), asked.frame("harmonics", 360.0), orders, speeds))

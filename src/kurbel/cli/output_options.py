@@ -1,99 +1,22 @@
 """Options shared by the commands that print a table, and what they mean."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 
+from kurbel.cli import readings
 from kurbel.cli.completion import complete_columns, complete_cylinder, complete_override
 from kurbel.render import FORMATS, LAYOUTS, Look
+from kurbel.report.tables import Report
 
 if TYPE_CHECKING:
-    from kurbel.declared.quantity import Quantity
     from kurbel.machine import Machine
-    from kurbel.report.tables import Report
+    from kurbel.report.frame import Frame
     from kurbel.solver.case import Case
 
-    _NumberType = click.ParamType[float]
-    _NumbersType = click.ParamType[tuple[float, ...]]
-    _WordsType = click.ParamType[tuple[str, ...]]
-else:  # before click 8.4 a ParamType has no parameter
-    _NumberType = _NumbersType = _WordsType = click.ParamType
-
 Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-class Number(_NumberType):
-    """A finite number with a decimal point, also 10/3 or 75 %; `words` are texts allowed instead, with their values."""
-
-    name = "number"
-
-    def __init__(self, **words: float) -> None:
-        self.words = words
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Return the number, or end with a usage error that says what to write."""
-        if not isinstance(value, str):
-            return float(value)
-        if value in self.words:
-            return self.words[value]
-        from kurbel.declared.numerals import parse_ratio
-        from kurbel.errors import UnitError
-
-        try:
-            return parse_ratio(value)
-        except UnitError as error:
-            self.fail(str(error), param, ctx)
-
-
-class Numbers(_NumbersType):
-    """Numbers, separated by commas."""
-
-    name = "numbers"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
-        """Return the numbers in the order given."""
-        if not isinstance(value, str):
-            return tuple(value)
-        return tuple(Number().convert(text, param, ctx) for text in value.split(","))
-
-
-class Words(_WordsType):
-    """Words, separated by commas."""
-
-    name = "words"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
-        """Return the words in the order given, without those that are empty."""
-        words = value.split(",") if isinstance(value, str) else value
-        return tuple(word.strip() for word in words if word.strip())
-
-
-class Columns(Words):
-    """Columns by id or printed symbol, separated by commas."""
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:
-        """Return the ids in the order given."""
-        from kurbel.declared.quantities import COLUMNS
-
-        words = super().convert(value, param, ctx)
-        if all(word in COLUMNS for word in words):
-            return words
-        from kurbel.declared.quantity import called, joined
-        from kurbel.mechanisms import every_quantity
-
-        known = [column for column in every_quantity().all_columns if column.commands]
-        return tuple(self._only(name, called(name, known), known, param, ctx) for name in joined(words, known))
-
-    def _only(self, name: str, found: tuple[str, ...], known: list[Quantity], *place: Any) -> str:
-        from kurbel.declared.quantity import ambiguity
-
-        if wrong := ambiguity(name, found):
-            self.fail(wrong, *place)
-        return found[0] if found else name  # the report knows what this machine has
 
 
 class Output(NamedTuple):
@@ -133,17 +56,21 @@ machine_file = stacked(click.argument("file", metavar="FILE", type=click.Path(al
 
 angle_options = stacked(
     click.option(
-        "--step", type=Number(), default=10.0, metavar="DEGREES", help="Step of the crank angle; 10 if not given."
+        "--step",
+        type=readings.number,
+        default=10.0,
+        metavar="DEGREES",
+        help="Step of the crank angle; 10 if not given.",
     ),
     click.option(
-        "--angles", type=Numbers(), metavar="A,B,...", help="These crank angles in degrees instead of a step."
+        "--angles", type=readings.numbers, metavar="A,B,...", help="These crank angles in degrees instead of a step."
     ),
 )
 """`--step` and `--angles`: see `crank_angles`."""
 
 columns_option = click.option(
     "--columns",
-    type=Columns(),
+    type=readings.columns,
     metavar="ID,ID,...",
     help="Only these columns, by id or symbol, in this order.",
     shell_complete=complete_columns,
@@ -163,6 +90,13 @@ units_option = click.option(
 width_option = click.option(
     "--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill; a terminal's own if not given."
 )
+output_option = click.option(
+    "--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."
+)
+number_options = stacked(
+    click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign."),
+    click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4 if not given."),
+)
 _look_options = stacked(
     click.option(
         "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
@@ -174,7 +108,7 @@ _look_options = stacked(
         type=click.Choice(FORMATS),
         help="By the suffix of --output, or table, if not given.",
     ),
-    click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."),
+    output_option,
     click.option(
         "--decimal",
         type=click.Choice(["point", "comma"]),
@@ -187,6 +121,33 @@ _look_options = stacked(
     width_option,
 )
 
+orders_option = click.option(
+    "--orders",
+    type=readings.numbers,
+    metavar="A,B,...",
+    help="Only these orders, periods per turn of the shaft; all up to 24 if not given.",
+)
+speeds_option = click.option(
+    "--speeds", type=readings.speeds, metavar="'A,B,... rpm'", help="Also at these speeds; or 'FROM:TO:STEP rpm'."
+)
+where_option = click.option(
+    "--where", metavar="'COLUMN = VALUE'", help="Rows where a column has a value, such as 'b = 1/6 b_max'."
+)
+row_options = stacked(
+    where_option,
+    click.option(
+        "--over", type=click.Choice(["x"]), help="Rows over the stroke, both ways, every --step percent of it."
+    ),
+    click.option("--compare", is_flag=True, help="Approximations of the book (R 286-291, 297) beside them."),
+)
+uncertainty_option = click.option(
+    "--uncertainty",
+    "spreads",
+    type=readings.spread,
+    multiple=True,
+    metavar="KEY=SPREAD",
+    help="Standard uncertainty of a value of FILE, such as bore='0.2 mm' or '2 %'; may be repeated.",
+)
 
 _SUFFIXES = {
     ".csv": "csv",
@@ -240,7 +201,7 @@ def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts:
     return angles
 
 
-def loaded(file: str, overrides: Sequence[str], *outputs: str | None) -> Machine:
+def loaded(file: str, overrides: Sequence[str], *outputs: str | None) -> "Machine":
     """Read the machine, with these values over those of its file.
 
     Raises UsageError where an output would overwrite its file, or a trace that it names.
@@ -254,30 +215,58 @@ def loaded(file: str, overrides: Sequence[str], *outputs: str | None) -> Machine
     return machine
 
 
+Spreads = tuple[tuple[str, str], ...]
+"""Dotted keys, each with its standard uncertainty as a text."""
+
+
 class Asked(NamedTuple):
-    """What is asked of a command that prints a table for a machine."""
+    """What is asked of a command that prints a table for a machine, by the names of the options.
+
+    units: of the figures; where, over: what has a value, or the stroke, over which the rows stand instead of the angle.
+    """
 
     file: str
     overrides: tuple[str, ...]
-    step: float
-    angles: tuple[float, ...] | None
-    columns: tuple[str, ...] | None
     units: str
     cylinder: str | None
     key_values_only: bool
     output: Output
+    step: float = 10.0
+    angles: tuple[float, ...] | None = None
+    columns: tuple[str, ...] | None = None
+    where: str | None = None
+    over: str | None = None
+    compare: bool = False
 
-    def case(self) -> Case:
+    def case(self) -> "Case":
         """Read the machine and return it with its results, none of which is computed yet."""
         from kurbel.solver.case import Case
 
         return Case(loaded(self.file, self.overrides, self.output.file_name))
 
-    def crank_angles(self, end: float, parts: int = 1) -> Sequence[float]:
-        """Return the crank angles in degrees to print for each part, from 0 to `end` where none are named."""
-        return crank_angles(self.step, self.angles, end, parts)
+    def frame(self, command: str, end: float, parts: int = 1) -> "Frame":
+        """Return the frame of the report: rows from 0 to `end` degrees, for each of so many parts, or where wanted."""
+        from kurbel.report.frame import Frame
 
-    def write(self, report: Report, case: Case | None = None, spreads: Sequence[tuple[str, str]] = ()) -> None:
+        angles = self._rows(command, end) or crank_angles(self.step, self.angles, end, parts)
+        return Frame(command, angles, self.columns, self.units, "z" if self.over else "", self.compare)
+
+    def _rows(self, command: str, end: float) -> Any:
+        """Return what finds the crank angles of a subject, None for a table over the angle itself."""
+        ways = {"--where": self.where, "--over": self.over, "--angles": self.angles or None}
+        given = [way for way, said in ways.items() if said is not None]
+        if len(given) > 1:
+            raise click.UsageError(f"{' and '.join(given)} both say at which crank angles; leave one of them out.")
+        if not self.over and self.where is None:
+            return None
+        from kurbel.report.rows import Place, over_stroke
+
+        if self.where is None:
+            return over_stroke(self.step, end)
+        # where a force has a value there is a motion to tell, too
+        return Place.parsed(self.where, "forces" if command == "motion" else command, end).angles
+
+    def write(self, report: Report, case: "Case | None" = None, spreads: Spreads = ()) -> None:
         """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""
         if self.key_values_only and self.columns:
             raise click.UsageError("--columns names columns of the table that --key-values leaves out.")
@@ -291,68 +280,22 @@ class Asked(NamedTuple):
         self.output.write(report)
 
 
-Spreads = tuple[tuple[str, str], ...]
-"""Dotted keys, each with its standard uncertainty as a text."""
-
-
-def uncertainty_option(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command standard uncertainties of inputs, which reach it as pairs of key and text."""
-    option = click.option(
-        "--uncertainty",
-        "spreads",
-        multiple=True,
-        metavar="KEY=SPREAD",
-        help="Standard uncertainty of a value of FILE, such as bore='0.2 mm' or '2 %'; may be repeated.",
-    )
-
+def _with_asked(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
-    def with_spreads(spreads: tuple[str, ...], **others: Any) -> Any:
-        return command(spreads=tuple(_spread(one) for one in spreads), **others)
-
-    return option(with_spreads)
-
-
-def _spread(text: str) -> tuple[str, str]:
-    from kurbel.declared.forms.uncertainties import spread_text
-
-    key, _, spread = text.partition("=")
-    if not (key.strip() and spread_text(spread)):
-        raise click.UsageError(f"--uncertainty {text}: write KEY=SPREAD, above 0, such as bore='0.2 mm'.")
-    return key.strip(), spread_text(spread)
-
-
-def machine_places(command: Callable[..., None]) -> Callable[..., Any]:
-    """Give a command FILE and the options of one that tells nothing over the crank angle; see `machine_table`."""
-    return stacked(machine_file, _part_options, units_option)(output_options(_with_asked(command)))
-
-
-def machine_table(command: Callable[..., None]) -> Callable[..., Any]:
-    """Give a command FILE and all options of a table, which reach it as one `asked: Asked`."""
-    return stacked(machine_file, angle_options, columns_option, _part_options, units_option)(
-        output_options(_with_asked(command))
-    )
-
-
-def _with_asked(command: Callable[..., None]) -> Callable[..., Any]:
-
-    @wraps(command)
-    def with_asked(
-        file: str,
-        overrides: tuple[str, ...],
-        units: str | None,
-        cylinder: str | None,
-        key_values_only: bool,
-        output: Output,
-        step: float = 10.0,
-        angles: tuple[float, ...] | None = None,
-        columns: tuple[str, ...] | None = None,
-        **others: Any,
-    ) -> None:
+    def with_asked(units: str | None, output: Output, **options: Any) -> None:
         system = units or ("si" if output.look.format in ("csv", "json") else "metric")
-        asked = Asked(file, overrides, step, angles, columns, system, cylinder, key_values_only, output)
+        own = {name: options.pop(name) for name in Asked._fields if name in options}
         from kurbel.declared.unit_systems import told_in
 
         with told_in(units or "metric"):
-            command(asked=asked, **others)
+            command(asked=Asked(units=system, output=output, **own), **options)
 
     return with_asked
+
+
+machine_places = stacked(machine_file, _part_options, units_option, output_options, _with_asked)
+"""Gives a command FILE and the options of one that tells nothing over the crank angle; see `machine_table`."""
+machine_table = stacked(
+    machine_file, angle_options, columns_option, _part_options, units_option, output_options, _with_asked
+)
+"""Gives a command FILE and all options of a table, which reach it as one `asked: Asked`."""

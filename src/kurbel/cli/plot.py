@@ -2,31 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import click
 
 from kurbel.cli.completion import complete_cylinder, complete_picture
-from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
-from kurbel.cli.output_options import Numbers, loaded, machine_file, units_option
-
-if TYPE_CHECKING:
-    from kurbel.report.pictures import Wish
-    from kurbel.solver.case import Case
+from kurbel.cli.output_options import loaded, machine_file, number_options, units_option
+from kurbel.cli.readings import numbers
 
 
-@click.command(short_help="Pictures, in the terminal or as SVG, PNG, PDF.", epilog=exit_statuses(NO_SOLUTION))
+@click.command()
 @machine_file
 @click.argument("names", metavar="[PICTURE]...", nargs=-1, shell_complete=complete_picture)
 @click.option("--list", "listed", is_flag=True, help="Say which pictures this machine has.")
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
-@click.option("--angles", type=Numbers(), metavar="A,B,...", help="The mechanism at these crank angles, not moving.")
+@click.option("--angles", type=numbers, metavar="A,B,...", help="The mechanism at these crank angles, not moving.")
 @click.option(
     "--cylinder", metavar="NAME", help="Only of this cylinder, by name or number.", shell_complete=complete_cylinder
 )
 @units_option
-@click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign.")
-@click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4 if not given.")
+@number_options
 @click.option("--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill in the terminal.")
 def plot(
     file: str,
@@ -49,7 +42,7 @@ def plot(
     """
     from kurbel.render import Look
     from kurbel.render.pictures.drawing import check_file, draw_file, draw_stdout
-    from kurbel.report.pictures import FILE, TERMINAL, Wish, pictures
+    from kurbel.report.pictures import FILE, TERMINAL, Wish, pictures, pictures_of
     from kurbel.solver.case import Case
 
     if listed and file_name is not None:
@@ -60,7 +53,9 @@ def plot(
     case = Case(loaded(file, overrides, file_name))
     wish = Wish(units or "metric", FILE if to_file else TERMINAL, cylinder, angles)
     if listed:
-        _list(case, wish)
+        from kurbel.render.listing import write_entries
+
+        write_entries([(one.id, f"{one.title}. {one.text}") for one in pictures_of(case, wish)])
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
     drawn = pictures(case, names, wish)
@@ -68,16 +63,3 @@ def plot(
         draw_file(list(drawn), look, file_name or "")
     else:
         draw_stdout(drawn, look)
-
-
-def _list(case: Case, wish: Wish) -> None:
-    """Write a line for each picture that there is."""
-    from kurbel.render.listing import entries
-    from kurbel.render.output import stdout_look, write_stdout
-    from kurbel.report.pictures import pictures_of
-
-    having = pictures_of(case, wish)
-    longest = max((len(one.id) for one in having), default=0)
-    found = ((f"{one.id:<{longest}}  ", f"{one.title}. {one.text}") for one in having)
-    look = stdout_look()
-    write_stdout((line + "\n" for line in entries(found, look)), look.encoding)

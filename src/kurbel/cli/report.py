@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import os
+import sys
+import time
+
 import click
 
-from kurbel.cli.exit_status import exit_statuses
-from kurbel.cli.output_options import Number, loaded, set_option, units_option
+from kurbel.cli.output_options import loaded, number_options, set_option, units_option
+from kurbel.cli.readings import number
+
+_PATIENCE = 1.0
+"""Seconds after which a terminal is told what is being done."""
 
 
-@click.command(short_help="Everything on one page of HTML; two machines side by side.", epilog=exit_statuses())
+@click.command()
 @click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
 @set_option
 @click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
-@click.option("--step", type=Number(), default=15.0, metavar="DEGREES", help="Step of the tables; 15 if not given.")
+@click.option("--step", type=number, default=15.0, metavar="DEGREES", help="Step of the tables; 15 if not given.")
 @units_option
-@click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign.")
-@click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4 if not given.")
+@number_options
 def report(
     files: tuple[str, ...],
     overrides: tuple[str, ...],
@@ -30,10 +36,9 @@ def report(
     The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
     with their differences. --set holds for each of them. FILE may be - for standard input.
     """
-    from kurbel.cli.progress import Progress
     from kurbel.machine_file.given import given
     from kurbel.render import Look
-    from kurbel.render.output import refuse_overwriting, write_text
+    from kurbel.render.output import refuse_overwriting, write_out
     from kurbel.render.report_page import report_page
     from kurbel.report.side_by_side import side_by_side
     from kurbel.report.whole import whole_report
@@ -55,14 +60,23 @@ def report(
         document = side_by_side(cases, keys, system, progress)
     progress("writing")
     look = Look("html", comma=decimal == "comma", digits=digits)
-    write_text(report_page(document, look, _today()), file_name)
+    write_out(report_page(document, look, _today()), file_name, "utf-8")
 
 
 def _today() -> str:
     """Return the date; SOURCE_DATE_EPOCH decides it where a page must come out the same every time."""
-    import os
-    import time
-
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
     seconds = float(epoch) if epoch.isdecimal() else time.time()
     return time.strftime("%Y-%m-%d", time.gmtime(seconds) if epoch.isdecimal() else time.localtime(seconds))
+
+
+class Progress:
+    """Called with what is done next; a terminal is told so from the second on, a pipe is not."""
+
+    def __init__(self, command: str) -> None:
+        self._command = command
+        self._begin = time.monotonic()
+
+    def __call__(self, doing: str) -> None:
+        if sys.stderr is not None and sys.stderr.isatty() and time.monotonic() - self._begin >= _PATIENCE:
+            click.echo(f"{self._command}: {doing} …", err=True)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
 from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option
 
 
-@click.command(short_help="Bearing forces and stresses of the crankshaft.", epilog=exit_statuses(NO_SOLUTION))
+@click.command()
 @machine_table
 @uncertainty_option
 @click.option("--places", "places_only", is_flag=True, help="Only the stresses place by place; as csv one line each.")
@@ -23,5 +22,5 @@ def stress(asked: Asked, places_only: bool, spreads: Spreads) -> None:
     from kurbel.report.stress import stress_report
 
     case = asked.case()
-    angles = asked.crank_angles(360.0 * case.machine.revolutions)
-    asked.write(stress_report(case, angles, asked.columns, asked.units, places_only), case, spreads)
+    frame = asked.frame("stress", 360.0 * case.machine.revolutions)
+    asked.write(stress_report(case, frame, places_only), case, spreads)

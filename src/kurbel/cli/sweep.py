@@ -1,21 +1,20 @@
 """`kurbel sweep`: key values over a grid, a list or a sample of machines."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from kurbel.cli.completion import complete_override
-from kurbel.cli.exit_status import exit_statuses
-from kurbel.cli.output_options import Words, format_of, machine_file, stacked, units_option
+from kurbel.cli.output_options import format_of, machine_file, output_option, stacked, units_option
+from kurbel.cli.readings import words
+from kurbel.render import Look
 
 if TYPE_CHECKING:
     from kurbel.designs.chosen import Aim
     from kurbel.designs.sweep import Row, Spec, Sweep
-    from kurbel.render import Look
     from kurbel.render.sweep_output import SweepOutput
 
 _SUFFIXES = {".csv": "csv", ".json": "json", ".jsonl": "json", ".md": "markdown", ".parquet": "parquet"}
@@ -36,19 +35,17 @@ _what_varies = stacked(
     click.option("--sobol", is_flag=True, help="The sequence of Sobol instead of a Latin hypercube."),
 )
 _what_is_told = stacked(
-    click.option("--columns", type=Words(), metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
+    click.option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
     click.option("--angles", "with_angles", is_flag=True, help="Beside every extreme the crank angle where it stands."),
     click.option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only rows with 'c_max < 5 m/s'."),
     click.option("--sort", metavar="ID", help="The smallest of this column first; -ID: the largest."),
     click.option("--top", type=click.IntRange(1), metavar="N", help="Only the first N rows of --sort."),
-    click.option(
-        "--pareto", type=Words(), metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."
-    ),
+    click.option("--pareto", type=words, metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."),
     click.option("--summary", is_flag=True, help="Quantiles, and rank correlation with every input, instead of rows."),
 )
 _where_it_goes = stacked(
     click.option("--format", "-f", "format", type=click.Choice(_FORMATS), help="By the suffix of --output, or table."),
-    click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."),
+    output_option,
     click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign."),
     click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4, and all in csv and json."),
     click.option("--resume", is_flag=True, help="Go on where the --output file of an interrupted run ends."),
@@ -65,7 +62,7 @@ _who_computes = stacked(
 )
 
 
-@click.command(short_help="Key values of many designs of a machine.", epilog=exit_statuses())
+@click.command()
 @machine_file
 @_what_varies
 @_what_is_told
@@ -83,33 +80,8 @@ def sweep(**options: Any) -> None:
     asked.run()
 
 
-class _Asked(NamedTuple):
+class _Asked(SimpleNamespace):
     """The options, by the names above."""
-
-    file: str
-    overrides: tuple[str, ...]
-    vary: tuple[str, ...]
-    side_by_side: bool
-    sample: int | None
-    seed: int
-    sobol: bool
-    columns: tuple[str, ...] | None
-    with_angles: bool
-    conditions: tuple[str, ...]
-    sort: str | None
-    top: int | None
-    pareto: tuple[str, ...] | None
-    summary: bool
-    units: str | None
-    format: str | None
-    file_name: str | None
-    decimal: str
-    digits: int | None
-    resume: bool
-    shard: str | None
-    jobs: int
-    dask: str | None
-    yes: bool
 
     @property
     def _look(self) -> Look:
@@ -132,6 +104,7 @@ class _Asked(NamedTuple):
         named = self.file_name not in (None, "-")
         for wrong, message in (
             (self.top and not self.sort, "--top N takes the first rows of --sort ID; give --sort too."),
+            (self.sobol and not self.sample, "--sobol is a way to draw a sample; give --sample N too."),
             (self.resume and not named, "--resume goes on in a file; give --output FILE."),
             (self.resume and self._written not in ("csv", "json"), "--resume goes on in csv or json lines."),
             (self.resume and not self._in_order, "--resume cannot go on where rows are sorted, chosen or summed up."),
@@ -164,7 +137,7 @@ class _Asked(NamedTuple):
         kept: Iterable[Row] = (row for row in told if all(one.holds(row) for one in conditions))
         out.write(summary(kept, found.heads) if self.summary else self._chosen(kept, aims, order))
 
-    def _spec(self) -> Spec:
+    def _spec(self) -> "Spec":
         from kurbel.designs.sweep import Spec
         from kurbel.machine_file import source
         from kurbel.render.output import refuse_overwriting
@@ -174,17 +147,16 @@ class _Asked(NamedTuple):
         plan = self.vary, self.side_by_side, self.sample, self.seed, self.sobol
         return Spec(source.read(self.file), self.overrides, *plan, self.columns or (), self.with_angles, system)
 
-    def _out(self, found: Sweep, rows: range) -> SweepOutput:
+    def _out(self, found: "Sweep", rows: range) -> "SweepOutput":
         from kurbel.designs.chosen import summary_heads
-        from kurbel.render.sweep_output import SweepOutput
-        from kurbel.render.sweep_rows import Titles
+        from kurbel.render.sweep_output import SweepOutput, Titles
 
         titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.limited)
         if self.summary:
             titles = Titles(summary_heads(found.heads), row="column", failing=False)
         return SweepOutput(titles, self._look, self.file_name, rows, self.resume)
 
-    def _chosen(self, rows: Iterable[Row], aims: Sequence[Aim], order: Aim | None) -> Iterable[Row]:
+    def _chosen(self, rows: "Iterable[Row]", aims: "Sequence[Aim]", order: "Aim | None") -> "Iterable[Row]":
         from kurbel.designs.chosen import sorted_rows, unbettered
 
         if aims:
@@ -194,7 +166,7 @@ class _Asked(NamedTuple):
         return rows
 
 
-def _counted(rows: Iterable[Row], count: int, file_name: str | None) -> Iterator[Row]:
+def _counted(rows: "Iterable[Row]", count: int, file_name: str | None) -> "Iterator[Row]":
     """Yield the rows, with a bar on the terminal where they do not go there themselves."""
     if not sys.stderr.isatty() or (file_name is None and sys.stdout.isatty()):
         yield from rows

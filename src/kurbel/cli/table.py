@@ -6,15 +6,19 @@ import math
 
 import click
 
-from kurbel.cli.exit_status import exit_statuses
-from kurbel.cli.output_options import Number, Output, Words, angle_options, crank_angles, output_options, units_option
+from kurbel.cli.output_options import Output, angle_options, crank_angles, output_options, units_option
+from kurbel.cli.readings import number, words
 
 
-@click.command(short_help="Zusammenstellung 112 for any L/R; needs no machine file.", epilog=exit_statuses())
+def _ratio(text: str) -> float:
+    return math.inf if text in ("inf", "infinite") else number(text)
+
+
+@click.command()
 @click.option(
     "--ratio",
     "ratios",
-    type=Number(inf=math.inf, infinite=math.inf),
+    type=_ratio,
     multiple=True,
     metavar="L/R",
     help="Rod length over crank radius, such as 5, or inf; may be repeated. 5, 4.5 and 4 if not given.",
@@ -23,7 +27,7 @@ from kurbel.cli.output_options import Number, Output, Words, angle_options, cran
     "--rows",
     "--columns",
     "rows",
-    type=Words(),
+    type=words,
     default="b,c",
     metavar="ROW,ROW,...",
     help="Of b, c, x, psi, S, N, D; b,c if not given.",

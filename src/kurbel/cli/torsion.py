@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import NO_SOLUTION, exit_statuses
-from kurbel.cli.order_options import orders_option, speeds_option
-from kurbel.cli.output_options import Asked, machine_table
+from kurbel.cli.output_options import Asked, machine_table, orders_option, speeds_option
 
 
-@click.command(short_help="Torsional vibration of the shaft line.", epilog=exit_statuses(NO_SOLUTION))
+@click.command()
 @machine_table
 @orders_option
 @speeds_option
@@ -30,6 +28,5 @@ def torsion(
     from kurbel.report.torsion import Wanted, torsion_report
 
     case = asked.case()
-    wanted = Wanted(orders, modes, mode, speeds)
-    angles = asked.crank_angles(360.0 * case.machine.revolutions)
-    asked.write(torsion_report(case, wanted, angles, asked.columns, asked.units))
+    frame = asked.frame("torsion", 360.0 * case.machine.revolutions)
+    asked.write(torsion_report(case, frame, Wanted(orders, modes, mode, speeds)))

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import click
 
-from kurbel.cli.exit_status import exit_statuses
 
-
-@click.command(short_help="The units of every kind of quantity.", epilog=exit_statuses())
+@click.command()
 def units() -> None:
     """List the units that a machine file may use, a line for each kind of quantity.
 

@@ -3,8 +3,6 @@
 A record (`Cylinder`, `Piston`, …) carries a table `KEYS` of these.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, ClassVar, NamedTuple
@@ -78,7 +76,7 @@ class Form(ABC):
         """Return a fault of the record as one of its mapping, whatever list the record has made of it."""
         return fault
 
-    def parts(self) -> Iterable[tuple[str, Form]]:
+    def parts(self) -> "Iterable[tuple[str, Form]]":
         """Return the forms that this one is made of, each after the key that it stands under, '' for none."""
         return ()
 
@@ -93,7 +91,7 @@ class Form(ABC):
         inner = f"{path}.{name}" if path else name
         yield from self.places(inner, f"under '{inner}'")
 
-    def meant(self, name: str, key: Key) -> dict[str, str]:
+    def meant(self, name: str, key: "Key") -> dict[str, str]:
         """Return what people try for what a key of this form stands for, each with the key that is meant.
 
         Such are other words for it, and the symbol with which the books write it.
@@ -114,7 +112,7 @@ class Form(ABC):
         for name, form in self.parts():
             yield from form.records(name or word)
 
-    def describe(self, name: str, key: Key, properties: Schema, rules: list[Schema], definitions: Schema) -> None:
+    def describe(self, name: str, key: "Key", properties: Schema, rules: list[Schema], definitions: Schema) -> None:
         """Add a key of this form to the schema of its mapping."""
         properties.setdefault(name, {**self.schema(definitions), "description": key.description})
         if key.instead:

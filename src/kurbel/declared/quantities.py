@@ -1,13 +1,12 @@
 """Every quantity that kurbel prints, declared once: reports, CSV heads, JSON, limits and docs read it here."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
 
 from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES, PIN_LOSSES
+from kurbel.declared.factors import PHI
 from kurbel.declared.flywheel import EFFORT_VALUES, FLYWHEEL_COLUMNS, FLYWHEEL_VALUES
 from kurbel.declared.indicated import INDICATED_COLUMNS, INDICATED_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
@@ -23,14 +22,7 @@ _turning = partial(Quantity, commands=(*_FORCES, *_FLYWHEEL))
 
 
 _COLUMNS = (
-    Quantity(
-        "phi",
-        "φ",
-        "angle",
-        "Crank angle from the inner dead centre, in the sense of rotation",
-        "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "bearings", "balance", "torsion"),
-    ),
+    PHI,
     _motion(
         "z",
         "z",
@@ -247,7 +239,7 @@ class Lists(NamedTuple):
     all_key_values: tuple[Quantity, ...]
 
     @classmethod
-    def of(cls, columns: Iterable[Quantity] = (), key_values: Iterable[Quantity] = ()) -> Lists:
+    def of(cls, columns: Iterable[Quantity] = (), key_values: Iterable[Quantity] = ()) -> "Lists":
         """Return what every machine may have, and these quantities, which a mechanism adds."""
         found = placed((*_COLUMNS, *columns))
         common = (
@@ -268,7 +260,7 @@ class Lists(NamedTuple):
         return cls(found, placed((*common, *key_values)))
 
     @property
-    def absolute(self) -> Lists:
+    def absolute(self) -> "Lists":
         """The same for a machine whose pressures are absolute."""
         return Lists(*(tuple(one.absolute() for one in each) for each in self))
 

@@ -1,7 +1,5 @@
 """What is said of a printed quantity, and the order in which several of them stand."""
 
-# annotations are taken as they stand: NamedTuple compiles each postponed one at every start
-
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 The tree is made of dict, list and texts. Numbers stay text: what a text means is decided by the key it stands under.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple

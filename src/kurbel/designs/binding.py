@@ -3,20 +3,19 @@
 Every record that is made anew keeps its rules as when it is read; what a row breaks is told as `--set` would tell it.
 """
 
-from __future__ import annotations
-
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from kurbel.declared.keys import Form
-from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, shown
+from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, shown
 from kurbel.errors import Fault, MachineFileError, Path, RuleError, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.overrides import overridden, read_override
 from kurbel.machine_file.reader import read_machine
 from kurbel.machine_file.source import Source
+from kurbel.near_words import did_you_mean
 
 _MOST_KNOWN = 10_000
 """Values of keys that are kept beside their texts."""
@@ -127,21 +126,44 @@ class Binder:
 
 def written_texts(source: Source, overrides: Sequence[str], keys: Sequence[str]) -> list[str]:
     """Return what a file has under these dotted keys; raises UsageError for a key under which no value stands."""
-    tree = parse(source.text, Reading(source.folder))
+    tree = tree_of(source, overrides)
+    try:
+        return [written(tree, key := one) for one in keys]
+    except UsageError as error:
+        raise UsageError(f"{shown(key)}: {error}") from None
+
+
+def tree_of(source: Source, overrides: Sequence[str]) -> Tree:
+    """Return a file as mappings, lists and texts, with what is set over it."""
+    tree: Tree = parse(source.text, Reading(source.folder))
     overridden(tree, [read_override(one) for one in overrides])
-    return [_written(tree, key) for key in keys]
+    return tree
 
 
-def _written(tree: Any, key: str) -> str:
-    node = tree
+def written(tree: Tree, key: str) -> str:
+    """Return what stands under a dotted key; raises UsageError where no value does."""
+    node: Any = tree
     try:
         for step in read_override(f"{key}=0").path:
             node = node[step]
     except (KeyError, IndexError, TypeError):
         node = None
     if not isinstance(node, str):
-        raise UsageError(f"{shown(key)}: no value stands under this key in the file")
+        near = did_you_mean(key, tuple(_keys_with_value(tree)))
+        raise UsageError(f"no value stands under this key in the file{near}")
     return node
+
+
+def _keys_with_value(tree: Tree, below: str = "") -> Iterator[str]:
+    """Yield the dotted keys under which a value stands, but for those of points."""
+    for step, node in tree.items():
+        if isinstance(node, str):
+            yield f"{below}{step}"
+        elif isinstance(node, dict):
+            yield from _keys_with_value(node, f"{below}{step}.")
+        else:
+            records = {str(place): one for place, one in enumerate(node) if isinstance(one, dict)}
+            yield from _keys_with_value(records, f"{below}{step}.")
 
 
 def _owner(path: Path, births: list[Birth]) -> tuple[Birth, str]:

@@ -1,7 +1,5 @@
 """Which rows of a sweep are kept: by conditions, as the best, as those that no other one betters; and a summary."""
 
-from __future__ import annotations
-
 import operator
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence

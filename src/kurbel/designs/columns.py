@@ -1,7 +1,5 @@
 """What is asked of every design: key values of any command, each of a cylinder or of the whole machine."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from importlib import import_module
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """What varies: `KEY=…` as a list, a range or a distribution."""
 
-from __future__ import annotations
-
 import re
 from decimal import Decimal, InvalidOperation
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """A sweep: rows of inputs and answers, computed chunk by chunk in their order, here or by other processes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
@@ -220,7 +218,7 @@ def _size(value: Any) -> float:
 
 def _limit_answers(machine: Machine) -> Iterable[tuple[Answer, float]]:
     """Yield whose value each limit of the file is for, with its bound."""
-    from kurbel.report.limits import commands_for
+    from kurbel.report.compared import commands_for
     from kurbel.solver.case import Case
 
     case = Case(machine)

@@ -5,29 +5,32 @@ beside the value, extrapolated to none (Richardson). Jets carry slopes by the cr
 Where an answer bends over the width of an uncertainty, so that its first order does not hold, a sample tells instead.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from statistics import NormalDist
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from kurbel.declared.numerals import parse_ratio
+from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import answers_of
-from kurbel.designs.binding import Binder, Unbound, written_texts
+from kurbel.designs.binding import Binder, Unbound, tree_of, written
 from kurbel.designs.columns import Answer, subjects
 from kurbel.designs.sampling import latin_hypercube
 from kurbel.designs.sweep import kind_of_form
-from kurbel.errors import UnitError, UsageError
+from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine_file.positions import located
 from kurbel.machine_file.source import Source, decode
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
+
+if TYPE_CHECKING:
+    from kurbel.accuracy.inexact import Difference
 
 SAMPLE, SLOW_SAMPLE = 2000, 200
 """Machines that are drawn where the first order does not hold: side by side, and where each is answered alone."""
@@ -38,6 +41,8 @@ _BEND = 0.1
 _ROUNDING = 1e-9
 """What is less than this beside the value itself bends nothing."""
 
+
+Found = TypeVar("Found")
 
 _NOISE = 1e-12
 """Of a value: what is less is no uncertainty but rounding."""
@@ -56,20 +61,33 @@ class Uncertain(NamedTuple):
     sample: int = 0
 
 
+class WrongUncertainty(UsageError):
+    """What is wrong with uncertainties; faults: dotted key -> message."""
+
+    def __init__(self, faults: dict[str, str]) -> None:
+        self.faults = faults
+        super().__init__("; ".join(f"uncertainty of {key}: {message}" for key, message in faults.items()))
+
+
 class Uncertainty:
     """What uncertain inputs make of key values; spreads: dotted key -> `0.2 mm` or `2 %`, its standard uncertainty.
 
-    Raises UsageError for keys under which no number stands, and for units that do not fit.
+    Raises WrongUncertainty for keys under which no number stands, and for units that do not fit: all of them.
     """
 
-    def __init__(self, source: Source, overrides: Sequence[str], spreads: Sequence[tuple[str, str]]) -> None:
-        self.keys = tuple(key for key, _ in spreads)
-        texts = written_texts(source, overrides, self.keys)
-        self._binder = Binder(source, overrides, self.keys, texts)
-        self._kinds = [kind_of_form(self._binder.form(number)) for number in range(len(spreads))]
-        self._values = [_number(text, kind, key) for text, kind, key in zip(texts, self._kinds, self.keys)]
-        told = zip(spreads, self._kinds, self._values)
-        self._spreads = [_spread(text, kind, value, key) for (key, text), kind, value in told]
+    def __init__(self, source: Source, overrides: Sequence[str], spreads: Mapping[str, str]) -> None:
+        tree, wrong = tree_of(source, overrides), dict[str, str]()
+        texts = _of_each(spreads, lambda key: written(tree, key), wrong)
+        self.keys = tuple(texts)
+        self._binder = Binder(source, overrides, self.keys, list(texts.values()))
+        self._kinds = [kind_of_form(self._binder.form(number)) for number in range(len(self.keys))]
+        kinds = dict(zip(self.keys, self._kinds))
+        values = _of_each(self.keys, lambda key: _number(texts[key], kinds[key]), wrong)
+        self._values = list(values.values())
+        widths = _of_each(values, lambda key: _spread(spreads[key], kinds[key], values[key]), wrong)
+        self._spreads = list(widths.values())
+        if wrong:
+            raise WrongUncertainty(wrong)
 
     def _machine(self, shifts: Sequence[float]) -> Machine | None:
         """Return the machine with inputs off by so many of their uncertainties each; None where there is none."""
@@ -139,49 +157,105 @@ def _float(value: Any) -> float:
     return number if isinstance(number, (int, float)) else math.nan
 
 
-def _number(text: str, kind: str, key: str) -> float:
+def _of_each(keys: Iterable[str], told: Callable[[str], Found], wrong: dict[str, str]) -> dict[str, Found]:
+    """Return what is told of every key; what is wrong with one is noted."""
+    found = {}
+    for key in keys:
+        try:
+            found[key] = told(key)
+        except UsageError as error:
+            wrong[key] = str(error)
+    return found
+
+
+def _number(text: str, kind: str) -> float:
     try:
         return parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
     except (UnitError, KeyError):
-        raise UsageError(f"uncertainty of {key}: '{text}' is no number that could be off") from None
+        raise UsageError(f"{shown(text)!r} is no number that could be off") from None
 
 
-def _spread(text: str, kind: str, value: float, key: str) -> float:
+def _spread(text: str, kind: str, value: float) -> float:
     try:
         if text.endswith("%"):
             spread = abs(value) * parse_ratio(text)
         else:
             spread = parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
     except UnitError as error:
-        raise UsageError(f"uncertainty of {key}: {error}") from None
+        raise UsageError(str(error)) from None
     if not spread > 0:
-        raise UsageError(f"uncertainty of {key}: it must be more than 0, got {text}")
+        raise UsageError(f"it must be more than 0, got {text}")
     return spread
 
 
 def with_uncertainty(report: Report, case: Case, more: Sequence[tuple[str, str]], system: str) -> Report:
     """Return a report with a table of the uncertainties of its key values; more: those that no file gives.
 
-    Raises UsageError, as `Uncertainty`.
+    Raises what `given_uncertainty` does.
     """
-    spreads = tuple((dict(case.machine.uncertainty) | dict(more)).items())
-    origin = case.machine.origin
-    if not spreads or origin is None:
+    uncertainty = given_uncertainty(case.machine, more)
+    if uncertainty is None:
         return report
-    import os
-
-    source = decode(origin.name, origin.content, os.path.dirname(origin.name))
-    uncertainty = Uncertainty(source, origin.overrides, spreads)
-    asked = [
-        Answer(quantity, report.command, subject.name)
-        for subject in subjects(case, report.command)
-        for quantity, _ in subject.key_values(report.command)
-        if not (quantity.listed or quantity.residual)
-    ]
-    found = uncertainty.of(asked)
+    found = uncertainty.of(_asked(case, report.command))
     parts = [_with_table(part, found, uncertainty.keys, system) for part in report.all_parts]
     last = parts.pop() if report.whole else None
     return report._replace(parts=tuple(parts), whole=last, notes=(*report.notes, *_notes(found)))
+
+
+_COMPARED = (("forces", ("c_max", "b_max", "work", "T_max")), ("flywheel", ("dE",)))
+"""Command -> ids of the quantities whose other errors stand beside those of the data."""
+
+
+def data_uncertainty(machine: Machine) -> "tuple[Difference, ...]":
+    """Return what the uncertainties in a machine's file make of motion, work and torques, relatively.
+
+    Of the first cylinder and of the whole machine; errors: see `given_uncertainty`.
+    """
+    from kurbel.accuracy.inexact import Difference
+
+    uncertainty = given_uncertainty(machine)
+    if uncertainty is None:
+        return ()
+    case = Case(machine)
+    asked = [one for command, ids in _COMPARED for one in _asked(case, command) if one.quantity.id in ids]
+    first = [one for one in asked if one.subject in (asked[0].subject, "whole machine")]
+    found = [one for one in uncertainty.of(first) if one.spread > _NOISE * abs(one.value)]
+    return tuple(
+        Difference(one.answer.quantity.symbol, "standard uncertainties of the file", one.spread / abs(one.value))
+        for one in found
+        if one.value
+    )
+
+
+def given_uncertainty(machine: Machine, more: Sequence[tuple[str, str]] = ()) -> Uncertainty | None:
+    """Return the uncertainties of a machine's file, and those that no file gives; None where there are none.
+
+    Raises MachineFileError or UsageError with all that is wrong with them.
+    """
+    outside, origin = dict(more), machine.origin
+    spreads = dict(machine.uncertainty) | outside
+    if not spreads or origin is None:
+        return None
+    import os
+
+    source = decode(origin.name, origin.content, os.path.dirname(origin.name))
+    try:
+        return Uncertainty(source, origin.overrides, spreads)
+    except WrongUncertainty as error:
+        wrong = error.faults
+    if told := [f"--uncertainty {key}: {wrong[key]}" for key in outside if key in wrong]:
+        raise UsageError("; ".join(told))
+    raise source.error(*located(source.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
+
+
+def _asked(case: Case, command: str) -> list[Answer]:
+    """Return the key values of a command that are numbers which the inputs move."""
+    return [
+        Answer(quantity, command, subject.name)
+        for subject in subjects(case, command)
+        for quantity, _ in subject.key_values(command)
+        if not (quantity.listed or quantity.residual)
+    ]
 
 
 def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], system: str) -> Part:

@@ -1,13 +1,11 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from kurbel.declared.bounds import Point, size_faults
-from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName
+from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName, not_negative
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor
@@ -78,14 +76,9 @@ class Card(Described):
             "atmospheric line",
             instead="unit",
         ),
-        "area": Key(
-            Physical("area", least=0), "Area by planimeter, instead of the lines of a drawn card", needs="drawn"
-        ),
-        "mean_height": Key(
-            Physical("length", least=0),
-            "Mean height by planimeter, instead of the lines of a drawn card",
-            instead="area",
-            needs="drawn",
+        "area": not_negative("area", "Area by planimeter, instead of the lines of a drawn card", needs="drawn"),
+        "mean_height": not_negative(
+            "length", "Mean height by planimeter, instead of the lines of a drawn card", instead="area", needs="drawn"
         ),
         "expansion": Key(_POINTS, "Line while the burnt or admitted gas expands"),
         "compression": Key(_POINTS, "Line while the chamber is compressed or empties"),
@@ -99,11 +92,11 @@ class Card(Described):
     def of_keys(
         cls,
         unit: Factor | None = None,
-        drawn: Drawn | None = None,
+        drawn: "Drawn | None" = None,
         interpolate: str = "linear",
         clearance: float | None = None,
         **given: Any,
-    ) -> Card | Rectangle:
+    ) -> "Card | Rectangle":
         """Return the card that these keys of a machine file describe; raises RuleError with every fault."""
         if drawn and given.keys() & {"area", "mean_height"}:
             return _by_planimeter(drawn, **given)
@@ -159,7 +152,7 @@ def _missing_lines(given: Mapping[str, Any]) -> list[Fault]:
     return [Fault((), f"the '{name}' line of the {cycle} card is missing") for name in missing]
 
 
-def _by_planimeter(drawn: Drawn, **given: Any) -> Rectangle:
+def _by_planimeter(drawn: "Drawn", **given: Any) -> "Rectangle":
     lines = [name for name in given if name not in ("area", "mean_height")]
     refuse(*(Fault((name,), "the lines have an area of their own; leave out the one by planimeter") for name in lines))
     return drawn.rectangle(**given)
@@ -279,7 +272,7 @@ class Indicator(Described):
     @classmethod
     def of_keys(
         cls, pressures: str = "gauge", head_end: Chamber | None = None, crank_end: Chamber | str | None = None
-    ) -> Indicator:
+    ) -> "Indicator":
         """Return the indicator that these keys of a machine file describe; raises RuleError."""
         if head_end is None and crank_end in (None, "mirrored"):
             path: Path = () if crank_end is None else ("crank_end",)

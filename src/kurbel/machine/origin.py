@@ -1,7 +1,5 @@
 """What a machine was read from."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

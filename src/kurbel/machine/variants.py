@@ -1,13 +1,10 @@
 """Records of many variants of a machine: what differs among them is an array over the variants, (v,)."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Indices
+from kurbel.arrays import Indices
 
 
 class Chambers(NamedTuple):

@@ -1,23 +1,19 @@
 """Files of columns, as data loggers write them: columns of figures, or the first line that has none."""
 
-from __future__ import annotations
-
 import io
 import itertools
 import os
 import re
 import warnings
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.numerals import familiar
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine_file.text_file import text_of
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 MOST_NUMBERS = 5_000_000
 """Numbers that are taken from one file."""

@@ -1,7 +1,5 @@
 """Values set from outside over those of a machine file: `KEY=VALUE`, the key dotted, the value as in the file."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple

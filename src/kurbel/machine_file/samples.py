@@ -1,12 +1,10 @@
 """The keys that say how a file of samples is laid out, and the samples that are read by them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from kurbel.declared.forms import Choice, Count, Physical
+from kurbel.declared.forms import Choice, Count, Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.errors import Fault, RuleError, refuse
 
@@ -28,13 +26,9 @@ def layout_keys(what: str) -> Keys:
         "angle_unit": Key(
             Choice(("deg", "rad", "s", "ms")), "What the angle column counts: an angle, or time", absent="deg"
         ),
-        "recorded_speed": Key(
-            Physical("speed", above=0), "Constant speed at which times were recorded", needs="angle_unit"
-        ),
-        "angle_step": Key(
-            Physical("angle", above=0),
-            "Crank angle from one row to the next, instead of a column of angles",
-            instead="angle_column",
+        "recorded_speed": positive("speed", "Constant speed at which times were recorded", needs="angle_unit"),
+        "angle_step": positive(
+            "angle", "Crank angle from one row to the next, instead of a column of angles", instead="angle_column"
         ),
         f"{what}_column": Key(Count(), f"Column of the {what}s, counted from 1", absent="2"),
         "skip_rows": Key(Count(least=0), "Number of lines above the first figures", absent="0"),
@@ -61,7 +55,7 @@ class Layout(NamedTuple):
     decimal: str = "point"
 
     @classmethod
-    def of_keys(cls, what: str, **keys: Any) -> Layout:
+    def of_keys(cls, what: str, **keys: Any) -> "Layout":
         """Return the layout that the keys describe; raises RuleError for those that contradict one another."""
         several = keys.pop(f"{what}_columns", None)
         key, columns = (f"{what}_columns", several) if several else (f"{what}_column", (keys.pop(f"{what}_column", 2),))
@@ -78,7 +72,7 @@ class Layout(NamedTuple):
         refuse(*faults)
         return layout
 
-    def degrees(self, column: Array | None, rows: int) -> Array:
+    def degrees(self, column: "Array | None", rows: int) -> "Array":
         """Return the angles (rows,) in degrees that a column of the file tells, or none."""
         import numpy as np
 
@@ -89,7 +83,9 @@ class Layout(NamedTuple):
         return np.asarray(column * math.degrees(1.0) if self.angle_unit == "rad" else column)
 
 
-def samples_of(file: str, layout: Layout, what: str, base: Callable[[Array], Array], against: bool = False) -> Samples:
+def samples_of(
+    file: str, layout: Layout, what: str, base: "Callable[[Array], Array]", against: bool = False
+) -> "Samples":
     """Return the laps of what was measured from a file; raises RuleError.
 
     base: turns figures of the file into the base of their unit; against: angles count against the rotation.
@@ -119,8 +115,8 @@ def samples_of(file: str, layout: Layout, what: str, base: Callable[[Array], Arr
 
 
 def turned(
-    angles: Array, values: Array, named: Callable[[int], Fault], against: bool
-) -> tuple[Array, Array, Callable[[int], Fault]]:
+    angles: "Array", values: "Array", named: Callable[[int], Fault], against: bool
+) -> "tuple[Array, Array, Callable[[int], Fault]]":
     """Return samples as they are, or those that were counted `against` the rotation in the order of time."""
     if not against:
         return angles, values, named

@@ -1,7 +1,5 @@
 """The keys of a measured trace, whose samples stand in the machine file or in a file of columns beside it."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from kurbel.declared.bounds import Point
@@ -69,16 +67,16 @@ class Measured(Described):
         unit: Factor,
         file: str | None = None,
         points: list[Point] | None = None,
-        angle_zero: float | Motored = 0.0,
+        angle_zero: "float | Motored" = 0.0,
         angle_sense: str = "with",
         scale: float | None = None,
         offset: float | None = None,
-        pegging: Pegging | str | None = None,
+        pegging: "Pegging | str | None" = None,
         drift: str | None = None,
         clearance: float | None = None,
         compression_ratio: float | None = None,
         **layout: Any,
-    ) -> Trace:
+    ) -> "Trace":
         """Return the trace that these keys describe, its file read."""
         from kurbel.machine.trace import Pegging, Trace
 
@@ -114,7 +112,7 @@ class _Gauge(NamedTuple):
     scale: float | None
     offset: float | None
 
-    def pressures(self, figures: Array) -> Array:
+    def pressures(self, figures: "Array") -> "Array":
         """Return pressures of the shape of the figures; raises RuleError for a scale of 0."""
         if self.scale == 0:
             refuse(Fault(("scale",), "0 leaves no pressure; write the pressure for 1 of the file"))
@@ -123,7 +121,7 @@ class _Gauge(NamedTuple):
         return found * (1.0 if self.scale is None else self.scale) + (self.offset or 0.0)
 
 
-def _from_points(points: list[Point], gauge: _Gauge, against: bool) -> Samples:
+def _from_points(points: list[Point], gauge: _Gauge, against: bool) -> "Samples":
     import numpy as np
 
     from kurbel.machine_file.whole_cycle import whole_cycle
@@ -134,7 +132,7 @@ def _from_points(points: list[Point], gauge: _Gauge, against: bool) -> Samples:
 
 
 def _zero(
-    given: float | Motored, layout: Layout, gauge: _Gauge, against: bool
+    given: "float | Motored", layout: Layout, gauge: _Gauge, against: bool
 ) -> tuple[float, tuple[str, ...], tuple[str, ...]]:
     """Return the angle of the dead centre as the file counts, the files that it was read from, and what to say."""
     if isinstance(given, (int, float)):

@@ -1,17 +1,13 @@
 """Records of many turns or cycles, one below the other, cut into laps that lie over one another."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.errors import RuleError
 from kurbel.machine.trace import PERIODS
 from kurbel.machine_file.holes import Named, refuse_large_holes, said, usual_step
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
 
 _ALIKE = 1e-3
 """Of a step: what the angles of two laps may differ by and still be the same, rounded."""

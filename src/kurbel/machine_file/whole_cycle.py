@@ -1,19 +1,15 @@
 """The samples of a measured trace, put to the test, cut into turns, and closed to whole cycles."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.bounds import MOST_POINTS, out_of_size
 from kurbel.errors import Fault, RuleError
 from kurbel.machine.trace import PERIODS
 from kurbel.machine_file.holes import Named, counted_otherwise, hole, hole_notes, refuse_large_holes, said, usual_step
 from kurbel.machine_file.turns import Record, lapped
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 
 class Samples(NamedTuple):

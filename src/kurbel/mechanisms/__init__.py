@@ -4,12 +4,11 @@ A mechanism is one file with one class, and one line in `MECHANISMS`. None impor
 the crank angle is made of. What a new mechanism must supply stands in `Mechanism`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Described, Keys
 from kurbel.declared.quantities import Lists
@@ -19,7 +18,6 @@ from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
-    from kurbel.crank_angle import CrankAngle
     from kurbel.mechanisms.coupler import Coupler
     from kurbel.mechanisms.sketch import Sketch
 
@@ -102,6 +100,19 @@ class Mechanism(Described):
     """What the pin of the connecting rod or coupler that is not on the crank is called."""
     known_across: ClassVar[bool] = False
     """Whether, without a connecting rod, nothing but its weight pushes the output across the stroke line onto N."""
+    # what follows may also hang on the lengths of one: then a property takes its place
+    slides: ClassVar[Any] = True
+    """Whether the output moves to and fro on a line."""
+    turns: ClassVar[Any] = False
+    """Whether the output turns on and on, so that it has no return stroke."""
+    has_dead_centres: ClassVar[Any] = True
+    """Whether there are dead centres; otherwise `dead_centres` only part a turn into halves."""
+    quick_return: ClassVar[Any] = False
+    """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
+    works_outward: ClassVar[Any] = True
+    """Whether the outstroke is the working stroke; otherwise the return stroke is."""
+    start: ClassVar[Any] = 0.0
+    """The coordinate at the inner dead centre."""
     crank: float
     offset: float = 0.0
     """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
@@ -114,34 +125,9 @@ class Mechanism(Described):
             raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
 
     @property
-    def slides(self) -> bool:
-        """Whether the output moves to and fro on a line."""
-        return True
-
-    @property
-    def turns(self) -> bool:
-        """Whether the output turns on and on, so that it has no return stroke."""
-        return False
-
-    @property
-    def has_dead_centres(self) -> bool:
-        """Whether there are dead centres; otherwise `dead_centres` only part a turn into halves."""
-        return True
-
-    @property
-    def quick_return(self) -> bool:
-        """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
-        return False
-
-    @property
     def stroke(self) -> float:
         """Stroke in m; of what only swings, its swing in radians."""
         raise AssertionError
-
-    @property
-    def start(self) -> float:
-        """The coordinate at the inner dead centre."""
-        return 0.0
 
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return q at the crank angle, in m (or rad), of the shape of the angle."""
@@ -199,11 +185,6 @@ class Mechanism(Described):
         return 360.0 - self.phi_work
 
     @property
-    def works_outward(self) -> bool:
-        """Whether the outstroke is the working stroke; otherwise the return stroke is."""
-        return True
-
-    @property
     def time_ratio(self) -> float:
         """Time of the outstroke (working stroke) over that of the return stroke, at uniform rotation."""
         return self.phi_work / self.phi_return
@@ -212,11 +193,11 @@ class Mechanism(Described):
         """Return (sin ψ, cos ψ) of the connecting rod, or None where there is none."""
         return None
 
-    def coupler_at(self, angle: CrankAngle) -> Coupler | None:
+    def coupler_at(self, angle: CrankAngle) -> "Coupler | None":
         """Return how the connecting rod or coupler on the crank pin lies and turns, or None where there is none."""
         return None
 
-    def sketch(self, angle: CrankAngle) -> Sketch | None:
+    def sketch(self, angle: CrankAngle) -> "Sketch | None":
         """Return what is drawn of the mechanism at the crank angle, or None where that cannot be drawn."""
         return None
 
@@ -289,9 +270,9 @@ def _lists(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...]) -> Lists
     return Lists.of(dict.fromkeys(offer.quantity for offer in offers), dict.fromkeys(key_values))
 
 
-def check_lengths(**lengths: float) -> None:
-    """Raise RuleError for every length that is not positive and finite."""
-    wrong = [name for name, value in lengths.items() if not 0 < value < float("inf")]
+def check_lengths(**lengths: float | None) -> None:
+    """Raise RuleError for every length that is not positive and finite; None is one that is not given."""
+    wrong = [name for name, value in lengths.items() if value is not None and not 0 < value < float("inf")]
     refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
 
 

@@ -1,7 +1,5 @@
 """The closed loop of a four-bar linkage: where its coupler and rocker stand, and how fast they turn."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 
@@ -28,7 +26,7 @@ class Loop(NamedTuple):
     unlike: float
 
     @classmethod
-    def of(cls, crank: float, coupler: float, rocker: float, frame: float) -> Loop:
+    def of(cls, crank: float, coupler: float, rocker: float, frame: float) -> "Loop":
         """Return the loop of four lengths in one unit."""
         a, b, c = crank / frame, coupler / frame, rocker / frame
         near, far = min(crank, frame), max(crank, frame)
@@ -43,7 +41,7 @@ class Loop(NamedTuple):
             (coupler - rocker) / frame,
         )
 
-    def at(self, angle: CrankAngle) -> Closure:
+    def at(self, angle: CrankAngle) -> "Closure":
         """Return the loop closed at a crank angle, its gaps built from positive terms."""
         a, near, far = self.crank, angle.versine, angle.vercosine
         square = self.span * self.span + 2 * a * near

@@ -4,8 +4,6 @@ All lengths are over the lever's length; θ is the lever's tilt, given by sine a
 `lead` its derivative by θ, `bend` minus the derivative of that.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

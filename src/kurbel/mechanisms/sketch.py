@@ -1,7 +1,5 @@
 """What is drawn of a mechanism at a crank angle: where its joints stand, and what joins them."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 Point = tuple[Any, Any]

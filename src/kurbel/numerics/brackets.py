@@ -1,17 +1,13 @@
 """Brackets of what a quantity does between the nodes of a grid: where it turns round, where that is worth a search."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.roots import bracketed_roots
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Flags, Indices
 
 
 class Sampled(NamedTuple):
@@ -21,7 +17,7 @@ class Sampled(NamedTuple):
     slope: Array
 
     @classmethod
-    def of(cls, jet: Any, shape: tuple[int, ...]) -> Sampled:
+    def of(cls, jet: Any, shape: tuple[int, ...]) -> "Sampled":
         """Return value and slope of a jet, or of what does not change, at angles of this shape."""
         value, slope = getattr(jet, "value", jet), getattr(jet, "slope", 0.0)
         return cls(np.broadcast_to(value, shape), np.broadcast_to(slope, shape))
@@ -48,13 +44,13 @@ class Brackets(NamedTuple):
     f_low: Array
     f_high: Array
 
-    def where(self, flags: Flags) -> Brackets:
+    def where(self, flags: Flags) -> "Brackets":
         """Return those for which a flag (n,) is set."""
         parts: list[Any] = [part[flags] for part in self]
         return Brackets(*parts)
 
     @classmethod
-    def joined(cls, parts: Iterable[Brackets]) -> Brackets:
+    def joined(cls, parts: "Iterable[Brackets]") -> "Brackets":
         return cls(*map(np.concatenate, zip(*parts, strict=True)))
 
 

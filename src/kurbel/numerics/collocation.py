@@ -4,19 +4,15 @@ Radau IIA is L-stable: what relaxes within a hair of a turn is damped out, where
 The whole cycle is solved at once, so that it does not matter how many turns a marching method would need to settle.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from kurbel.arrays import Array, Flags
 from kurbel.numerics.cyclic import around
 from kurbel.numerics.elements import STAGES, Elements, Prepared, rule
 from kurbel.numerics.legendre import legendre
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Flags
 
 _TOLERANCE = 1e-13
 """What the last two Legendre coefficients of an element may be, over the swing of the unknown."""
@@ -40,7 +36,7 @@ class Equation(Prepared, Protocol):
         """Return what y must stay above, (k, n, m), −∞ where nothing bounds it."""
         ...
 
-    def eased(self, by: float) -> Equation:
+    def eased(self, by: float) -> "Equation":
         """Return the equation made tamer, from 0 on without end: its floor is lower by so much, and y moves it less."""
         ...
 

@@ -1,19 +1,15 @@
 """The cycles of many variants of a machine, each cut into its own smooth pieces: one flat grid of all of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.gauss import GAUSS
 from kurbel.numerics.grid import SAME, Grid, Pieces
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Flags, Indices
 
 
 class Unlike(Exception):
@@ -30,7 +26,7 @@ class Flat(NamedTuple):
     variant: Indices
     values: Array
 
-    def sorted(self) -> Flat:
+    def sorted(self) -> "Flat":
         """Return them ascending, variant by variant."""
         order = np.lexsort((self.values, self.variant))
         return Flat(self.variant[order], self.values[order])
@@ -42,7 +38,7 @@ class Flat(NamedTuple):
         return tuple(tuple(values[start:end]) for start, end in pairwise(ends))
 
     @classmethod
-    def alike(cls, values: Array, count: int) -> Flat:
+    def alike(cls, values: Array, count: int) -> "Flat":
         """Return the same numbers (n,) for each of so many variants."""
         return cls(np.repeat(np.arange(count), len(values)), np.tile(values, count))
 

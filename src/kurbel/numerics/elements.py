@@ -1,16 +1,12 @@
 """Elements for collocation over a cycle: parts of its smooth pieces, each with the nodes of Radau IIA of 11 stages."""
 
-from __future__ import annotations
-
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.legendre import legendre, legendre_slopes
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Flags, Indices
 
 STAGES = 11
 
@@ -67,7 +63,7 @@ class Elements(NamedTuple):
     within: Array
 
     @classmethod
-    def over(cls, breaks: Array) -> Elements:
+    def over(cls, breaks: Array) -> "Elements":
         """Return the pieces between the angles `breaks` (k + 1,) in degrees, one element each."""
         low, high = breaks[:-1], breaks[1:]
         return cls(low, np.zeros_like(low), high - low, (low + high) / 2)
@@ -93,7 +89,7 @@ class Elements(NamedTuple):
         x = 2 * ((degrees - self.piece[k]) - self.offset[k]) / self.width[k] - 1
         return np.asarray(np.einsum("...n,...mn->...m", legendre(x, STAGES), coefficients[k]))
 
-    def cut(self, rough: Flags) -> tuple[Elements, Indices, Array]:
+    def cut(self, rough: Flags) -> "tuple[Elements, Indices, Array]":
         """Return the elements with the rough ones cut at 0.1 and 0.5.
 
         Beside them stand, of each new one, the index of the old one that holds it and where its nodes, its start

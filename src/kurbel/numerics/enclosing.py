@@ -1,15 +1,12 @@
 """The smallest circle round points in the plane, which are complex numbers, and round a closed curve."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import combinations
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray
 
 _ROUNDING = 1e-14
 _STEPS = 6

@@ -1,7 +1,5 @@
 """An extreme: the value and where it stands."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from kurbel.numerics.arithmetic import where

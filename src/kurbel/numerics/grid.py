@@ -1,17 +1,13 @@
 """A cycle cut into smooth pieces: samples for searches, Gauss points for integrals, each on its side of every jump."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.gauss import GAUSS, LOBATTO_4, LOBATTO_16, Rule
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Flags, Indices
 
 _MANY = 300  # jumps; where there are fewer, sixteen points a piece cost nothing
 _PARTS = 23  # of a smooth piece, 2° of 45°; on each four points integrate as exactly as sixteen on the whole
@@ -108,11 +104,11 @@ class Grid(Pieces):
         np.fill_diagonal(matrix, -matrix.sum(axis=1))
         return np.asarray((value @ matrix.T) / self.half_widths[rows, None])
 
-    def other(self) -> Grid:
+    def other(self) -> "Grid":
         """Return the same cycle in other pieces: each cut in two unequal ones."""
         return self.split_at(self.low + 0.381966 * (self.high - self.low))
 
-    def split_at(self, angles: Array) -> Grid:
+    def split_at(self, angles: Array) -> "Grid":
         """Return the grid cut at further angles in degrees; two that differ by rounding only are one."""
         return Grid(_cycle(self.breaks, angles), self.rule) if len(angles) else self
 
@@ -185,19 +181,19 @@ class Cuts(NamedTuple):
     jumps: Array = np.array([])
 
     @classmethod
-    def of_turns(cls, landmarks: Iterable[float], cycle: float, jumps: Iterable[Array] = ()) -> Cuts:
+    def of_turns(cls, landmarks: Iterable[float], cycle: float, jumps: Iterable[Array] = ()) -> "Cuts":
         """Return the cuts of a cycle (360 or 720 deg) of which every turn is cut at the landmarks, and every 45°."""
         each = np.mod([*landmarks, *np.arange(0.0, 360.0, 45.0)], 360.0)
         turns = [each + turn for turn in np.arange(0.0, cycle, 360.0)]
         return cls(_cycle(np.array([0.0, cycle]), *turns), np.concatenate([np.array([]), *jumps]))
 
     @classmethod
-    def joined(cls, several: Sequence[Cuts]) -> Cuts:
+    def joined(cls, several: "Sequence[Cuts]") -> "Cuts":
         """Return the cuts of several quantities over the same cycle."""
         smooth, jumps = zip(*several, strict=True)
         return cls(_cycle(*smooth), np.concatenate(jumps))
 
-    def shifted(self, by: float, cycle: float) -> Cuts:
+    def shifted(self, by: float, cycle: float) -> "Cuts":
         """Return the cuts repeated over a longer cycle, and put later by an angle."""
         turns = np.arange(0.0, cycle, self.smooth[-1])
         smooth, jumps = (np.mod(np.add.outer(turns, part + by).ravel(), cycle) for part in self)

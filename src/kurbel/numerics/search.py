@@ -1,11 +1,10 @@
 """Searches over a cycle: the exact extremes between the nodes of a grid, and the exact zeros between the extremes."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.brackets import (
     Brackets,
     Worth,
@@ -20,9 +19,6 @@ from kurbel.numerics.brackets import Evaluate as Evaluate
 from kurbel.numerics.brackets import Sampled as Sampled
 from kurbel.numerics.extreme import Extreme, largest
 from kurbel.numerics.grid import Grid
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Flags, Indices
 
 _ROUNDING = 8 * np.finfo(float).eps
 """What is no larger than this beside the largest value of its quantity is rounding and has no sign."""

@@ -1,14 +1,11 @@
 """The peak of samples, by a parabola through those around the top one: a single sample may be noise."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
+from kurbel.arrays import Array
 
 _FEWEST = 5
 

@@ -1,18 +1,14 @@
 """Where a quantity has a value: the exact angles over a cycle, and between which values it moves."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import Sampled, curves, extremes_of, sign_changes
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 
 class Where(NamedTuple):

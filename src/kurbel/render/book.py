@@ -1,16 +1,12 @@
 """The look of Zusammenstellung 112: quantities down the side, crank angles across, broken as over two pages."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from kurbel.render import Look
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import BLANK, Line, Piece, line
 from kurbel.render.sheet import Row, Sheet
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
 
 _NINE = 9  # the book breaks after 80°
 _GAP = 2

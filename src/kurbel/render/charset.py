@@ -1,7 +1,5 @@
 """Characters that the output can show: Greek, powers and thin rules, or ASCII where its encoding lacks them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 _ASCII = {

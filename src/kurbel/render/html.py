@@ -1,23 +1,14 @@
 """HTML: a page of its own for one report, and the tables that longer pages and notebooks are made of."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from html import escape
-from itertools import chain, repeat
-from typing import TYPE_CHECKING
+from itertools import chain, cycle, repeat
+from typing import NamedTuple
 
-from kurbel.render.numbers import angle
-from kurbel.render.prose import list_text, sentence_text, value_text
-from kurbel.render.sheet import MARK, part_name, sheets
-from kurbel.report.alike import told_once
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import KeyValue, Part, Report
-
-_ACROSS = 9
-"""Columns of a table beside that of the angle: what a page of A4 holds; more make a table of their own."""
+from kurbel.render import Look
+from kurbel.render.document import KEY_VALUE_HEADS, ON_PAPER, Table, document, key_value_cells
+from kurbel.render.sheet import MARK
+from kurbel.report.tables import KeyValue, Report
 
 INK, PAPER, FAINT, RULE, SHADE = (
     ("#1a1a1a", "#e8e8e8"),
@@ -80,41 +71,34 @@ def style() -> str:
 
 def tables(report: Report, look: Look, level: int = 2) -> Iterator[str]:
     """Yield title, tables, key values and notes of a report, under a heading of this level."""
-    report = told_once(report)
-    title = escape(look.charset.text(report.title))
-    yield f"<h{level}>{title}</h{level}>\n"
-    yield from (f"<p>{_prose(one, look)}</p>\n" for one in report.head)
-    yield from _angle_tables(report, look)
-    yield from _place_tables(report, look)
-    yield from (f"<p>{_prose(one, look)}</p>\n" for one in (report.mirrored, *report.notes) if one)
-    for part in report.all_parts:
-        yield from _of_part(part_name(report, part, look), part, look, level + 1)
+    return document(report, look, _Html(look, level))
 
 
-def _angle_tables(report: Report, look: Look) -> Iterator[str]:
-    for sheet in sheets(report, look):
-        for band in sheet.bands:
-            for start in range(0, max(len(band.rows), 1), _ACROSS):
-                columns = [*sheet.heads, *band.rows[start : start + _ACROSS]]
-                rows = zip(*(row.cells for row in columns))
-                heads = [(row.symbol, row.unit) for row in columns]
-                yield from table(heads, rows, band.name, len(sheet.heads), range(len(heads)))
+class _Html(NamedTuple):
+    """Writes what stands in the body of a page; level: of the heading of the report."""
+
+    look: Look
+    level: int
+    across: int | None = ON_PAPER
+
+    def title(self, text: str) -> Iterator[str]:
+        yield f"<h{self.level}>{escape(text)}</h{self.level}>\n"
+
+    def paragraph(self, text: str) -> Iterator[str]:
+        yield f"<p>{escape(text)}</p>\n"
+
+    def table(self, table: Table) -> Iterator[str]:
+        numbers = range(table.names, len(table.heads))
+        return grid(table.heads, table.rows, table.caption, table.of_row, numbers)
+
+    def key_values(self, title: str, found: Iterable[KeyValue]) -> Iterator[str]:
+        yield key_values(found, title, self.look)
+
+    def items(self, title: str, lines: Sequence[str]) -> Iterator[str]:
+        yield item_list(title, lines, self.level + 1)
 
 
-def _place_tables(report: Report, look: Look) -> Iterator[str]:
-    from kurbel.render.place_table import cells_of
-
-    for one in (one for part in report.all_parts for one in part.place_tables):
-        cells = cells_of(one, look)
-        names = [[_text(name, look) for name in names] for names in cells.names]
-        for start in range(0, max(len(cells.heads), 1), _ACROSS):
-            across = slice(start, start + _ACROSS)
-            heads = [*((head, "") for head in one.heads), *cells.heads[across]]
-            rows = ((*own, *texts[across]) for own, texts in zip(names, cells.rows))
-            yield from table(heads, rows, look.charset.text(one.title), 0, range(len(one.heads), len(heads)))
-
-
-def table(
+def grid(
     heads: Sequence[tuple[str, str]],
     rows: Iterable[Sequence[str]],
     caption: str,
@@ -128,9 +112,10 @@ def table(
     row, `good` or `bad`, where they have one.
     """
     said = f"<caption>{escape(caption)}</caption>" if caption else ""
+    below = [f"<br><small>{escape(unit)}</small>" if unit else "" for _, unit in heads]
     over = "".join(
-        f'<th scope="col"{_RIGHT if k in numbers else ""}>{escape(symbol)}{f"<br>{_small(unit)}" if unit else ""}</th>'
-        for k, (symbol, unit) in enumerate(heads)
+        f'<th scope="col"{_RIGHT if k in numbers else ""}>{escape(symbol)}{unit}</th>'
+        for k, ((symbol, _), unit) in enumerate(zip(heads, below))
     )
     label = escape(caption or "values over the crank angle", quote=True)
     yield f'<div class="wide" tabindex="0" role="region" aria-label="{label}"><table>{said}\n'
@@ -144,10 +129,6 @@ def table(
 _RIGHT = ' class="r"'
 
 
-def _small(unit: str) -> str:
-    return f"<small>{escape(unit)}</small>"
-
-
 def _cells(row: Sequence[str], of_row: int, numbers: Collection[int]) -> Iterator[str]:
     for k, text in enumerate(row):
         text = text.strip()
@@ -156,56 +137,25 @@ def _cells(row: Sequence[str], of_row: int, numbers: Collection[int]) -> Iterato
         yield f'<th scope="row"{right}>{shown}</th>' if k < of_row else f"<td{right}>{shown}</td>"
 
 
-def _text(text: str, look: Look) -> str:
-    return look.charset.text(text)
-
-
-def _prose(text: str, look: Look) -> str:
-    return escape(sentence_text(text, look))
-
-
-def _of_part(name: str, part: Part, look: Look, level: int) -> Iterator[str]:
-    said = f": {name}" if name else ""
-    if part.key_values:
-        yield key_values(part.key_values, f"Key values{said}", look)
-    if part.left_out:
-        lines = (f"{one.what}: {one.why}" for one in part.left_out)
-        yield item_list(f"Left out{said}", lines, level, look)
-    if part.warnings:
-        yield item_list(f"Warnings{said}", part.warnings, level, look)
-
-
-def item_list(title: str, items: Iterable[str], level: int, look: Look) -> str:
+def item_list(title: str, lines: Iterable[str], level: int) -> str:
     """Return a list of sentences under its title, a heading of this level."""
-    lines = "".join(f"<li>{_prose(one, look)}</li>\n" for one in items)
-    return f"<h{level}>{escape(title)}</h{level}>\n<ul>\n{lines}</ul>\n"
+    items = "".join(f"<li>{escape(one)}</li>\n" for one in lines)
+    return f"<h{level}>{escape(title)}</h{level}>\n<ul>\n{items}</ul>\n"
 
 
 def key_values(found: Iterable[KeyValue], caption: str, look: Look) -> str:
     """Return a table of key values: symbol, value, unit, where it stands, what it is."""
-    rows = "".join(f"<tr>{''.join(_key_value(one, look))}</tr>\n" for one in found)
-    heads = (("Symbol", ""), ("Value", _RIGHT), ("Unit", ""), ("At", _RIGHT), ("Meaning", ""))
-    over = "".join(f'<th scope="col"{right}>{head}</th>' for head, right in heads)
+    rows = "".join(f"<tr>{_key_value(one, look)}</tr>\n" for one in found)
+    over = "".join(f'<th scope="col"{right}>{head}</th>' for head, right in zip(KEY_VALUE_HEADS, cycle(("", _RIGHT))))
     return (
         f'<div class="wide" tabindex="0" role="region" aria-label="{escape(caption, quote=True)}"><table>'
         f"<caption>{escape(caption)}</caption>\n<thead><tr>{over}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
     )
 
 
-def _key_value(one: KeyValue, look: Look) -> Iterator[str]:
-    charset = look.charset
-    yield f'<th scope="row">{escape(charset.symbol(one.symbol, one.ascii_symbol))}</th>'
-    right = "" if isinstance(one.value, tuple) and one.value else _RIGHT
-    yield f"<td{right}>{escape(number_text(one, look))}</td><td>{escape(charset.unit(one.unit))}</td>"
-    at = "" if one.at_deg is None else angle(one.at_deg, look.comma) + charset.degree
-    yield f"<td{_RIGHT}>{escape(at)}</td><td>{_prose(one.text, look)}</td>"
-
-
-def number_text(one: KeyValue, look: Look) -> str:
-    """Return the number, or the numbers, of a key value."""
-    if one.value is None or one.value == ():
-        return look.charset.no_value
-    if isinstance(one.value, tuple):
-        return list_text(one, look)
-    text, exponent = value_text(one, look)
-    return text + (look.charset.times_power(exponent) if exponent else "")
+def _key_value(one: KeyValue, look: Look) -> str:
+    symbol, number, unit, at, meaning = map(escape, key_value_cells(one, look))
+    right = "" if isinstance(one.value, tuple) and one.value else _RIGHT  # a list may be folded
+    return (
+        f'<th scope="row">{symbol}</th><td{right}>{number}</td><td>{unit}</td><td{_RIGHT}>{at}</td><td>{meaning}</td>'
+    )

@@ -1,7 +1,5 @@
 """JSON as the contract says: one object, numbers in full, missing values null."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
@@ -9,11 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel import __version__
 from kurbel.errors import UsageError
+from kurbel.render import Look
 from kurbel.render.numbers import rounded, whole_if_integral
+from kurbel.report.tables import Column, KeyValue, Part, Provenance, Report, Value
 
 if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import Column, KeyValue, Part, Provenance, Report, Value
+    from kurbel.report.findings import Findings
 
 FORMAT = 1
 """Number of the output format; it changes when a script that reads it would break."""
@@ -23,20 +22,30 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
     """Return one JSON object in pieces, each column on a line of its own. Raises UsageError for a decimal comma."""
     if look.comma:
         raise UsageError("--decimal comma: JSON has the decimal point only; use it with table, csv or markdown")
-    return json_lines(_report(report, look.digits), look)
+    return _lines(_report(report, look.digits), look)
 
 
-def json_lines(content: dict[str, Any], look: Look) -> Iterator[str]:
-    """Return an object in pieces."""
+def findings_json(found: "Findings", look: Look) -> Iterator[str]:
+    """Return a check as one JSON object in pieces, a line for every finding."""
+    content = {
+        **_head("check"),
+        "machine": found.machine,
+        **_provenance(found.provenance),
+        "findings": [one._asdict() for one in found.findings],
+    }
+    return _lines(content, look)
+
+
+def _lines(content: dict[str, Any], look: Look) -> Iterator[str]:
     return chain(_pieces(content, "", ascii_only=not look.charset.has("φ")), "\n")
 
 
-def head(command: str) -> dict[str, Any]:
+def _head(command: str) -> dict[str, Any]:
     """Return what every object begins with."""
     return {"kurbel": __version__, "format": FORMAT, "command": command}
 
 
-def provenance(given: Provenance | None) -> dict[str, Any]:
+def _provenance(given: Provenance | None) -> dict[str, Any]:
     """Return what results were made from and with."""
     if given is None:
         return {}
@@ -45,23 +54,21 @@ def provenance(given: Provenance | None) -> dict[str, Any]:
 
 
 def _report(report: Report, digits: int | None) -> dict[str, Any]:
-    content = head(report.command)
+    content = _head(report.command)
     if report.machine is not None:
-        content |= {"machine": report.machine, **provenance(report.provenance)}
+        content |= {"machine": report.machine, **_provenance(report.provenance)}
     if report.head:
         content["head"] = list(report.head)
     if report.parts:
-        of_part = _ratio if report.group == "ratios" else _cylinder
-        content[report.group] = [of_part(part, digits) for part in report.parts]
+        ratios = report.group == "ratios"
+        content[report.group] = [
+            _ratio(part, digits) if ratios else {"name": part.name, **_results(part, digits)} for part in report.parts
+        ]
     if report.whole is not None:
         content |= {f"machine_{key}": value for key, value in _results(report.whole, digits).items()}
     if report.notes:
         content["notes"] = list(report.notes)
     return content
-
-
-def _cylinder(part: Part, digits: int | None) -> dict[str, Any]:
-    return {"name": part.name, **_results(part, digits)}
 
 
 def _ratio(part: Part, digits: int | None) -> dict[str, Any]:

@@ -1,22 +1,14 @@
 r"""LaTeX: tables in the manner of booktabs, to be \input into a document that has \usepackage{booktabs, longtable}."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
-from kurbel.render.html import number_text
-from kurbel.render.numbers import angle
-from kurbel.render.prose import sentence_text
-from kurbel.render.sheet import MARK, part_name, sheets
-from kurbel.report.alike import told_once
+from kurbel.render import Look
+from kurbel.render.document import KEY_VALUE_HEADS, ON_PAPER, Table, document, key_value_cells
+from kurbel.render.sheet import MARK
+from kurbel.report.tables import KeyValue, Report
 
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import KeyValue, Part, Report
-
-_ACROSS = 9
 _GREEK = {
     "φ": "varphi", "ψ": "psi", "θ": "theta", "ω": "omega", "δ": "delta", "λ": "lambda", "μ": "mu", "η": "eta",
     "π": "pi", "ρ": "varrho", "α": "alpha", "β": "beta", "κ": "kappa", "σ": "sigma", "τ": "tau", "Δ": "Delta",
@@ -38,15 +30,53 @@ _DOTS = {"\u0307": "dot", "\u0308": "ddot"}
 
 def latex(report: Report, look: Look) -> Iterator[str]:
     """Yield the report as LaTeX, one table after the other."""
-    report = told_once(report)
-    yield "% \\usepackage{booktabs, longtable}\n"
-    yield f"\\subsection*{{{text(look.charset.text(report.title))}}}\n"
-    yield from (text(look.charset.text(one)) + "\n\n" for one in report.head)
-    yield from _angle_tables(report, look)
-    yield from _place_tables(report, look)
-    yield from (text(sentence_text(one, look)) + "\n\n" for one in (report.mirrored, *report.notes) if one)
-    for part in report.all_parts:
-        yield from _of_part(part_name(report, part, look), part, look)
+    return document(report, look, _Latex(look))
+
+
+class _Latex(NamedTuple):
+    """Writes LaTeX; each table may run over several pages, its head on each."""
+
+    look: Look
+    across: int | None = ON_PAPER
+
+    def title(self, plain: str) -> Iterator[str]:
+        yield f"% \\usepackage{{booktabs, longtable}}\n\\subsection*{{{text(plain)}}}\n"
+
+    def paragraph(self, plain: str) -> Iterator[str]:
+        yield f"{text(plain)}\n\n"
+
+    def table(self, table: Table) -> Iterator[str]:
+        layout = "l" * table.names + "r" * (len(table.heads) - table.names)
+        rows = (map(_cell, row) for row in table.rows)
+        heads = [(text(s) if k < table.names else symbol(s), unit) for k, (s, unit) in enumerate(table.heads)]
+        yield from self._table(table.caption, layout, heads, rows)
+
+    def key_values(self, title: str, found: Iterable[KeyValue]) -> Iterator[str]:
+        heads = [(head, "") for head in KEY_VALUE_HEADS]
+        every = (key_value_cells(one, self.look) for one in found)
+        rows = ((symbol(name), *map(_cell, cells)) for name, *cells in every)
+        yield from self._table(title, "lrlrp{0.42\\linewidth}", heads, rows)
+
+    def items(self, title: str, lines: Sequence[str]) -> Iterator[str]:
+        items = "".join(f"\\item {text(one)}\n" for one in lines)
+        yield f"\\paragraph{{{text(title)}}}\n\\begin{{itemize}}\n{items}\\end{{itemize}}\n\n"
+
+    def _table(
+        self, caption: str, layout: str, heads: Sequence[tuple[str, str]], rows: Iterable[Iterable[str]]
+    ) -> Iterator[str]:
+        yield f"\\begin{{longtable}}{{@{{}}{layout}@{{}}}}\n"
+        if caption:
+            yield f"\\multicolumn{{{len(heads)}}}{{@{{}}l}}{{{text(caption)}}}\\\\\n"
+        yield f"\\toprule\n{_row(head for head, _ in heads)}"
+        if any(unit for _, unit in heads):
+            yield _row(text(unit) for _, unit in heads)
+        yield "\\midrule\n\\endhead\n"
+        yield from map(_row, rows)
+        yield "\\bottomrule\n\\end{longtable}\n\n"
+
+
+def _row(cells: Iterable[str]) -> str:
+    return f"{' & '.join(cells)}\\\\\n"
 
 
 def text(plain: str) -> str:
@@ -90,74 +120,9 @@ def _letter(one: str) -> str:
     return f"\\{_DOTS[one[1]]}{{{base}}}" if one[1:] else base
 
 
-def _angle_tables(report: Report, look: Look) -> Iterator[str]:
-    for sheet in sheets(report, look):
-        for band in sheet.bands:
-            for start in range(0, max(len(band.rows), 1), _ACROSS):
-                columns = [*sheet.heads, *band.rows[start : start + _ACROSS]]
-                heads = [(symbol(row.symbol), row.unit) for row in columns]
-                yield from _table(band.name, "r" * len(heads), heads, zip(*(row.cells for row in columns)))
-
-
-def _place_tables(report: Report, look: Look) -> Iterator[str]:
-    from kurbel.render.place_table import cells_of
-
-    for one in (one for part in report.all_parts for one in part.place_tables):
-        cells = cells_of(one, look)
-        for start in range(0, max(len(cells.heads), 1), _ACROSS):
-            across = slice(start, start + _ACROSS)
-            heads = [*((text(head), "") for head in one.heads), *((symbol(s), u) for s, u in cells.heads[across])]
-            rows = ((*names, *texts[across]) for names, texts in zip(cells.names, cells.rows))
-            layout = "l" * len(one.heads) + "r" * (len(heads) - len(one.heads))
-            yield from _table(look.charset.text(one.title), layout, heads, rows)
-
-
-def _table(caption: str, layout: str, heads: Sequence[tuple[str, str]], rows: Iterable[Sequence[str]]) -> Iterator[str]:
-    """Yield a table that may run over several pages, its head on each."""
-    yield f"\\begin{{longtable}}{{@{{}}{layout}@{{}}}}\n"
-    if caption:
-        yield f"\\multicolumn{{{len(layout)}}}{{@{{}}l}}{{{text(caption)}}}\\\\\n"
-    yield f"\\toprule\n{' & '.join(head for head, _ in heads)}\\\\\n"
-    if any(unit for _, unit in heads):
-        yield f"{' & '.join(text(unit) for _, unit in heads)}\\\\\n"
-    yield "\\midrule\n\\endhead\n"
-    for row in rows:
-        yield f"{' & '.join(_cell(one.strip()) for one in row)}\\\\\n"
-    yield "\\bottomrule\n\\end{longtable}\n\n"
-
-
 def _cell(plain: str) -> str:
+    plain = plain.strip()
     if plain.endswith(MARK):
         return f"\\textbf{{{text(plain[:-1])}}}"
     # a minus sign, not a hyphen, before a number
     return f"$-${text(plain[1:])}" if re.match(r"-[0-9]", plain) else text(plain)
-
-
-def _of_part(name: str, part: Part, look: Look) -> Iterator[str]:
-    said = f": {name}" if name else ""
-    if part.key_values:
-        yield from _key_values(f"Key values{said}", part.key_values, look)
-    for title, lines in (
-        ("Left out", [f"{one.what}: {one.why}" for one in part.left_out]),
-        ("Warnings", list(part.warnings)),
-    ):
-        if lines:
-            items = "".join(f"\\item {text(sentence_text(one, look))}\n" for one in lines)
-            yield f"\\paragraph{{{text(title + said)}}}\n\\begin{{itemize}}\n{items}\\end{{itemize}}\n\n"
-
-
-def _key_values(caption: str, found: Iterable[KeyValue], look: Look) -> Iterator[str]:
-    yield "\\begin{longtable}{@{}lrlrp{0.42\\linewidth}@{}}\n"
-    yield f"\\multicolumn{{5}}{{@{{}}l}}{{{text(caption)}}}\\\\\n\\toprule\n"
-    yield "Symbol & Value & Unit & At & Meaning\\\\\n\\midrule\n\\endhead\n"
-    for one in found:
-        at = "" if one.at_deg is None else text(angle(one.at_deg, look.comma) + look.charset.degree)
-        cells = (
-            symbol(look.charset.symbol(one.symbol, one.ascii_symbol)),
-            _cell(number_text(one, look)),
-            text(look.charset.unit(one.unit)),
-            at,
-            text(sentence_text(one.text, look)),
-        )
-        yield f"{' & '.join(cells)}\\\\\n"
-    yield "\\bottomrule\n\\end{longtable}\n\n"

@@ -1,7 +1,5 @@
 """Lines of a printed page, as pieces that say what they are; a terminal may colour them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 

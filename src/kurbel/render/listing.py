@@ -33,7 +33,7 @@ def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None
     """Write heads in a column, each with its text, to a file or to standard output."""
     from kurbel.render.output import stdout_look, write_out
 
-    longest = max(len(head) for head, _ in found)
+    longest = max((len(head) for head, _ in found), default=0)
     padded = ((f"{head:<{longest}}  ", text) for head, text in found)
     look = Look() if file_name else stdout_look()
     write_out((line + "\n" for line in entries(padded, look)), file_name)

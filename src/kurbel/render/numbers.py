@@ -1,7 +1,5 @@
 """How numbers look: as many digits as an engineer reads, the same number of decimals along a row, no negative zero."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import NamedTuple

@@ -1,20 +1,16 @@
 """What stands below the table: notes, key values, what was left out and why, warnings."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from kurbel.declared.quantity import NOISE_POWER
+from kurbel.render import Look
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import Line, Piece, line
 from kurbel.render.numbers import angle, single
 from kurbel.render.sheet import part_name
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import KeyValue, LeftOut, Part, Report
+from kurbel.report.tables import KeyValue, LeftOut, Part, Report
 
 _LONGEST = 16  # of a number, or two angles; a longer list stands out, its sentence on the next line
 _MOST_LISTED = 12
@@ -102,21 +98,23 @@ def _shown(one: KeyValue, look: Look) -> _Shown:
 
 def _number(one: KeyValue, look: Look) -> tuple[str, str]:
     """Return the number up to its decimal point and from there; a list, or no value, is not split."""
-    if one.value is None or one.value == ():
-        return look.charset.no_value, ""
-    if isinstance(one.value, tuple):
-        return list_text(one, look), ""
-    text, exponent = value_text(one, look)
-    if one.noise:  # it has no decimal point to stand under the others
-        return text, ""
+    # what is only known to be small has no decimal point to stand under the others
+    if one.value is None or isinstance(one.value, tuple) or one.noise:
+        return number_text(one, look), ""
+    text, exponent = _single(one.value, one.unit, look)
     whole, point, fraction = text.partition("," if look.comma else ".")
     # a whole number is split too, at its end, so that its units stand under those of the others
     return whole, (point + fraction + (look.charset.times_power(exponent) if exponent else "")) or " "
 
 
-def list_text(one: KeyValue, look: Look) -> str:
-    """Return a list of values in one line, angles with two decimals at most; of a long one, how many there are."""
-    assert isinstance(one.value, tuple)
+def number_text(one: KeyValue, look: Look) -> str:
+    """Return the number of a key value, or its numbers in one line; of a long list how many there are."""
+    if one.value is None or one.value == ():
+        return look.charset.no_value
+    if one.noise:
+        return look.charset.below(NOISE_POWER)
+    if not isinstance(one.value, tuple):
+        return _with_power(*_single(one.value, one.unit, look), look)
     if len(one.value) > _MOST_LISTED:
         low, high = (_in_list(value, one.unit, look) for value in (min(one.value), max(one.value)))
         return f"{len(one.value)} from {low} to {high}"
@@ -124,25 +122,23 @@ def list_text(one: KeyValue, look: Look) -> str:
 
 
 def _in_list(value: float, unit: str, look: Look) -> str:
-    if unit == "deg":
-        return angle(value, look.comma)
-    text, exponent = single(value, look.digits, look.comma)
+    return angle(value, look.comma) if unit == "deg" else _with_power(*single(value, look.digits, look.comma), look)
+
+
+def _single(value: float, unit: str, look: Look) -> tuple[str, int]:
+    """Return a value and its power of ten; angles have two decimals where no digits are asked for."""
+    if unit == "deg" and look.digits is None:
+        return angle(value, look.comma), 0
+    return single(value, look.digits, look.comma)
+
+
+def _with_power(text: str, exponent: int, look: Look) -> str:
     return text + (look.charset.times_power(exponent) if exponent else "")
-
-
-def value_text(one: KeyValue, look: Look) -> tuple[str, int]:
-    """Return a single key value and its power of ten; angles have two decimals where no digits are asked for."""
-    assert isinstance(one.value, (float, int))
-    if one.noise:
-        return look.charset.below(NOISE_POWER), 0
-    if one.unit == "deg" and look.digits is None:
-        return angle(one.value, look.comma), 0
-    return single(one.value, look.digits, look.comma)
 
 
 def sentence_text(text: str, look: Look) -> str:
     """Return a sentence in the characters of the output, its numbers with the decimal comma where that is asked for."""
-    squared = re.sub(r"(?<=[a-z])\^2", "²", text)
+    squared = re.sub(r"(?<=[a-z])\^2", "²", text) if "^2" in text else text  # compiled only where it is needed
     text = look.charset.text(squared if look.charset.has(squared) else text)
     return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if look.comma else text
 

@@ -8,10 +8,11 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from kurbel import __version__
-from kurbel.render.html import item_list, page, table, tables
+from kurbel.render.html import grid, item_list, page, tables
 from kurbel.render.pictures.layout import scene
 from kurbel.render.pictures.style import css
 from kurbel.render.pictures.svg import svg
+from kurbel.render.prose import sentence_text
 from kurbel.report.document import Grid, Pair
 from kurbel.report.pictures.picture import Picture
 from kurbel.report.tables import Report
@@ -50,7 +51,7 @@ def _provenance(given: Provenance, look: Look) -> str:
     said = [f"{one.file}: SHA-256 {one.sha256 or 'not known, the file is gone'}" for one in given.inputs]
     said += [f"set over it: {one}" for one in given.overrides]
     said += [f"{name} {version}" for name, version in given.versions.items()]
-    return item_list("Made from", said, 2, look) if said else ""
+    return item_list("Made from", [sentence_text(one, look) for one in said], 2) if said else ""
 
 
 def _section(section: Section, look: Look) -> Iterator[str]:
@@ -79,20 +80,20 @@ def _figure(picture: Picture, look: Look) -> str:
     return f"<figure>\n{drawn}\n<figcaption>{caption}</figcaption>\n</figure>\n"
 
 
-def _grid(grid: Grid, look: Look) -> str:
-    parts = table(
-        [(look.charset.text(head), "") for head in grid.heads],
-        [[_cell(text, k in grid.units, look) for k, text in enumerate(row)] for row in grid.rows],
-        look.charset.text(grid.title),
+def _grid(given: Grid, look: Look) -> str:
+    charset = look.charset
+    parts = grid(
+        [(charset.text(head), "") for head in given.heads],
+        [
+            [(charset.unit if k in given.units else charset.text)(text) for k, text in enumerate(row)]
+            for row in given.rows
+        ],
+        charset.text(given.title),
         1,
-        numbers=grid.numbers,
-        verdicts=grid.verdicts,
+        numbers=given.numbers,
+        verdicts=given.verdicts,
     )
     return "".join(parts)
-
-
-def _cell(text: str, unit: bool, look: Look) -> str:
-    return look.charset.unit(text) if unit else look.charset.text(text)
 
 
 def _text(text: str, look: Look) -> str:

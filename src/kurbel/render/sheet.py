@@ -1,17 +1,13 @@
 """A table before it is laid out: its columns as cells of text, the parts that share their crank angles side by side."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cached_property
 from itertools import groupby
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from kurbel.render import Look
 from kurbel.render.numbers import Scale, angle_scale, cell, scale_of, whole_if_integral
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import Column, Part, Report, Value
+from kurbel.report.tables import Column, Part, Report, Value
 
 MARK = "*"
 

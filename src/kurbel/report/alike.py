@@ -36,19 +36,12 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
     return list(groups.values())
 
 
-def gathered(items: Iterable[Item], equal: Callable[[Item, Item], bool]) -> list[list[Item]]:
-    """Return the items in groups of equal ones, in the order of their first ones."""
-    groups: list[list[Item]] = []
-    for item in items:
-        found = next((group for group in groups if equal(group[0], item)), None)
-        groups.append([item]) if found is None else found.append(item)
-    return groups
-
-
 def told_once(report: Report) -> Report:
     """Return the report with its equal cylinders as one part; its title names them where no other part is left."""
     if len(report.parts) < 2 or report.group != "cylinders":
         return report
+    from kurbel.machine.alike import gathered  # not for a table of factors, which knows no machine
+
     groups = gathered(report.parts, _equal)
     if len(groups) == len(report.parts):
         return report

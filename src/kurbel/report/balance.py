@@ -2,44 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import cmath
+import math
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
+from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
+from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
-from kurbel.report.balance_tables import balance_tables
 from kurbel.report.frame import Frame, Subject
-from kurbel.report.pins import pin_notes
-from kurbel.report.tables import LeftOut, Report
+from kurbel.report.given import pin_notes
+from kurbel.report.shown import shown_column
+from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
+from kurbel.solver.balance.circles import Circles
+from kurbel.solver.balance.free import Free
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.case import Case
+from kurbel.solver.shaft.weights import Weight
 
-_BOOK = ("F_x_book", "F_y_book", "M_x_book", "M_y_book")
+_Entry = tuple[Quantity, "list[float | None]"]
+_DIGITS = 4
+_NOTHING = 1e-6
+"""Degrees by which a direction may miss another by rounding."""
 
 
-def balance_report(
-    case: Case,
-    angles: Sequence[float],
-    columns: Sequence[str] | None,
-    system: str,
-    compare: bool = False,
-    orders_only: bool = False,
-) -> Report:
-    """Return what is free and what balances it; angles, columns, system: see `Frame`.
+def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Report:
+    """Return what is free and what balances it; orders_only: no columns over the crank angle.
 
-    compare: with what the acceleration of first order gives, beside the true figures; orders_only: no columns over the
-    crank angle. Raises UsageError where no masses move.
+    Raises UsageError where no masses move.
     """
+    compare = frame.compare
     with np.errstate(all="ignore"):  # what overflows is refused, by name
         (whole,) = subjects(case, compare)
-        tables = tuple(balance_tables(case.balance, system, compare))
+        tables = tuple(_balance_tables(case.balance, frame.system, compare))
         whole = whole._replace(place_tables=tables, at=None if orders_only or case.machine.speed is None else whole.at)
-    frame = Frame("balance", angles, columns, system, _BOOK if compare else ())
     return frame.report(case.machine, "Massenausgleich", (), whole, _notes(case.balance))
 
 
 def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
-    """Yield the whole machine; compare: see `balance_report`."""
+    """Yield the whole machine; compare: with what the acceleration of first order gives, beside the true figures."""
     machine = case.machine
     balance = case.balance
     yield Subject(
@@ -52,7 +54,7 @@ def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
 
 
 def _left_out(balance: MachineBalance, compare: bool) -> Iterable[LeftOut]:
-    moving = {throw.drive.name for throw in balance.throws}
+    moving = {throw.name for throw in balance.throws}
     for cylinder in balance.machine.cylinders:
         if cylinder.name not in moving:
             yield LeftOut(f"inertia of {cylinder.name}", "no masses given")
@@ -65,7 +67,7 @@ def _left_out(balance: MachineBalance, compare: bool) -> Iterable[LeftOut]:
 
 
 def _without_place(balance: MachineBalance) -> Iterable[str]:
-    yield from (throw.drive.name for throw in balance.throws if throw.place is None)
+    yield from (throw.name for throw in balance.throws if throw.place is None)
     if any(one.place is None for one in balance.loose_counterweights):
         yield "counterweights of the machine"
     if any(one.axial_position is None for one in balance.machine.balance_shafts):
@@ -80,3 +82,110 @@ def _notes(balance: MachineBalance) -> Iterable[str]:
         yield "Counterweights and shafts of the file count in all that is free; the best weights stand in their place."
     if balance.roll:
         yield "M_roll is −M of kurbel flywheel, less what turns the masses themselves about the shaft."
+
+
+def _balance_tables(balance: MachineBalance, system: str, compare: bool) -> Iterator[PlaceTable]:
+    """Yield what there is of the tables; compare: see `subjects`."""
+    if balance.omega is not None:
+        square = balance.omega * balance.omega
+        orders = Column("order", "n", "n", "", balance.free.orders, ORDERS["order"].text, alone=_DIGITS)
+        circles, ellipses = _circles(balance, square, compare), _ellipses(balance.free, square)
+        for id, title, found in (
+            ("orders", "Orders: circles with the crank (+) and against it (−)", circles),
+            ("ellipses", "Orders: ellipses, and where the circles stand at φ = 0", ellipses),
+        ):
+            yield PlaceTable(id, title, (), ((),) * len(orders.values), (orders, *_alone(tuple(found), system)))
+    yield from _weights(balance, system)
+
+
+def _alone(found: Sequence[_Entry], system: str) -> Iterator[Column]:
+    """Yield the columns, those of one kind in one unit, but with a scale for every amplitude."""
+    for quantity, values in found:
+        alike = [abs(v) for other, each in found if other.kind == quantity.kind for v in each if v is not None]
+        column = shown_column(quantity, values, system, beside=max(alike, default=0.0))
+        yield column._replace(alone=0 if quantity.kind == "angle" else _DIGITS)
+
+
+def _circles(balance: MachineBalance, square: float, compare: bool) -> Iterator[_Entry]:
+    book = balance.book if compare else None
+    for name, vector, first in (
+        ("F", balance.free.force, book and book.force),
+        ("M", balance.free.moment, book and book.moment),
+    ):
+        if vector is None:
+            continue
+        for end, both in (("", vector), ("_book", first)):
+            if both is not None:
+                pairs = [_pair(both, order) for order in balance.free.orders]
+                yield ORDERS[f"{name}_forward{end}"], [abs(one) * square for one, _ in pairs]
+                yield ORDERS[f"{name}_backward{end}"], [abs(one) * square for _, one in pairs]
+        yield ORDERS[f"{name}_share"], _shares(vector, balance.free.orders)
+
+
+def _pair(vector: Circles, order: int) -> tuple[complex, complex]:
+    """Return the circles of an order, with their directions at φ = 0; 0 of one that there is not."""
+    forward, backward = ((one[order - 1] if order <= len(one) else 0.0) for one in (vector.forward, vector.backward))
+    return complex(forward), complex(backward)
+
+
+def _shares(vector: Circles, orders: Iterable[int]) -> list[float | None]:
+    squares = abs(vector.forward) ** 2 + abs(vector.backward) ** 2
+    whole = float(squares.sum())
+    return [float(squares[order - 1]) / whole if whole else None for order in orders]
+
+
+def _ellipses(free: Free, square: float) -> Iterator[_Entry]:
+    for name, vector in (("F", free.force), ("M", free.moment)):
+        if vector is None:
+            continue
+        pairs = [_pair(vector, order) for order in free.orders]
+        yield ELLIPSES[f"{name}_long"], [(abs(f) + abs(g)) * square for f, g in pairs]
+        yield ELLIPSES[f"{name}_short"], [abs(abs(f) - abs(g)) * square for f, g in pairs]
+        yield ELLIPSES[f"{name}_direction"], [_direction(f, g) for f, g in pairs]
+        yield ELLIPSES[f"{name}_forward_phase"], [_phase(f) for f, _ in pairs]
+        yield ELLIPSES[f"{name}_backward_phase"], [_phase(g) for _, g in pairs]
+
+
+def _direction(forward: complex, backward: complex) -> float | None:
+    """Return the direction in degrees, 0 to below 180, in which both circles meet; None of a circle or of nothing."""
+    if not forward or not backward:
+        return None
+    degrees = math.degrees(cmath.phase(forward * backward)) / 2
+    return degrees + 180.0 if degrees < -_NOTHING else degrees
+
+
+def _phase(circle: complex) -> float | None:
+    """Return a direction in degrees, above −180 and up to 180; None of nothing."""
+    degrees = math.degrees(cmath.phase(circle))
+    return None if not circle else degrees if degrees > _NOTHING - 180 else degrees + 360
+
+
+def _weights(balance: MachineBalance, system: str) -> Iterator[PlaceTable]:
+    """Yield the table of the best weights, and what turns in the wheels of a locomotive."""
+    planes = {f"counterweight_{end}": one for end, one in zip("AB", balance.best_in_planes) if one.product}
+    shafts = {f"shaft_{_sense(one)}": one for one in balance.best_shafts}
+    if best := planes | shafts:
+        names = tuple((name,) for name in best)
+        columns = _of_weights(list(best.values()), system)
+        yield PlaceTable(
+            "best_weights", "Counterweights in two planes, and balance shafts", ("weight",), names, columns
+        )
+    if balance.locomotive:
+        wheels = [Weight(one, 1, place) for one, place in zip(balance.locomotive.unbalanced, balance.wheels)]
+        columns = _of_weights(wheels, system)
+        if square := (balance.omega or 0.0) ** 2:
+            columns += (shown_column(WEIGHTS["hammer_blow"], [abs(one.product) * square for one in wheels], system),)
+        yield PlaceTable("wheels", "Beyond what turns, in the wheels", ("wheel",), (("A",), ("B",)), columns)
+
+
+def _sense(weight: Weight) -> str:
+    return f"n = {abs(weight.order)}, {'with' if weight.order > 0 else 'against'} the crank".replace(" ", "_")
+
+
+def _of_weights(weights: Sequence[Weight], system: str) -> tuple[Column, ...]:
+    places = [one.place for one in weights]
+    return (
+        *((shown_column(WEIGHTS["axial_position"], places, system),) if any(p is not None for p in places) else ()),
+        shown_column(WEIGHTS["product"], [abs(one.product) for one in weights], system),
+        shown_column(WEIGHTS["angle"], [_phase(one.product) for one in weights], system),
+    )

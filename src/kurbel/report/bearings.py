@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from kurbel.declared.unit_systems import show
 from kurbel.report.frame import Frame, Subject
@@ -13,8 +13,8 @@ from kurbel.solver.bearings.shaft_bearings import ShaftBearings
 from kurbel.solver.case import Case
 
 
-def bearings_report(case: Case, angles: Sequence[float], columns: Sequence[str] | None, system: str) -> Report:
-    """Return the loads on pins and main bearings over the angle of crank 1; angles, columns, system: see `Frame`.
+def bearings_report(case: Case, frame: Frame) -> Report:
+    """Return the loads on pins and main bearings over the angle of crank 1.
 
     Raises UsageError where nothing loads them.
     """
@@ -24,7 +24,6 @@ def bearings_report(case: Case, angles: Sequence[float], columns: Sequence[str] 
         left_out=lambda: _machine_left_out(case.bearings),
         warnings=lambda: (*of_machine(machine_notes(case.machine, case), case.machine), *_spacing(case.bearings)),
     )
-    frame = Frame("bearings", angles, columns, system)
     report = frame.report(case.machine, "Lagerkräfte", subjects(case), whole, _notes(case.bearings))
     return report._replace(group="bearings")
 

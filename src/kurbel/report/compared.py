@@ -1,9 +1,7 @@
 """How key values stand against the limits and the expectations of a machine file."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple, Union
 
 from kurbel.declared.forms.figures import Expected
@@ -15,7 +13,10 @@ from kurbel.mechanisms import every_quantity
 from kurbel.report.alike import grouped, together
 
 if TYPE_CHECKING:
-    from kurbel.report.limits import Found
+    from kurbel.solver.case import Case
+
+Found = tuple[str, float]
+"""What a key value belongs to, and its value in SI."""
 
 
 class Entry(NamedTuple):
@@ -39,7 +40,7 @@ class Unjudged(NamedTuple):
 
 
 Judged = Union[Entry, Unjudged]
-Values = Union["list[Found]", KurbelError]
+Values = Union[list[Found], KurbelError]
 _ROUNDING = 1e-9
 """A bound is no more exact than what is printed of it: a stroke of 110 mm does not break a limit of 110 mm."""
 
@@ -48,8 +49,6 @@ def judged(machine: Machine) -> Iterator[Judged]:
     """Yield how each limit and then each expectation stands, or why that cannot be told."""
     if not machine.limits and not machine.expect:
         return
-    from kurbel.report.limits import limited_values
-
     declared = by_id(every_quantity().all_key_values)
     opposites = [other for name, _ in machine.limits if (other := _opposite(name)) in declared]
     asked = (*(name for name, _ in (*machine.limits, *machine.expect)), *opposites)
@@ -150,3 +149,41 @@ def _shown(value: float, kind: str, unit: str) -> str:
     if unit == "%":
         return f"{100 * value:.9g} %"
     return f"{convert(value, kind, unit):.9g} {unit or SI[kind]}".rstrip()
+
+
+# the values, computed only as far as they are asked for
+
+
+def limited_values(machine: Machine, names: Iterable[str]) -> dict[str, Values]:
+    """Return by id what the machine has of these key values, or what keeps them from being computed."""
+    import numpy as np
+
+    from kurbel.solver.case import Case
+
+    case = Case(machine)
+    found: dict[str, Values] = {}
+    with np.errstate(all="ignore"):
+        for name in names:
+            try:
+                found[name] = [one for command in commands_for(machine, name) for one in _values(case, command, name)]
+            except KurbelError as error:
+                found[name] = error
+    return found
+
+
+def commands_for(machine: Machine, name: str) -> tuple[str, ...]:
+    """Return the commands whose value the limit is for; one cylinder has it as the machine, but for the efficiency."""
+    first, *others = every_quantity().commands_of(name)
+    alike = len(machine.cylinders) == 1 and machine.efficiency == 1
+    return (first, *(command for command in others if command == "flywheel" and not alike))
+
+
+def _values(case: "Case", command: str, name: str) -> Iterator[Found]:
+    from kurbel.numerics.extreme import Extreme
+    from kurbel.report.frame import subjects_of
+
+    for subject in subjects_of(case, command):
+        quantity = subject.lists.key_values(command).get(name)
+        value = quantity and subject.answer(quantity)
+        if isinstance(value, (Extreme, float)):
+            yield subject.name, value.value if isinstance(value, Extreme) else value

@@ -1,7 +1,5 @@
 """What a long report is made of: sections of tables, pictures and sentences, whatever it will be rendered as."""
 
-from __future__ import annotations
-
 from typing import NamedTuple, Union
 
 from kurbel.report.pictures.picture import Picture

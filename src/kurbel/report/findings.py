@@ -1,7 +1,5 @@
 """What a check has found, each finding with its place in the machine file: for programs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

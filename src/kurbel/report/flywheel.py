@@ -1,14 +1,12 @@
 """The report of `kurbel flywheel`: turning effort, excess work, flywheel and speed line of the whole machine."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from kurbel.declared.unit_systems import show
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
-from kurbel.report.frame import Frame, Rows, Subject, rows_of
+from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import flywheel_left_out
 from kurbel.report.notes import machine_notes, of_machine
 from kurbel.report.tables import Report
@@ -18,15 +16,14 @@ from kurbel.solver.turning.flywheel import MachineTurning
 from kurbel.solver.turning.machine_effort import dead_centre_force
 
 
-def flywheel_report(case: Case, angles: Sequence[float] | Rows, columns: Sequence[str] | None, system: str) -> Report:
-    """Return the turning effort of the machine over the angle of crank 1; angles, columns, system: see `Frame`.
+def flywheel_report(case: Case, frame: Frame) -> Report:
+    """Return the turning effort of the machine over the angle of crank 1.
 
     Raises UsageError where nothing turns the shaft, NoSolutionError where the machine stalls.
     """
     *cylinders, whole = subjects(case)
     having = [one for one in cylinders if list(one.key_values("flywheel"))]
     notes = _notes(case.machine, case.flywheel)
-    frame = Frame("flywheel", rows_of(angles, 360.0 * case.machine.revolutions), columns, system)
     return frame.report(case.machine, "Drehkraftlinie und Schwungrad", having, whole, notes)
 
 

@@ -1,9 +1,8 @@
 """The frame of every report on a machine: from the results of a command and its declared quantities to tables."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,11 +15,11 @@ from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_value
-from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
+from kurbel.report.tables import Column, Later, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.figures import answered
 
-APPROXIMATIONS = ("x_book", "c_book", "b_book", "P_gas_book")
-"""Columns of the book beside the exact ones."""
+if TYPE_CHECKING:
+    from kurbel.solver.case import Case
 
 
 class Subject(NamedTuple):
@@ -65,18 +64,6 @@ class Subject(NamedTuple):
         return [id for id in self.lists.columns(command) if id == "phi" or getattr(state, id, None) is not None]
 
 
-Rows = Callable[["Subject", float], "Sequence[float]"]
-"""Takes a subject and the degrees of its table; returns crank angles (n,) in degrees."""
-
-
-def rows_of(angles: Sequence[float] | Rows, end: float) -> Sequence[float] | Callable[[Subject], Any]:
-    """Return angles as they are, or what tells those of each subject, whose table goes from 0 to `end` degrees."""
-    if not callable(angles):
-        return angles
-    found = angles
-    return lambda subject: found(subject, end)
-
-
 def refuse_without_cylinder(machine: Machine, command: str) -> None:
     """Raise UsageError where a command has nothing to tell of."""
     if not machine.cylinders:
@@ -95,14 +82,16 @@ class Frame(NamedTuple):
     """A report to be made: of which command, at which crank angles (n,) in degrees, with which columns, in which units.
 
     angles: of every subject, or what tells those of one. columns: ids to show besides φ, None for all that the machine
-    has and shows unasked; also: more of them; system: see `unit_systems`.
+    has and shows unasked; system: see `unit_systems`; over: another column over which the rows stand; compare: with
+    the approximations of the book beside the exact columns.
     """
 
     command: str
     angles: Sequence[float] | Callable[[Subject], Sequence[float]]
     columns: Sequence[str] | None
     system: str
-    also: Sequence[str] = ()
+    over: str = ""
+    compare: bool = False
 
     def report(
         self,
@@ -133,15 +122,17 @@ class Frame(NamedTuple):
         return Part(
             subject.name,
             columns,
-            self._later(lambda: self._key_values(subject)),
-            self._later(subject.left_out),
-            self._later(subject.warnings),
+            self.later(lambda: (shown_key_value(*one, self.system) for one in subject.key_values(self.command))),
+            self.later(subject.left_out),
+            self.later(subject.warnings),
             subject.place_tables,
             nowhere,
             subject.of,
         )
 
-    def _later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:
+    def later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:
+        """Return what is made when it is read."""
+
         def ignoring() -> tuple[Any, ...]:
             with np.errstate(all="ignore"):
                 return tuple(make())
@@ -153,22 +144,22 @@ class Frame(NamedTuple):
             return ()
         known = subject.lists.columns(self.command)
         if self.columns:
-            chosen = [known[name] for name in (*self.columns, *self.also) if name in known]
+            chosen = [*(known[name] for name in self.columns if name in known), *filter(self._adds, known.values())]
         else:
             chosen = [one for one in known.values() if subject.says(one) and self._shows(one)]
         angles = self.angles(subject) if callable(self.angles) else self.angles
         return shown_columns(known["phi"], chosen, subject.at, angles, self.system)
 
     def _shows(self, column: Quantity) -> bool:
-        return self.command not in column.on_request or column.id in self.also
+        return self.command not in column.on_request or self._adds(column)
 
-    def _key_values(self, subject: Subject) -> Iterator[KeyValue]:
-        for quantity, value in subject.key_values(self.command):
-            yield shown_key_value(quantity, value, self.system)
+    def _adds(self, column: Quantity) -> bool:
+        return column.id == self.over or (self.compare and column.id.endswith("_book"))
 
     def _nothing_compared(self, parts: Sequence[Part]) -> Iterator[str]:
-        asked = {*self.also} & {*APPROXIMATIONS}
-        if asked and not any(column.id in asked for part in parts for column in part.columns):
+        compared = any(column.id.endswith("_book") for part in parts for column in part.columns)
+        # the balance tells itself what it leaves out
+        if self.compare and not compared and self.command != "balance":
             yield (
                 "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset "
                 "and of a piston with pressures; this machine has neither."
@@ -194,3 +185,22 @@ class Frame(NamedTuple):
                 )
             if there:
                 raise UsageError(f"--columns: '{name}' is left out for this machine, which has {', '.join(there)}")
+
+
+# what every command has in its own file, by its word
+
+
+def report_of(case: "Case", frame: Frame) -> Report:
+    """Return the report of the command that the frame is of."""
+    report: Report = getattr(_room(frame.command), f"{frame.command}_report")(case, frame)
+    return report
+
+
+def subjects_of(case: "Case", command: str) -> Iterable[Subject]:
+    """Return what a command speaks of, with the key values that it has."""
+    subjects: Iterable[Subject] = _room(command).subjects(case)
+    return subjects
+
+
+def _room(command: str) -> Any:
+    return import_module(f"kurbel.report.{command}")

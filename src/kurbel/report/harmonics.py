@@ -12,29 +12,50 @@ from kurbel.errors import UsageError
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import flywheel_left_out, left_out
 from kurbel.report.notes import machine_notes, of_machine
-from kurbel.report.orders import counted, orders_of, phase_degrees
-from kurbel.report.shown import shown_column
+from kurbel.report.shown import counted, shown_column
 from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
 from kurbel.solver.turning.harmonics import CylinderOrders, MachineOrders, Orders, Spectrum
 
 if TYPE_CHECKING:
+    from kurbel.arrays import Array, ComplexArray
     from kurbel.machine import Machine
 
+_HIGHEST = 1000
 
-def harmonics_report(case: Case, orders: Sequence[float] | None, speeds: Sequence[float] | None, system: str) -> Report:
-    """Return the orders of the turning effort; orders: those to tell, None for all up to 24; system: see `Frame`.
+
+def harmonics_report(
+    case: Case, frame: Frame, orders: Sequence[float] | None = None, speeds: Sequence[float] | None = None
+) -> Report:
+    """Return the orders of the turning effort; orders: those to tell, None for all up to 24.
 
     speeds: in revolutions per second, at which the orders of the whole machine are told besides. Raises UsageError
     where nothing turns the shaft.
     """
     with np.errstate(all="ignore"):  # what overflows is refused, by name
         found = case.harmonics(orders_of(case.machine, orders))
-        each = [_cylinder(case.machine, one, system) for one in found.cylinders]
-        whole = _whole(case, found, tuple(_speed_tables(case.machine, found, speeds, system)), system)
-    frame = Frame("harmonics", (), None, system)
-    report = frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
-    return report
+        each = [_cylinder(case.machine, one, frame.system) for one in found.cylinders]
+        whole = _whole(case, found, tuple(_speed_tables(case.machine, found, speeds, frame.system)), frame.system)
+    return frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
+
+
+def orders_of(machine: Machine, asked: Sequence[float] | None) -> Array | None:
+    """Return the orders (n,) that are asked for, ascending and each once; None for the usual ones.
+
+    Raises UsageError for one that is none of the cycle.
+    """
+    if asked is None:
+        return None
+    for order in asked:
+        if not 0 < order <= _HIGHEST:
+            raise UsageError(f"--orders {order:g}: an order is more than 0 and at most {_HIGHEST} periods per turn")
+        if (order * machine.revolutions) % 1:
+            known = "½, 1, 1½, …" if machine.revolutions == 2 else "1, 2, 3, …"
+            degrees = 360 * machine.revolutions
+            raise UsageError(
+                f"--orders {order:g}: the cycle repeats after {degrees} degrees and has the orders {known}"
+            )
+    return np.array(sorted(set(asked)), dtype=float)
 
 
 def _cylinder(machine: Machine, one: CylinderOrders, system: str) -> Subject:
@@ -88,7 +109,13 @@ def _of_spectrum(found: Spectrum) -> Iterable[tuple[str, Sequence[Any]]]:
     yield "M_cos", found.amplitudes.real.tolist()
     yield "M_sin", (-found.amplitudes.imag).tolist()
     yield "M_amplitude", np.abs(found.amplitudes).tolist()
-    yield "M_phase", phase_degrees(found.amplitudes)
+    yield "M_phase", _phase_degrees(found.amplitudes)
+
+
+def _phase_degrees(amplitudes: ComplexArray) -> list[float | None]:
+    """Return ε in degrees, above −180 up to 180, with Re(M e^{iνφ}) = |M| cos(νφ − ε); None of what is zero."""
+    phases = np.degrees(np.arctan2(-amplitudes.imag, amplitudes.real)) + 0.0
+    return [phase if amplitude else None for phase, amplitude in zip(phases.tolist(), amplitudes.tolist())]
 
 
 def _speed_tables(

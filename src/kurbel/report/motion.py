@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from kurbel.machine import Machine
-from kurbel.report.frame import Frame, Rows, Subject, refuse_without_cylinder, rows_of
+from kurbel.report.frame import Frame, Subject, refuse_without_cylinder
 from kurbel.report.left_out import motion_left_out
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
 
-def motion_report(
-    case: Case,
-    angles: Sequence[float] | Rows,
-    columns: Sequence[str] | None,
-    system: str,
-    also: Sequence[str] = (),
-) -> Report:
-    """Return the motion of every cylinder's mechanism; angles: crank angles, or what finds them; see `Frame`."""
+def motion_report(case: Case, frame: Frame) -> Report:
+    """Return the motion of every cylinder's mechanism."""
     machine = case.machine
     refuse_without_cylinder(machine, "motion")
-    frame = Frame("motion", rows_of(angles, 360.0), columns, system, also)
     return frame.report(machine, "Bewegung des Kurbeltriebes", subjects(case), notes=mechanism_notes(machine))
 
 

@@ -1,14 +1,11 @@
 """What looks wrong in what was given: one list for a whole machine, from which every command takes what concerns it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.machine import Cylinder, Machine
 from kurbel.report.alike import grouped, together
-from kurbel.report.pins import pin_notes
-from kurbel.report.sizes import size_notes, speed_notes
+from kurbel.report.given import card_end_notes, pin_notes, size_notes, speed_notes
 
 if TYPE_CHECKING:
     from kurbel.solver.case import Case
@@ -21,7 +18,7 @@ class Note(NamedTuple):
     text: str
 
 
-def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...]:
+def machine_notes(machine: Machine, case: "Case | None" = None) -> tuple[Note, ...]:
     """Return the notes on a machine, each once: on what was given, on measurements, and on what comes out.
 
     case: the machine with its results; of a machine that only moves nothing is computed.
@@ -32,7 +29,12 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
         for cylinder, where, chamber in chambers
         for text in getattr(chamber, "notes", ())
     ]
-    found += [note for cylinder in machine.cylinders for note in _of_cards(cylinder)]
+    found += [
+        Note(cylinder.name, text)
+        for cylinder in machine.cylinders
+        for piston in cylinder.pistons
+        for text in card_end_notes(piston)
+    ]
     found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
     found += [Note(None, text) for text in speed_notes(machine)]
     found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in size_notes(cylinder)]
@@ -47,13 +49,6 @@ def machine_notes(machine: Machine, case: Case | None = None) -> tuple[Note, ...
     return tuple(dict.fromkeys(found))
 
 
-def _of_cards(cylinder: Cylinder) -> Iterable[Note]:
-    if any(piston.indicator for piston in cylinder.pistons):
-        from kurbel.report.card_ends import card_end_notes
-
-        yield from (Note(cylinder.name, text) for piston in cylinder.pistons for text in card_end_notes(piston))
-
-
 def _chambers(cylinder: Cylinder) -> Iterable[tuple[str, Any]]:
     for piston in cylinder.pistons:
         if piston.indicator:
@@ -66,16 +61,13 @@ def _acts(cylinder: Cylinder) -> bool:
     return bool(cylinder.pistons or cylinder.masses or cylinder.ram_force or cylinder.moment)
 
 
-def _on_results(case: Case) -> Iterable[Note]:
-    from kurbel.report.plausibility import brake_warnings, trace_warnings
-    from kurbel.report.warnings import cylinder_warnings, strength_warnings, turning_warnings
+def _on_results(case: "Case") -> Iterable[Note]:
+    from kurbel.report import warnings
 
-    for forces in case.cylinders:
-        yield from (Note(forces.drive.name, text) for text in trace_warnings(forces))
-    yield from (Note(None, text) for text in brake_warnings(case.machine, case.cylinders))
-    for forces in case.cylinders:
-        yield from (Note(forces.drive.name, text) for text in cylinder_warnings(forces))
-    yield from (Note(None, text) for text in (*turning_warnings(case), *strength_warnings(case)))
+    yield from (Note(one.drive.name, text) for one in case.cylinders for text in warnings.trace_warnings(one))
+    yield from (Note(None, text) for text in warnings.brake_warnings(case.machine, case.cylinders))
+    yield from (Note(one.drive.name, text) for one in case.cylinders for text in warnings.cylinder_warnings(one))
+    yield from (Note(None, text) for text in (*warnings.turning_warnings(case), *warnings.strength_warnings(case)))
 
 
 def of_cylinder(found: Iterable[Note], machine: Machine, cylinder: Cylinder) -> Iterable[str]:

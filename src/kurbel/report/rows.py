@@ -1,9 +1,7 @@
 """At which crank angles a cylinder has its rows, where they are asked for otherwise than by angles."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -21,20 +19,20 @@ from kurbel.numerics.grid import ascending
 from kurbel.report.angles import stepped
 
 if TYPE_CHECKING:
-    from kurbel.report.frame import Rows, Subject
+    from kurbel.report.frame import Subject
 
 
 _OF_SPEED = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
 
 
-def over_stroke(step: float) -> Rows:
-    """Return the angles at which x passes 0, step, 2 step, … percent of the stroke, on both strokes.
+def over_stroke(step: float, end: float) -> "Callable[[Subject], Sequence[float]]":
+    """Return what finds the angles, up to `end`, at which x passes 0, step, 2 step, … percent of the stroke both ways.
 
     Raises UsageError for a step that is not positive, and for what does not go to and fro.
     """
     fractions = np.asarray(stepped(step, 100.0)) / 100
 
-    def angles(subject: Subject, end: float) -> Sequence[float]:
+    def angles(subject: "Subject") -> Sequence[float]:
         mechanism = subject.source.drive.mechanism
         if mechanism.turns:
             raise UsageError(f"--over x: the output of a {mechanism.name} turns on and has no stroke")
@@ -42,27 +40,28 @@ def over_stroke(step: float) -> Rows:
         out = np.asarray(mechanism.crank_angles_at(way, True))
         back = np.asarray(mechanism.crank_angles_at(way[::-1], False))
         turn = np.concatenate((out, back[1:]))
-        return np.concatenate([turn[first:] + start for start, first in _turns(end)]).tolist()  # type: ignore[no-any-return]
+        # what ends a turn begins the next one
+        every = [turn[start > 0 :] + start for start in np.arange(0.0, end, 360.0).tolist()]
+        return np.concatenate(every).tolist()  # type: ignore[no-any-return]
 
     return angles
 
 
-def _turns(end: float) -> list[tuple[float, int]]:
-    """Start of each turn in degrees, and how many of its angles the turn before has told."""
-    return [(start, int(start > 0)) for start in np.arange(0.0, end, 360.0).tolist()]
-
-
 class Place(NamedTuple):
-    """A condition such as `b = 1/6 b_max`: a column of a command, and the value at which it is wanted, as written."""
+    """A condition such as `b = 1/6 b_max`: a column of a command, and the value at which it is wanted, as written.
+
+    end: of the table, in degrees.
+    """
 
     command: str
     column: str
     factor: float | None
     of: str
     text: str
+    end: float
 
     @classmethod
-    def parsed(cls, text: str, command: str) -> Place:
+    def parsed(cls, text: str, command: str, end: float) -> "Place":
         """Return the condition that a text is. Raises UsageError that says what to write instead."""
         column, equals, value = plain(text).partition("=")
         number = re.match(RATIO, value.strip()) or NUMBER.match(value.strip())
@@ -70,12 +69,12 @@ class Place(NamedTuple):
         if len(text) > LONGEST_VALUE or not (text.isprintable() and column.strip() and equals and (number or of)):
             raise UsageError(f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{shown(text)}'")
         try:
-            return cls(command, column.strip(), parse_ratio(number.group()) if number else None, of, text)
+            return cls(command, column.strip(), parse_ratio(number.group()) if number else None, of, text, end)
         except UnitError as error:
             raise UsageError(f"--where: {error}") from None
 
-    def angles(self, subject: Subject, end: float) -> Sequence[float]:
-        """Return the crank angles in degrees, exact but for rounding; see `Rows`. Raises NoSolutionError for none."""
+    def angles(self, subject: "Subject") -> Sequence[float]:
+        """Return the crank angles in degrees, exact but for rounding. Raises NoSolutionError for none."""
         column = self._column(subject)
         value = self._value(subject, column) if column else 0.0
         found = column and subject.source.angles_where(column.id, value)
@@ -87,15 +86,15 @@ class Place(NamedTuple):
                 f"{subject.name}: {column.id} is nowhere {show(value, column.kind)}: it goes from {low} to {high}"
             )
         # a table over one turn has what a cycle of two has in either
-        return ascending(np.mod(found.angles, end), 1e-9).tolist()  # type: ignore[no-any-return]
+        return ascending(np.mod(found.angles, self.end), 1e-9).tolist()  # type: ignore[no-any-return]
 
-    def _why(self, subject: Subject, column: Quantity | None) -> str:
+    def _why(self, subject: "Subject", column: Quantity | None) -> str:
         """Return why a column is left out, as far as the speed is the reason."""
         if column is None or column.kind not in _OF_SPEED or subject.source.omega is not None:
             return "; kurbel check says why"
         return ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
 
-    def _column(self, subject: Subject) -> Quantity | None:
+    def _column(self, subject: "Subject") -> Quantity | None:
         """Return the column that is meant, by id or printed symbol; None for one of other machines alone."""
         own, every = (lists.columns(self.command) for lists in (subject.lists, every_quantity()))
         ids = called(self.column, own.values()) or called(self.column, every.values())
@@ -106,7 +105,7 @@ class Place(NamedTuple):
             raise UsageError(f"--where: {wrong}")
         return own.get(ids[0])
 
-    def _value(self, subject: Subject, column: Quantity) -> float:
+    def _value(self, subject: "Subject", column: Quantity) -> float:
         """Return the value in SI: a number with a unit of the column's kind, or a fraction of a key value."""
         factor = 1.0 if self.factor is None else self.factor
         if not self.of:
@@ -121,7 +120,7 @@ class Place(NamedTuple):
             raise UsageError(f"--where: {shown(self.text)} has no number before the unit; write {example(column.kind)}")
         return factor * up / down
 
-    def _key_value(self, subject: Subject, column: Quantity, no_unit: str) -> float:
+    def _key_value(self, subject: "Subject", column: Quantity, no_unit: str) -> float:
         known = subject.lists.key_values(self.command)
         quantity = next((known[id] for id in called(self.of, known.values()) if known[id].kind == column.kind), None)
         if quantity is None:

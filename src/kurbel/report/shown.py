@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -77,6 +77,17 @@ def _filled(values: Sequence[float | None], given: list[float]) -> tuple[float |
     """Return the given values in the places of those that are not None."""
     following = iter(given)
     return tuple(None if value is None else next(following) for value in values)
+
+
+def counted(columns: Iterable[Column]) -> tuple[Column, ...]:
+    """Return columns with orders and numbers of modes written as such, 1.5, but 1 and 2; a distance in thousandths."""
+
+    def decimals(column: Column) -> int | None:
+        if column.id in ("order", "mode"):
+            return int(any(value and value % 1 for value in column.values))
+        return 3 if column.id == "distance" else column.decimals
+
+    return tuple(one._replace(decimals=decimals(one)) for one in columns)
 
 
 def shown_key_value(quantity: Quantity, value: Any, system: str) -> KeyValue:

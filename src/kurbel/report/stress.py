@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
-from kurbel.declared.quantities import COLUMNS
+from kurbel.declared.factors import PHI
 from kurbel.declared.shaft import STRESSES
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import left_out, strength_left_out
@@ -24,20 +24,17 @@ _TITLES = {
 }
 
 
-def stress_report(
-    case: Case, angles: Sequence[float], columns: Sequence[str] | None, system: str, places_only: bool = False
-) -> Report:
-    """Return the stresses of the crankshaft; angles, columns, system: see `Frame`.
+def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report:
+    """Return the stresses of the crankshaft; places_only: no columns over the crank angle.
 
-    places_only: no columns over the crank angle. Raises UsageError where no crankshaft can be examined.
+    Raises UsageError where no crankshaft can be examined.
     """
     with np.errstate(all="ignore"):  # what overflows is refused, by name
         (whole,) = subjects(case)
-        tables = tuple(_place_tables(case.strength, system))
+        tables = tuple(_place_tables(case.strength, frame.system))
         whole = whole._replace(name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
         cool, verdict = shell_verdict(case.strength)
         notes = (*_NOTES, *((_TURNING_ROD,) if case.strength.C_rod else ()), *(verdict if cool else ()))
-    frame = Frame("stress", angles, columns, system)
     return frame.report(case.machine, "Festigkeit der Kurbelwelle", (), whole, notes)
 
 
@@ -74,7 +71,7 @@ def _place_tables(strength: CrankshaftStrength, system: str) -> Iterable[PlaceTa
 
 
 def _place_columns(strained: tuple[Strained, ...], system: str) -> Iterable[Column]:
-    yield shown_column(COLUMNS["phi"], [one.degrees for one in strained], system)
+    yield shown_column(PHI, [one.degrees for one in strained], system)
     for name, quantity in STRESSES.items():
         values = [getattr(one if name in ("combined", "von_mises") else one.stresses, name) for one in strained]
         yield shown_column(quantity, values, system)

@@ -1,7 +1,5 @@
 """What a report is made of, whatever it will be rendered as."""
 
-# annotations are taken as they stand: NamedTuple compiles each postponed one at every start
-
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import NamedTuple, TypeVar, Union
@@ -143,7 +141,7 @@ class Report(NamedTuple):
     parts: tuple[Part, ...]
     whole: Part | None = None
     mirrored: str = ""
-    notes: tuple[str, ...] = ()
+    notes: Collection[str] = ()
     head: tuple[str, ...] = ()
     provenance: Provenance | None = None
     cylinders: tuple[str, ...] = ()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -28,14 +28,6 @@ _LEAST_SWING = 1e3
 _POWERS = 0.001, 0.01, 0.1, 10.0, 100.0, 1000.0
 _LATEST = 10.0
 """Degrees by which a dead centre is found wrong; beyond, other notes speak."""
-
-
-def level_notes(reading: Reading) -> Iterable[str]:
-    """Yield the one note on level, unit or compression of a trace, if any."""
-    for judge in (_of_sign, _of_unit, _of_level, _of_compression):
-        if found := judge(reading):
-            yield found
-            return
 
 
 def _of_sign(reading: Reading) -> str:
@@ -184,3 +176,6 @@ def _bisected(off: Callable[[float], float | None], near: float, far: float) -> 
         value = off(middle)
         near, far = (middle, far) if value is not None and (value < 0) == below else (near, middle)
     return (near + far) / 2
+
+
+JUDGES = (_of_sign, _of_unit, _of_level, _of_compression)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from kurbel.report.trace_readings import Reading, zero_text
@@ -25,14 +23,6 @@ _MOTORED_SIDES = 10.0, 20.0, 30.0, 45.0, 60.0, 75.0, 90.0  # deg from the peak a
 _AROUND = 2.5  # deg on either side of such a place over which the pressures are a mean: one sample is noise
 _MOTORED_RATIO = 0.6, 1.1  # of the pressures after and before the peak: what heat loss and leakage take, and noise
 _MOTORED_RISE = 3.0  # least pressure of the peak over that at its feet; what is flat has no peak
-
-
-def place_notes(reading: Reading) -> Iterable[str]:
-    """Yield the one note on where the peak stands, if any; its advice has been tried out."""
-    for judge in (_backward, _elsewhere, _motored_off):
-        if found := judge(reading):
-            yield found
-            return
 
 
 def _backward(reading: Reading) -> str:
@@ -109,3 +99,6 @@ def motored(pressure: TracePressure, top: int) -> bool:
     low, high = _MOTORED_RATIO
     alike = bool(np.all((low * before <= after) & (after <= high * before)))
     return alike and bool(lift + pressure.pressures[top] > _MOTORED_RISE * max(before[-1], after[-1]))
+
+
+JUDGES = (_backward, _elsewhere, _motored_off)

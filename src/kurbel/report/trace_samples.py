@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from kurbel.report.trace_readings import Reading, in_bar
@@ -27,67 +25,58 @@ _OTHER = 0.2
 """Share of the range by which the turns of a two-stroke cycle never differ by twos."""
 
 
-def sample_notes(reading: Reading) -> Iterable[str]:
-    """Yield the one note on the samples, if any; what is judged later may only look wrong by what comes before."""
-    for judge in (_of_turns, _of_speed, _of_twins, _of_drift):
-        if found := tuple(judge(reading)):
-            yield from found
-            return
-
-
-def _of_turns(reading: Reading) -> Iterable[str]:
+def _of_turns(reading: Reading) -> str:
     """Laps that differ by twos are the turns of a four-stroke cycle, taken for two strokes, or each for a cycle."""
     pressure = reading.pressure
     each, trace = pressure.each, pressure.trace
     if len(each) < 2 or len(each) % 2:
-        return
+        return ""
     odd, even = each[0::2].mean(axis=0), each[1::2].mean(axis=0)
     if np.abs(odd - even).max() <= _OTHER * max(np.ptp(odd), np.ptp(even)):
-        return
+        return ""
     peaks = f"differ by twos, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
     if pressure.setting.cycle == 360:
-        yield (
+        return (
             f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; p_i is then "
             f"{in_bar(2 * pressure.area)} instead of {in_bar(pressure.area)}"
         )
-        return
     step = trace.period / (len(trace.angles) - 1) / 2
     angles = np.arange(2 * len(trace.angles) - 1) * step
     joined = np.concatenate((each[0::2, :-1], each[1::2, :-1], each[0::2, :1]), axis=1)
     other = reading.otherwise(angles=angles, samples=joined, pegging=None, level=False)
-    yield (
+    return (
         f"its cycles {peaks}: does the angle number the samples of one turn? write 'angle_step: {step:g} deg'; "
         f"{reading.against(other)}"
     )
 
 
-def _of_speed(reading: Reading) -> Iterable[str]:
+def _of_speed(reading: Reading) -> str:
     """Cycles of one engine do not wander against each other; those that are told by time and a wrong speed do."""
     pressure = reading.pressure
     each, trace = pressure.each, pressure.trace
     if len(each) < 3:
-        return
+        return ""
     wave = np.exp(-2j * np.pi * trace.angles / trace.period) * np.gradient(trace.angles)
     phases = np.unwrap(np.angle(each[:, :-1] @ wave[:-1]))
     wandered = float(phases[0] - phases[-1]) * trace.period / (2 * np.pi)
     if abs(wandered) <= _WANDERED:
-        return
+        return ""
     off = wandered / (trace.period * (len(each) - 1))
     change = f"{abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'}"
     told = f" If it is told by time: a 'recorded_speed' about {change} brings both together"
     way = told if abs(off) < _LAPPED else ""
     first, last = (float(pressure.weights @ one) for one in (each[0], each[-1]))
-    yield (
+    return (
         f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last, "
         f"and p_i goes from {in_bar(first)} to {in_bar(last)}: was the speed another, or not constant?{way}"
     )
 
 
-def _of_twins(reading: Reading) -> Iterable[str]:
+def _of_twins(reading: Reading) -> str:
     trace = reading.pressure.trace
     twins = int(np.count_nonzero(np.diff(trace.angles) == 0))
     if twins < _TWICE * len(trace.angles):
-        return
+        return ""
     step = trace.period / (len(trace.angles) - 1)
     even = trace.angles[0] + step * np.arange(len(trace.angles))
     even[-1] = trace.angles[-1]
@@ -95,23 +84,24 @@ def _of_twins(reading: Reading) -> Iterable[str]:
     zero = trace.written_zero - (-trace.angles[-1] if trace.against else float(trace.angles[0]))
     moved = f" and 'angle_zero: {zero:g} deg'" if trace.angles[0] else ""
     key = f"write 'angle_step: {step:g} deg'{moved}" if trace.files else "give each point an angle of its own"
-    yield f"{twins} samples stand at the angle of the one before: rounded angles? {key}; {reading.against(other)}"
+    return f"{twins} samples stand at the angle of the one before: rounded angles? {key}; {reading.against(other)}"
 
 
-def _of_drift(reading: Reading) -> Iterable[str]:
+def _of_drift(reading: Reading) -> str:
     pressure = reading.pressure
     trace, p = pressure.trace, pressure.pressures
     jump = float(drift_of(trace, p[np.newaxis])[0])
     closes = abs(float(p[0]) - reading.low)
     if abs(jump) <= max(_RANGE * closes, _LEAST * reading.pressure.setting.ambient, _doubt(reading)):
-        return
+        return ""
     other = reading.otherwise(level=True)
     change = abs(other.pressure.area - pressure.area)
-    if change > _WORK * abs(pressure.area):
-        yield (
-            f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write "
-            f"'drift: linear'; {reading.against(other)}"
-        )
+    if change <= _WORK * abs(pressure.area):
+        return ""
+    return (
+        f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write "
+        f"'drift: linear'; {reading.against(other)}"
+    )
 
 
 def _doubt(reading: Reading) -> float:
@@ -125,3 +115,6 @@ def _doubt(reading: Reading) -> float:
     steps = np.abs(np.diff(pressure.pressures))
     resolution = 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0
     return max(_SURE * pressure.noise, resolution, 3.0 * float(bends[-1] if coarse else bends[len(bends) // 2]))
+
+
+JUDGES = (_of_turns, _of_speed, _of_twins, _of_drift)

@@ -1,15 +1,19 @@
-"""What looks wrong in the results: the same warnings whichever command computes them."""
+"""What looks wrong in measurements and results: said as warnings, the same whichever command computes them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Callable, Iterable, Sequence
+from itertools import islice
+from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.report.guide import guide_warnings
+from kurbel.solver.cylinder.brake import Brake
 
 if TYPE_CHECKING:
+    from kurbel.machine import Machine
     from kurbel.solver.case import Case
     from kurbel.solver.cylinder.forces import CylinderForces
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
@@ -61,6 +65,8 @@ def _as_far_as_solved(found: Callable[[], Iterable[str]], command: str) -> tuple
 
 _BEYOND = 1e308
 """Floquet multiplier that is as large as a float can be."""
+_SLOWLY = 0.01
+"""Growth of a disturbance in a cycle below which it is told as a share, since "1 times" says nothing."""
 _LINEAR = 0.1
 """δ up to which the cranks stand near enough where uniform rotation would have them."""
 _CLOSED = 1e-9
@@ -97,8 +103,10 @@ _LEAST_REVERSAL = 15.0, 0.03
 
 def _reversal_warnings(forces: CylinderForces) -> Iterable[str]:
     load = forces.rod_load
+    if load.no_compressor:
+        return
     angle, ratio = load.reversal_longest, load.reversal_ratio
-    if load.no_compressor or angle is None or ratio is None:
+    if angle is None or ratio is None:
         return
     if not angle:
         yield "the rod load never reverses: no oil comes between crosshead pin and bush on the loaded side"
@@ -122,8 +130,9 @@ def _of_turning(turning: MachineTurning) -> Iterable[str]:
         yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
     yield from _wish_warnings(turning)
     if turning.multiplier is not None and turning.multiplier > 1:
-        least = "at least " if turning.multiplier > _BEYOND else ""
-        yield f"unstable: a disturbance of the speed grows {least}{turning.multiplier:.4g} times in every cycle"
+        more, least = turning.multiplier - 1, "at least " if turning.multiplier > _BEYOND else ""
+        grows = f"by {more:.2g} of itself" if more < _SLOWLY else f"{least}{turning.multiplier:.4g} times"
+        yield f"unstable: a disturbance of the speed grows {grows} in every cycle"
     if turning.load_ignored:
         yield "the mean torque is zero, so that a load in proportion to it does not hold the speed; it is left out"
     yield from _coupling_warnings(turning)
@@ -180,3 +189,63 @@ def shell_verdict(strength: CrankshaftStrength) -> tuple[bool, tuple[str, ...]]:
     shown = convert(found, "pressure_velocity", "kgf m/s/cm2")
     bound, verdict = next((shell for shell in _SHELLS if shown <= shell[0]), _SHELLS[-1])
     return bound == _SHELLS[0][0], (f"Crank pin: p_m v = {shown:.3g} kgf m/(cm² s); {verdict}.",)
+
+
+# measured traces and the brake, of which only who measured can know
+
+_LEAST_OF_SEVERAL = 1.1
+"""Brake over indicated power of one cylinder from which on others are likely to be missing."""
+_TAKEN = 0.3, 1.0
+"""Indicated over brake power of a machine that is driven."""
+_GOOD = 0.85
+"""Mechanical efficiency by which the number of cylinders is reckoned that the brake asks for."""
+
+
+def trace_warnings(forces: CylinderForces) -> Iterable[str]:
+    """Yield what is implausible in the traces of a cylinder."""
+    for gas in forces.drive.gas:
+        ends: tuple[tuple[str, Any], ...] = (("head end", gas.head), ("crank end", gas.crank))
+        for end, pressure in ends:
+            if hasattr(pressure, "each"):
+                yield from (f"{gas.piston.name}, {end}: {note}" for note in _of_trace(pressure))
+
+
+def _of_trace(pressure: Any) -> Iterable[str]:
+    """Yield the one note on a trace, if any: on its samples, or else on its angles, or else on its pressures.
+
+    What is judged later may only look wrong by what comes before; all advice has been tried out.
+    """
+    from kurbel.report import trace_level, trace_place, trace_samples
+    from kurbel.report.trace_readings import Reading
+
+    reading = Reading(pressure)
+    judges = (*trace_samples.JUDGES, *trace_place.JUDGES, *trace_level.JUDGES)
+    yield from islice(filter(None, (judge(reading) for judge in judges)), 1)
+
+
+def brake_warnings(machine: Machine, cylinders: Sequence[CylinderForces]) -> Iterable[str]:
+    """Yield a warning where brake and indicator contradict each other."""
+    brake, indicated = machine.brake_power, Brake(machine, cylinders).indicated
+    if not brake or indicated is None:
+        return
+    shown = f"the indicated power, {show(indicated, 'power')}, is"
+    if indicated < 0:
+        if not _TAKEN[0] <= -indicated / brake <= _TAKEN[1]:
+            much = "more than" if -indicated > brake else "far below what"
+            yield f"{shown} {much} the driven shaft takes, {show(brake, 'power')}: check angle_zero, units and areas"
+        return
+    if indicated < brake:
+        yield (
+            f"{shown} below the brake power, {show(brake, 'power')}: check angle_zero, units and areas"
+            f"{_of_several(machine, brake / indicated if indicated else math.inf)}"
+        )
+
+
+def _of_several(machine: Machine, times: float) -> str:
+    if len(machine.cylinders) != 1 or not _LEAST_OF_SEVERAL < times < 100:
+        return ""
+    count = max(2, math.ceil(times / _GOOD - 0.3))
+    return (
+        f"; or is this one cylinder of {count}, say? Then write all of them: 'cylinders: {{count: {count}, each: …}}' "
+        "with a firing order"
+    )

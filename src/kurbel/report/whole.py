@@ -1,21 +1,19 @@
 """The report of `kurbel report`: all that a machine has, section by section; or several machines side by side."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
-from importlib import import_module
 from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
-from kurbel.machine.alike import work_alike
-from kurbel.report.alike import gathered, together
+from kurbel.machine.alike import gathered, work_alike
+from kurbel.report.alike import together
 from kurbel.report.angles import stepped
 from kurbel.report.check import Checked, checked
 from kurbel.report.document import Document, Grid, Item, Section
-from kurbel.report.keys import every_place
-from kurbel.report.pictures import PICTURES, Wish, pictures
+from kurbel.report.frame import Frame, report_of
+from kurbel.report.keys import every_place, meaning
+from kurbel.report.pictures import PICTURES, Wish, pictures_if_any
 from kurbel.report.provenance import provenance
 from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.case import Case
@@ -26,50 +24,22 @@ Progress = Callable[[str], None]
 
 
 class Command(NamedTuple):
-    """A command whose tables a report has: its word, a title, and what makes them at crank angles (n,) in degrees.
-
-    turns: whether its table runs over the whole cycle of the machine.
-    """
+    """A command whose tables a report has: its word, a title, and whether its table runs over the whole cycle."""
 
     word: str
     title: str
-    make: Callable[[Case, Sequence[float], str], Report]
     turns: bool = True
 
 
-def _made_by(module: str) -> Callable[[Case, Sequence[float], str], Report]:
-    """Return what makes the report of a command, as the module of that name below `kurbel.report` has it."""
-
-    def make(case: Case, angles: Sequence[float], system: str) -> Report:
-        report: Report = getattr(import_module(f"kurbel.report.{module}"), f"{module}_report")(
-            case, angles, None, system
-        )
-        return report
-
-    return make
-
-
-def _harmonics(case: Case, angles: Sequence[float], system: str) -> Report:
-    from kurbel.report.harmonics import harmonics_report
-
-    return harmonics_report(case, None, None, system)
-
-
-def _torsion(case: Case, angles: Sequence[float], system: str) -> Report:
-    from kurbel.report.torsion import Wanted, torsion_report
-
-    return torsion_report(case, Wanted(), angles, None, system)
-
-
 COMMANDS = (
-    Command("motion", "Motion", _made_by("motion"), False),
-    Command("forces", "Forces", _made_by("forces")),
-    Command("flywheel", "Turning effort and flywheel", _made_by("flywheel")),
-    Command("stress", "Strength of the crankshaft", _made_by("stress")),
-    Command("bearings", "Bearings", _made_by("bearings")),
-    Command("balance", "Balance of the masses", _made_by("balance")),
-    Command("harmonics", "Orders of the turning effort", _harmonics),
-    Command("torsion", "Torsional vibration", _torsion),
+    Command("motion", "Motion", False),
+    Command("forces", "Forces"),
+    Command("flywheel", "Turning effort and flywheel"),
+    Command("stress", "Strength of the crankshaft"),
+    Command("bearings", "Bearings"),
+    Command("balance", "Balance of the masses"),
+    Command("harmonics", "Orders of the turning effort"),
+    Command("torsion", "Torsional vibration"),
 )
 """In the order in which a report has them."""
 
@@ -91,11 +61,7 @@ def whole_report(case: Case, given: Given, system: str, step: float, progress: P
 
 def _input(case: Case, given: Given, found: Checked) -> Section:
     places = every_place()
-    rows = []
-    for path, value in given:
-        steps = [step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()]
-        meant = next((places[".".join(steps[k:])][0] for k in range(len(steps)) if ".".join(steps[k:]) in places), None)
-        rows.append((path, value, meant.key.text.replace("`", "") if meant else ""))
+    rows = [(path, value, meaning(path, places)) for path, value in given]
     items: list[Item] = [Grid("Given", ("Key", "Value", "Meaning"), tuple(rows))] if rows else []
     for part in found.sections:
         if part.title not in ("Limits", "Expected"):
@@ -117,7 +83,8 @@ def _section(case: Case, command: Command, system: str, step: float, left_out: l
 
 def _table(case: Case, command: Command, system: str, step: float) -> Report | str:
     end = 360.0 * case.machine.revolutions if command.turns else 360.0
-    report = command.make(case, stepped(step, end, max(len(case.cylinders), 1)), system)
+    angles = stepped(step, end, max(len(case.cylinders), 1))
+    report = report_of(case, Frame(command.word, angles, None, system))
     for part in report.all_parts:  # what cannot be computed is told now, not while the page is written
         len(part.key_values)
     return report
@@ -128,11 +95,9 @@ def _pictures_of(case: Case, command: str, wish: Wish) -> Iterator[Item]:
     for one in PICTURES:
         if one.command == command:
             try:
-                yield from pictures(case, (one.id,), wish)
+                yield from pictures_if_any(case, one, wish)  # what another would show is told among what is left out
             except NoSolutionError as error:
                 yield f"{one.title}: {error}"
-            except UsageError:
-                continue  # what it would show is told among what is left out
 
 
 def _verdicts(found: Checked) -> Section | None:
@@ -147,22 +112,15 @@ def _verdicts(found: Checked) -> Section | None:
     return Section("verdicts", "Limits and expectations", tuple(items)) if items else None
 
 
-_BALANCE = (
-    ("work_driving", 1),
-    ("work_driven", 1),
-    ("crosshead_work", -1),
-    ("ring_work", -1),
-    ("constant_work", -1),
-    ("resistance_work", 1),
+_TERMS = (
+    ("work_driving", 1, "Indicated work of the driving pistons"),
+    ("work_driven", 1, "Indicated work of the driven pistons"),
+    ("crosshead_work", -1, "Friction of the crosshead"),
+    ("ring_work", -1, "Friction of the piston rings"),
+    ("constant_work", -1, "Friction given as a force"),
+    ("resistance_work", 1, "What the output works against"),
 )
-_CALLED = {
-    "work_driving": "Indicated work of the driving pistons",
-    "work_driven": "Indicated work of the driven pistons",
-    "crosshead_work": "Friction of the crosshead",
-    "ring_work": "Friction of the piston rings",
-    "constant_work": "Friction given as a force",
-    "resistance_work": "What the output works against",
-}
+"""Works of a cycle by their names in `CylinderForces`, the sign with which they reach the shaft, and what they are."""
 
 
 def _energy(case: Case, system: str) -> Section | None:
@@ -175,26 +133,19 @@ def _energy(case: Case, system: str) -> Section | None:
             forces = equal[0]
             try:
                 left = forces.work_left
-                terms = [(name, sign * value) for name, sign in _BALANCE if (value := getattr(forces, name))]
+                terms = [(text, sign * value) for name, sign, text in _TERMS if (value := getattr(forces, name))]
                 residual = forces.energy_residual
             except KurbelError:
                 continue
             if left is None:
                 continue
             unit = shown_unit("energy", system, max((abs(value) for _, value in terms), default=abs(left)))
-            rows = [(_CALLED[name], f"{convert(value, 'energy', unit):.5g}", unit) for name, value in terms]
-            rows.append(("Reaches the shaft, 2π R W per turn", f"{convert(left, 'energy', unit):.5g}", unit))
+            terms.append(("Reaches the shaft, 2π R W per turn", left))
+            rows = [(text, f"{convert(value, 'energy', unit):.5g}", unit) for text, value in terms]
             open_ = "below 1e-14" if residual is not None and abs(residual) < 1e-14 else f"{residual:.2g}"
             rows.append(("Left open by an independent quadrature, over the turnover", open_, ""))
-            items.append(
-                Grid(
-                    together([one.drive.name for one in equal]),
-                    ("Per cycle", "Energy", "Unit"),
-                    tuple(rows),
-                    (1,),
-                    (2,),
-                )
-            )
+            name = together([one.drive.name for one in equal])
+            items.append(Grid(name, ("Per cycle", "Energy", "Unit"), tuple(rows), numbers=(1,), units=(2,)))
     return Section("energy", "Energy balance", tuple(items)) if items else None
 
 

@@ -3,8 +3,6 @@
 A case is data: a name, the text of a machine file, what is asked, what is expected. Modules by subject hold them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from decimal import Decimal
 from typing import Any, NamedTuple, Union

@@ -1,7 +1,5 @@
 """Forms of what key values are held against: bounds, and expected figures with their tolerance."""
 
-from __future__ import annotations
-
 import re
 from abc import abstractmethod
 from collections.abc import Callable, Collection
@@ -30,12 +28,12 @@ class Bound(float):
     unit: str
     name: str
 
-    def __new__(cls, value: float, unit: str = "", name: str = "") -> Bound:
+    def __new__(cls, value: float, unit: str = "", name: str = "") -> "Bound":
         bound = super().__new__(cls, value)
         bound.unit, bound.name = unit, name
         return bound
 
-    def named(self, name: str) -> Bound:
+    def named(self, name: str) -> "Bound":
         """Return it with the name that it stands under."""
         return Bound(self, self.unit, name)
 
@@ -49,7 +47,7 @@ class Expected(NamedTuple):
     text: str = ""
     name: str = ""
 
-    def named(self, name: str) -> Expected:
+    def named(self, name: str) -> "Expected":
         """Return it with the name that it stands under."""
         return self._replace(name=name)
 
@@ -65,7 +63,7 @@ class _Figures(Form):
         self.known = known
 
     @abstractmethod
-    def figure(self, quantity: Quantity) -> Form:
+    def figure(self, quantity: "Quantity") -> Form:
         """Return the form of a figure for this quantity."""
 
     def schema(self, definitions: Schema) -> Schema:
@@ -95,7 +93,7 @@ class _Figures(Form):
                 found[id] = read if read is REFUSED else read.named(name)
         return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
 
-    def _meant(self, name: str, known: dict[str, Quantity], lists: Collection[str]) -> tuple[str, str]:
+    def _meant(self, name: str, known: "dict[str, Quantity]", lists: Collection[str]) -> tuple[str, str]:
         """Return the id that a name stands for, and what is wrong with it."""
         found = called(name, known.values())
         if not found:
@@ -113,7 +111,7 @@ class Limits(_Figures):
 
     what = "bound"
 
-    def figure(self, quantity: Quantity) -> Form:
+    def figure(self, quantity: "Quantity") -> Form:
         return _LimitOfRatio() if quantity.kind == "ratio" else _Limit(quantity.kind)
 
     def expected(self) -> str:
@@ -138,7 +136,7 @@ class Expectations(_Figures):
 
     what = "expectation"
 
-    def figure(self, quantity: Quantity) -> Form:
+    def figure(self, quantity: "Quantity") -> Form:
         return _Figure(Number() if quantity.kind == "ratio" else Physical(quantity.kind), quantity.kind)
 
     def expected(self) -> str:

@@ -1,7 +1,5 @@
 """Scales: from the values of an axis to places on paper or in a terminal, and where its ticks stand."""
 
-from __future__ import annotations
-
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -34,12 +32,12 @@ class Scale(NamedTuple):
             share = (values - self.low) / (self.high - self.low)
         return self.start + share * (self.end - self.start)
 
-    def reach(self, start: float, end: float) -> Scale:
+    def reach(self, start: float, end: float) -> "Scale":
         """Return the scale with other ends on paper."""
         return self._replace(start=start, end=end)
 
 
-def scale_of(panel: Panel, part: str) -> Scale:
+def scale_of(panel: "Panel", part: str) -> Scale:
     """Return the scale from 0 to 1 that holds all that stands on an axis (x or y) of a panel."""
     axis: Axis = getattr(panel, part)
     low, high = _extent(panel, part)
@@ -62,7 +60,7 @@ def taller(scale: Scale, height: float) -> Scale:
     return scale if spare <= 0 else scale._replace(low=scale.low - spare, high=scale.high + spare)
 
 
-def _extent(panel: Panel, part: str) -> tuple[float, float]:
+def _extent(panel: "Panel", part: str) -> tuple[float, float]:
     """Return the smallest and the largest value on an axis."""
     drawn = [getattr(piece, part) for curve in panel.curves for piece in curve.pieces]
     for shade in panel.shades:
@@ -76,7 +74,7 @@ def _extent(panel: Panel, part: str) -> tuple[float, float]:
     return min((low for low, _ in every), default=0.0), max((high for _, high in every), default=0.0)
 
 
-def ticks(scale: Scale, axis: Axis, most: int) -> list[float]:
+def ticks(scale: Scale, axis: "Axis", most: int) -> list[float]:
     """Return the values, at most so many or a few more, at which an axis has ticks."""
     low, high = sorted((scale.low, scale.high))
     if axis.names:

@@ -1,13 +1,10 @@
 """A picture laid out on paper: lines, areas and texts at places in points from the upper left corner."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple, Union
+from typing import NamedTuple, Union
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
+from kurbel.arrays import Array
 
 Places = tuple[tuple[float, float], ...]
 

@@ -1,7 +1,5 @@
 """Pictures of a machine. One more is one declaration here, with what makes its panels from the results."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from importlib import import_module
@@ -10,10 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kurbel.declared.reading import shown
+from kurbel.declared.shaft import SHAFT_PARTS
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.machine.alike import work_alike
+from kurbel.machine.alike import gathered, work_alike
 from kurbel.near_words import did_you_mean
-from kurbel.report.alike import gathered, together
+from kurbel.report.alike import together
 from kurbel.report.pictures.picture import Panel, Picture
 from kurbel.report.tables import cylinder_meant
 
@@ -42,7 +41,7 @@ class Declared(NamedTuple):
     over: str = "phi"
     across: int = 1
 
-    def drawn(self, source: Source) -> Iterable[Panel]:
+    def drawn(self, source: "Source") -> Iterable[Panel]:
         """Return the panels; none where the machine does not have what they show."""
         if self.panels:
             module, name = self.panels.split(":")
@@ -110,14 +109,14 @@ PICTURES = (
         "Beanspruchung der Kurbelwelle",
         "Largest combined stress of each part of the crank throw over the cycle.",
         "stress",
-        "whole_machine:throw_stress",
+        rows=(tuple(f"sigma_{part}" for part in SHAFT_PARTS),),
     ),
     Declared(
         "bearing-loads",
         "Lagerkräfte in polarer Darstellung",
         "The way of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod.",
         "bearings",
-        "bearings:polar_loads",
+        "vectors:polar_loads",
         across=2,
     ),
     Declared(
@@ -125,35 +124,35 @@ PICTURES = (
         "Drehkraft nach Ordnungen",
         "Amplitudes of the turning effort by order, periods per turn of the shaft.",
         "harmonics",
-        "orders:torque_orders",
+        "whole_machine:torque_orders",
     ),
     Declared(
         "modes",
         "Eigenschwingungen der Welle",
         "How far the masses of the shaft line turn in its first natural vibrations.",
         "torsion",
-        "orders:shaft_modes",
+        "whole_machine:shaft_modes",
     ),
     Declared(
         "free-vectors",
         "Massenausgleich: freie Kräfte und Momente",
         "The way that the tip of the free force, and of the free moment, runs over a turn.",
         "balance",
-        "balance:free_vectors",
+        "vectors:free_vectors",
     ),
     Declared(
         "free-angle",
         "Freie Kräfte und Momente über dem Kurbelwinkel",
         "Free force, free moment and rolling moment on the frame over the crank angle.",
         "balance",
-        "balance:free_over_angle",
+        rows=(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",)),
     ),
     Declared(
         "free-orders",
         "Ordnungen der freien Kräfte und Momente",
         "The circles of each order, with the rotation and against it.",
         "balance",
-        "balance:free_orders",
+        "whole_machine:free_orders",
     ),
     Declared(
         "motion",
@@ -194,7 +193,7 @@ class Wish(NamedTuple):
     angles: Sequence[float] | None = None
 
 
-def pictures(case: Case, names: Sequence[str], wish: Wish) -> Iterator[Picture]:
+def pictures(case: "Case", names: Sequence[str], wish: Wish) -> Iterator[Picture]:
     """Yield these pictures of a machine; without names the first that it has, `all` for every one.
 
     Raises UsageError for a picture that there
@@ -212,7 +211,7 @@ def pictures(case: Case, names: Sequence[str], wish: Wish) -> Iterator[Picture]:
             yield from found
 
 
-def pictures_of(case: Case, wish: Wish) -> tuple[Declared, ...]:
+def pictures_of(case: "Case", wish: Wish) -> tuple[Declared, ...]:
     """Return the pictures that a machine has; one that is without a solution is drawn of it, too, and then says so."""
     found = []
     with np.errstate(all="ignore"):
@@ -225,7 +224,14 @@ def pictures_of(case: Case, wish: Wish) -> tuple[Declared, ...]:
     return tuple(found)
 
 
-def _first(case: Case, wish: Wish) -> list[Picture]:
+def pictures_if_any(case: "Case", declared: Declared, wish: Wish) -> list[Picture]:
+    """Return one picture of a machine, as often as it has it, or none; raises NoSolutionError as `pictures` does."""
+    with np.errstate(all="ignore"), suppress(UsageError):
+        return list(_pictures(case, declared, wish))
+    return []
+
+
+def _first(case: "Case", wish: Wish) -> list[Picture]:
     """Return the first picture that there is; none is drawn only to see whether there is one."""
     for declared in PICTURES:
         with suppress(UsageError):
@@ -234,7 +240,7 @@ def _first(case: Case, wish: Wish) -> list[Picture]:
     raise UsageError(f"{case.machine.name}: there is nothing to draw; kurbel check says what is missing")
 
 
-def _chosen(case: Case, names: Sequence[str], wish: Wish) -> Iterable[Declared]:
+def _chosen(case: "Case", names: Sequence[str], wish: Wish) -> Iterable[Declared]:
     if "all" not in names:
         return [_named(name) for name in names]
     return [one for one in PICTURES if _has(case, one, wish)]
@@ -247,7 +253,7 @@ def _named(name: str) -> Declared:
     return known[name]
 
 
-def _missing(case: Case, declared: Declared, wish: Wish) -> str:
+def _missing(case: "Case", declared: Declared, wish: Wish) -> str:
     names = _names(case)
     if wish.cylinder is not None and wish.cylinder not in names:
         return f"--cylinder: there is no '{shown(wish.cylinder)}'; there are {', '.join(names)}"
@@ -255,24 +261,24 @@ def _missing(case: Case, declared: Declared, wish: Wish) -> str:
     return f"{case.machine.name} has no picture '{declared.id}': what it shows is left out; it has {having}"
 
 
-def _names(case: Case) -> tuple[str, ...]:
+def _names(case: "Case") -> tuple[str, ...]:
     return tuple(one.drive.name for one in case.cylinders)
 
 
-def _has(case: Case, declared: Declared, wish: Wish) -> bool:
+def _has(case: "Case", declared: Declared, wish: Wish) -> bool:
     with suppress(UsageError):
         return any(True for source, _ in _sources(case, declared, wish) for _ in declared.drawn(source))
     return False
 
 
-def _pictures(case: Case, declared: Declared, wish: Wish) -> Iterator[Picture]:
+def _pictures(case: "Case", declared: Declared, wish: Wish) -> Iterator[Picture]:
     for source, name in _sources(case, declared, wish):
         if panels := tuple(declared.drawn(source)):
             across = min(declared.across, len(panels))
             yield Picture(declared.id, declared.title, declared.text, panels, case.machine.name, name, across)
 
 
-def _sources(case: Case, declared: Declared, wish: Wish) -> Iterator[tuple[Source, str]]:
+def _sources(case: "Case", declared: Declared, wish: Wish) -> "Iterator[tuple[Source, str]]":
     """Yield what a picture is drawn from, each with the name of its cylinder; equal ones are drawn once."""
     from kurbel.report.pictures.source import Source
 
@@ -290,7 +296,7 @@ def _sources(case: Case, declared: Declared, wish: Wish) -> Iterator[tuple[Sourc
             yield Source(equal[0], wish.system, wish.fineness, wish.angles), names
 
 
-_OF_MACHINE: dict[str, Callable[[Case], Any]] = {
+_OF_MACHINE: "dict[str, Callable[[Case], Any]]" = {
     "flywheel": lambda case: case.flywheel,
     "stress": lambda case: case.strength,
     "balance": lambda case: case.balance,

@@ -28,19 +28,14 @@ def accuracy_picture(report: Report) -> Picture:
     if not found:
         raise UsageError("--plot: nothing was compared, there is nothing to draw")
     methods = list(dict.fromkeys(method for every in found.values() for method in every))
-    every = [
-        dot
-        for methods_ in found.values()
-        for scenes in methods_.values()
-        for dot in [one for scene in scenes for one in scene]
-    ]
-    times = min(time for _, time in every), max(time for _, time in every)
+    times = [time for of in found.values() for scenes in of.values() for scene in scenes for _, time in scene]
+    span = min(times), max(times)
     return Picture(
         "accuracy",
         "time over error",
         "Time over relative error of each method, lines between its answers for one machine; the error falls to the "
         "right, the thin upright line is the rounding of one float.",
-        tuple(_panel(quantity, scenes, methods, times) for quantity, scenes in found.items()),
+        tuple(_panel(quantity, scenes, methods, span) for quantity, scenes in found.items()),
         report.title,
         across=min(4, len(found)),
         legend=tuple((Words(method, method), number) for number, method in enumerate(methods)),
@@ -70,17 +65,17 @@ def _panel(
     quantity: str,
     found: dict[str, list[list[tuple[float, float]]]],
     methods: list[str],
-    times: tuple[float, float],
+    span: tuple[float, float],
 ) -> Panel:
     curves = [
-        Curve(Words(method, method), tuple(map(_piece, scenes)), "dots", methods.index(method))
+        Curve(
+            Words(method, method),
+            tuple(Piece(*np.array(answers).T) for answers in scenes),
+            "dots",
+            methods.index(method),
+        )
         for method, scenes in found.items()
     ]
-    rounding = Curve(Words("", ""), (Piece(np.array([_ROUNDING, _ROUNDING]), np.array(times)),), "faint")
+    rounding = Curve(Words("", ""), (Piece(np.array([_ROUNDING, _ROUNDING]), np.array(span)),), "faint")
     x = Axis(Words("error", "error"), "", True, _LEAST, 1.0, falling=True)
-    return Panel(x, Axis(Words("time", "time"), "ms", True, *times), (rounding, *curves), title=quantity)
-
-
-def _piece(answers: list[tuple[float, float]]) -> Piece:
-    errors, times = np.array(answers).T
-    return Piece(errors, times)
+    return Panel(x, Axis(Words("time", "time"), "ms", True, *span), (rounding, *curves), title=quantity)

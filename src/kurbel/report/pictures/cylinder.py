@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -11,28 +12,24 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.unit_systems import convert
 from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Piece, Shade, Words
-from kurbel.report.pictures.sampling import Samples, pieces, sampled
-from kurbel.report.pictures.source import PHI, Source, words, zero_line
+from kurbel.report.pictures.sampling import Samples, pieces
+from kurbel.report.pictures.source import PHI, Source, mark, zero_line
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.cylinder.gas import PistonGas
 
-_V = Words("V", "V")
+_V, _P, _P_0 = Words("V", "V"), Words("P", "P"), Words("P_0", "P_0")
 _INERTIA_LINE = Words("−P_b", "-P_b")
 _REVERSAL = Words("Druckwechsel", "Druckwechsel")
 
 
-def cards(source: Source) -> Iterator[Panel]:
-    """Yield the indicator cards of every piston, both ends over the stroke."""
-    for gas in source.results.drive.gas:
-        yield _card(source, gas, False)
+def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
+    """Yield the indicator cards of every piston, both ends over the stroke, or over the volumes of the chambers."""
+    return (_card(source, gas, over_volume) for gas in source.results.drive.gas)
 
 
-def cards_over_volume(source: Source) -> Iterator[Panel]:
-    """Yield the same over the volumes of the chambers."""
-    for gas in source.results.drive.gas:
-        yield _card(source, gas, True)
+cards_over_volume = partial(cards, over_volume=True)
 
 
 def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
@@ -44,16 +41,14 @@ def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
         state = source.results.at(degrees, within)
         return np.stack([state.way, *(state.pressure(end) + gas.base for _, end in ends)])
 
-    samples = sampled(source.results.breaks, values, source.fineness)
-    for (name, _), line in zip(ends, samples.values[1:]):
-        source.refuse_overflow(name, line)
+    samples = source.sampled(("x", *(name for name, _ in ends)), values)
     unit = source.unit("pressure", *samples.values[1:])
     places = {name: _volume(gas, name, samples.values[0]) if over_volume else samples.values[0] for name, _ in ends}
     kind = "volume" if over_volume else "length"
     run = source.unit(kind, *places.values())
     curves = [
         Curve(
-            words(source.quantity(name)),
+            source.words(name),
             pieces(samples, convert(places[name], kind, run), convert(p, "pressure", unit)),
         )
         for (name, _), p in zip(ends, samples.values[1:])
@@ -61,7 +56,7 @@ def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
     own = piston is source.results.drive.cylinder.pistons[0] and not over_volume
     marks = tuple(_highest(source, unit, run)) if own else ()
     y = Axis(Words("p", "p"), f"{unit} abs" if gas.absolute else unit)
-    x = Axis(_V if over_volume else words(source.quantity("x")), run)
+    x = Axis(_V if over_volume else source.words("x"), run)
     ambient = zero_line(curves, float(convert(gas.base, "pressure", unit)))
     return Panel(x, y, (*curves, ambient), marks=marks, title=piston.name if several else "")
 
@@ -81,19 +76,14 @@ def _highest(source: Source, unit: str, run: str) -> Iterable[Mark]:
     if highest is not None:
         way = float(source.results.at(np.array([highest.degrees])).way[0])
         quantity = source.results.lists.key_values("forces")["p_max"]
-        value = float(convert(highest.value, "pressure", unit))
-        yield Mark(
-            float(convert(way, "length", run)),
-            value,
-            Figure(words(quantity), value, quantity.marked(unit), highest.degrees),
-        )
+        yield mark(quantity, highest, unit, float(convert(way, "length", run)))
 
 
 def piston_force(source: Source) -> Iterator[Panel]:
     """Yield the force without inertia against the inertia line, what is left between them shaded, and that alone."""
     if source.having(("P",)):
         if source.having(("P_inertia", "P_start")) == ("P_inertia", "P_start"):
-            yield _against_inertia(source, PHI)
+            yield _against_inertia(source)
         yield _rest(source)
 
 
@@ -122,25 +112,13 @@ def _stroke(source: Source, ids: tuple[str, ...], start: float, end: float, titl
         turned = cycle * np.floor(within / cycle)  # the end of the cycle is not its beginning
         return source.values(ids, degrees - turned, within - turned)
 
-    samples = sampled(breaks, values, source.fineness)
-    for id, line in zip(ids, samples.values):
-        source.refuse_overflow(id, line)
-    length, unit = source.unit("length", samples.values[0]), source.unit("force", *samples.values[1:])
-    x = convert(samples.values[0], "length", length)
-    lines = [convert(line, "force", unit) for line in samples.values[1:]]
-    run = Axis(words(source.quantity("x")), length)
-    return _panel_of_rest(samples, run, Axis(Words("P", "P"), unit), x, lines, title)
+    return _panel_of_rest(source, source.sampled(ids, values, breaks), "x")._replace(title=title)
 
 
-def _against_inertia(source: Source, over: str) -> Panel:
+def _against_inertia(source: Source) -> Panel:
     reversals = source.results.phi_reversal or ()
-    samples = source.samples((over, "P_start", "P_inertia"), reversals)
-    unit = source.unit("force", *samples.values[1:])
-    lines = [convert(line, "force", unit) for line in samples.values[1:]]
-    panel = _panel_of_rest(
-        samples, source.axis(over, samples.values[0]), Axis(Words("P", "P"), unit), samples.values[0], lines, ""
-    )
-    return panel._replace(marks=tuple(_reversals(source, reversals, unit)))
+    panel = _panel_of_rest(source, source.samples((PHI, "P_start", "P_inertia"), reversals), PHI)
+    return panel._replace(marks=tuple(_reversals(source, reversals, panel.y.unit)))
 
 
 def _reversals(source: Source, angles: Iterable[float], unit: str) -> Iterator[Mark]:
@@ -150,14 +128,17 @@ def _reversals(source: Source, angles: Iterable[float], unit: str) -> Iterator[M
         yield Mark(angle, -float(convert(line[0], "force", unit)), Figure(_REVERSAL, at_deg=angle))
 
 
-def _panel_of_rest(samples: Samples, run: Axis, rise: Axis, x: Array, lines: list[Array], title: str) -> Panel:
+def _panel_of_rest(source: Source, samples: Samples, over: str) -> Panel:
     """Return a panel of a force and the inertia line (or the line of no force), with what lies between them shaded."""
-    force, inertia = lines[0], -lines[1] if len(lines) > 1 else np.zeros_like(x)
-    name = Words("P_0", "P_0") if len(lines) > 1 else Words("P", "P")
-    curves = [Curve(name, pieces(samples, x, force))]
-    if len(lines) > 1:
-        curves.append(Curve(_INERTIA_LINE, pieces(samples, x, inertia)))
-    return Panel(run, rise, (*curves, zero_line(curves)), tuple(between(x, inertia, force)), title=title)
+    way, *found = samples.values
+    unit, run = source.unit("force", *found), source.axis(over, way)
+    x = convert(way, source.quantity(over).kind, run.unit)
+    force, *inertia = (convert(line, "force", unit) for line in found)
+    curves = [Curve(_P_0 if inertia else _P, pieces(samples, x, force))]
+    base = -inertia[0] if inertia else np.zeros_like(x)
+    if inertia:
+        curves.append(Curve(_INERTIA_LINE, pieces(samples, x, base)))
+    return Panel(run, Axis(_P, unit), (*curves, zero_line(curves)), tuple(between(x, base, force)))
 
 
 def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
@@ -191,35 +172,26 @@ def forces(source: Source) -> Iterator[Panel]:
 
 
 def polar_effort(source: Source) -> Iterator[Panel]:
-    """Yield T drawn outward from the crank circle, R Abb. 1063."""
-    if source.having(("T",)):
-        samples = source.samples((PHI, "T"))
-        unit = source.unit("force", samples.values[1])
-        force = convert(samples.values[1], "force", unit)
-        yield polar_panel(samples, Words("T", "T"), force, unit, list(source.marks("T", unit)), _mean(source, unit))
-
-
-def _mean(source: Source, unit: str) -> Figure | None:
-    mean = getattr(source.results, "W", None)
-    return None if not mean else Figure(Words("W", "W"), float(convert(mean, "force", unit)), unit)
-
-
-def polar_panel(
-    samples: Samples, name: Words, values: Array, unit: str, marks: list[Mark], mean: Figure | None
-) -> Panel:
-    """Return values over the crank angle as a panel in polar form: outward from a circle that stands for zero."""
-    size = float(np.abs(values).max()) or 1.0
-    base = max(0.6 * size, size * 0.25 - float(values.min()))
-    x, y = _polar(samples.degrees, base + values)
-    curve = Curve(name, pieces(samples, x, y))
-    rings = [_ring(base, Figure(name, 0.0, unit))]
-    if mean and mean.value is not None:
-        rings.append(_ring(base + mean.value, mean))
-    placed = [_placed(one, base) for one in marks]
-    reach = base + max(size, 0.0)
-    spokes = [_spoke(angle, base, reach * 1.04) for angle in range(0, 360, 90)]
+    """Yield T drawn outward from the crank circle, which stands for zero, R Abb. 1063."""
+    if not source.having(("T",)):
+        return
+    samples = source.samples((PHI, "T"))
+    unit = source.unit("force", samples.values[1])
+    force = convert(samples.values[1], "force", unit)
+    size = float(np.abs(force).max()) or 1.0
+    base = max(0.6 * size, size * 0.25 - float(force.min()))
+    around = np.linspace(0.0, 360.0, 121)
+    rings = [_faint(Words("T = 0", "T = 0"), around, base)]
+    if mean := getattr(source.results, "W", None):
+        rings.append(_faint(Words("W", "W"), around, base + float(convert(mean, "force", unit))))
+    spokes = [
+        _faint(Words(f"φ = {angle:g}°", f"phi = {angle:g}"), angle, np.array([base, (base + size) * 1.04]))
+        for angle in range(0, 360, 90)
+    ]
+    curves = (Curve(source.words("T"), pieces(samples, *_polar(samples.degrees, base + force))), *rings, *spokes)
+    marks = tuple(_placed(one, base) for one in source.marks("T", unit))
     axis = Axis(Words("", ""), unit)
-    return Panel(axis, axis, (curve, *rings, *spokes), marks=tuple(placed), equal=True, plain=True)
+    yield Panel(axis, axis, curves, marks=marks, equal=True, plain=True)
 
 
 def _polar(degrees: Any, radius: Any) -> tuple[Any, Any]:
@@ -227,17 +199,9 @@ def _polar(degrees: Any, radius: Any) -> tuple[Any, Any]:
     return radius * angle.cos, radius * angle.sin
 
 
-def _ring(radius: float, figure: Figure) -> Curve:
-    around = np.linspace(0.0, 360.0, 121)
-    x, y = _polar(around, radius)
-    symbol, plain = figure.name
-    name = Words(f"{symbol} = 0", f"{plain} = 0") if figure.value == 0 else figure.name
-    return Curve(name, (Piece(x, y),), kind="faint")
-
-
-def _spoke(degrees: float, inner: float, outer: float) -> Curve:
-    x, y = _polar(degrees, np.array([inner, outer]))
-    return Curve(Words(f"φ = {degrees:g}°", f"phi = {degrees:g}"), (Piece(x, y),), kind="faint")
+def _faint(name: Words, degrees: Any, radius: Any) -> Curve:
+    """Return a ring or a spoke."""
+    return Curve(name, (Piece(*_polar(degrees, radius)),), kind="faint")
 
 
 def _placed(mark: Mark, base: float) -> Mark:

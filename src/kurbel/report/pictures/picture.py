@@ -1,7 +1,5 @@
 """What a picture is made of, whatever draws it: curves, shades and marks on panels with two axes, in units as shown."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -37,10 +35,10 @@ class Piece(NamedTuple):
     degrees, within: at which crank angles they were computed, and on which side of jumps; None where they have none.
     """
 
-    x: Array
-    y: Array
-    degrees: Array | None = None
-    within: Array | None = None
+    x: "Array"
+    y: "Array"
+    degrees: "Array | None" = None
+    within: "Array | None" = None
 
 
 class Curve(NamedTuple):
@@ -80,9 +78,9 @@ class Shade(NamedTuple):
     figure: what is written into it, at its widest place.
     """
 
-    x: Array
-    low: Array
-    high: Array
+    x: "Array"
+    low: "Array"
+    high: "Array"
     gain: bool = True
     figure: Figure | None = None
 
@@ -110,7 +108,7 @@ class Panel(NamedTuple):
     equal: bool = False
     plain: bool = False
     title: str = ""
-    frames: tuple[Frame, ...] = ()
+    frames: "tuple[Frame, ...]" = ()
 
 
 class Frame(NamedTuple):

@@ -1,17 +1,13 @@
 """Points of a curve: as many as it takes to look like the curve itself, each computed by the solver, none between."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.report.pictures.picture import Piece
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _WIDEST = 7.5  # degrees between two points at first: narrow enough that no wave hides between them
 _ROUNDS = 12

@@ -12,7 +12,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Piece, Words, extent
-from kurbel.report.pictures.sampling import Samples, pieces, sampled
+from kurbel.report.pictures.sampling import Samples, Values, pieces, sampled
 from kurbel.report.shown import too_large
 from kurbel.solver.figures import answered
 
@@ -59,15 +59,22 @@ class Source:
         breaks = self.results.breaks
         # not numpy.isin, which loads numpy.ma, a fifth of the whole start-up
         cut = np.array(sorted({*breaks.tolist(), *(angle for angle in also if 0 < angle < breaks[-1])}))
-        found = sampled(cut, lambda degrees, within: self.values(ids, degrees, within), self.fineness)
+        return self.sampled(ids, lambda degrees, within: self.values(ids, degrees, within), cut)
+
+    def sampled(self, ids: Sequence[str], values: Values, breaks: Array | None = None) -> Samples:
+        """Return what goes by these ids, sampled between the breaks, those of the results if none are given.
+
+        Raises UsageError where one has left the range of floats.
+        """
+        found = sampled(self.results.breaks if breaks is None else breaks, values, self.fineness)
         for id, line in zip(ids, found.values):
-            self.refuse_overflow(id, line)
+            if not np.isfinite(line).all():
+                raise too_large(self.quantity(id))
         return found
 
-    def refuse_overflow(self, id: str, values: Array) -> None:
-        """Raise UsageError where a column has left the range of floats."""
-        if not np.isfinite(values).all():
-            raise too_large(self.quantity(id))
+    def words(self, id: str) -> Words:
+        """Return how a column is called."""
+        return words(self.quantity(id))
 
     def unit(self, kind: str, *values: Any) -> str:
         """Return the unit in which values in SI of one kind are shown together."""
@@ -76,7 +83,11 @@ class Source:
     def extremes(self, id: str) -> list[tuple[Quantity, Extreme]]:
         """Return the key values that are the largest and the smallest value of a column, as far as there are any."""
         known = self.results.lists.key_values(self.results.command)
-        found = [(known[name], answered(self.results.answering, known[name])) for name in _ends(id) if name in known]
+        found = [
+            (known[name], answered(self.results.answering, known[name]))
+            for name in (f"{id}_max", f"{id}_min")
+            if name in known
+        ]
         turns = [(quantity, value) for quantity, value in found if isinstance(value, Extreme)]
         return turns if len({value.value for _, value in turns}) == len(turns) else []  # of a level line there are none
 
@@ -87,42 +98,34 @@ class Source:
         unit, run = self.unit(kind, *samples.values[1:]), self.axis(over, samples.values[0])
         x = convert(samples.values[0], self.quantity(over).kind, run.unit)
         curves = tuple(
-            Curve(words(self.quantity(id)), pieces(samples, x, convert(line, kind, unit)))
+            Curve(self.words(id), pieces(samples, x, convert(line, kind, unit)))
             for id, line in zip(ids, samples.values[1:])
         )
         marks = tuple(mark for id in ids for mark in self.marks(id, unit, over, run.unit))
-        name = words(self.quantity(ids[0])) if len(ids) == 1 else joined(self.quantity(id) for id in ids)
+        name = Words(*(", ".join(symbols) for symbols in zip(*map(self.words, ids))))
         return Panel(run, Axis(name, unit), curves, marks=marks, title=title)
 
     def axis(self, id: str, values: Array) -> Axis:
         """Return the axis for values of a column in SI."""
-        quantity = self.quantity(id)
-        unit = "deg" if id == PHI else self.unit(quantity.kind, values)
-        return Axis(words(quantity), unit)
+        return Axis(self.words(id), "deg" if id == PHI else self.unit(self.quantity(id).kind, values))
 
     def marks(self, id: str, unit: str, over: str = PHI, over_unit: str = "deg") -> Iterable[Mark]:
         """Yield the extremes of a column as marks at their exact place."""
         for quantity, extreme in self.extremes(id):
             at = np.array([extreme.degrees])
             (place,) = self.values((over,), at, at)
-            value = float(convert(extreme.value, quantity.kind, unit))
-            figure = Figure(words(quantity), value, unit, extreme.degrees)
-            yield Mark(float(convert(place[0], self.quantity(over).kind, over_unit)), value, figure)
+            yield mark(quantity, extreme, unit, float(convert(place[0], self.quantity(over).kind, over_unit)))
 
 
-def _ends(id: str) -> tuple[str, str]:
-    return f"{id}_max", f"{id}_min"
+def mark(quantity: Quantity, extreme: Extreme, unit: str, x: float, y: float | None = None) -> Mark:
+    """Return an extreme at a place in the units of the axes; y: its value, where none is given."""
+    value = float(convert(extreme.value, quantity.kind, unit))
+    return Mark(x, value if y is None else y, Figure(words(quantity), value, quantity.marked(unit), extreme.degrees))
 
 
 def words(quantity: Quantity) -> Words:
     """Return how a quantity is called in a picture."""
     return Words(quantity.symbol, quantity.ascii_symbol)
-
-
-def joined(quantities: Iterable[Quantity]) -> Words:
-    """Return how several quantities on one axis are called."""
-    symbols, plain = zip(*((one.symbol, one.ascii_symbol) for one in quantities))
-    return Words(", ".join(symbols), ", ".join(plain))
 
 
 def level(name: Words, value: float, x: tuple[float, float]) -> Curve:

@@ -1,18 +1,14 @@
 """Weights that take away what is unbalanced: counterweights in one plane and in two, and balance shafts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray
 from kurbel.numerics.enclosing import Circle, PlaneCurve, carried, smallest_circle
 from kurbel.solver.balance.circles import Circles
-from kurbel.solver.balance.weights import Weight
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
+from kurbel.solver.shaft.weights import Weight
 
 _SETTLED = 1e-13  # the radius, relatively
 _AT_ONCE = 6  # summits; of a curve that is a circle all points are

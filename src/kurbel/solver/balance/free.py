@@ -1,7 +1,5 @@
 """Free force and free moment of a machine over ω², and which orders they have."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -24,7 +22,7 @@ class Free(NamedTuple):
     orders: tuple[int, ...]
 
     @classmethod
-    def of(cls, products: Products, z_0: float | None) -> Free:
+    def of(cls, products: Products, z_0: float | None) -> "Free":
         """Return the sum of products, with moments taken from a place in m."""
         places = [place for place in products.places if place is not None]
         known = z_0 is not None and len(places) == len(products.places)

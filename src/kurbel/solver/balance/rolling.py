@@ -8,7 +8,7 @@ from typing import Any
 from kurbel.machine import Machine
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.state import State
-from kurbel.solver.turning.effort import CylinderEffort
+from kurbel.solver.turning.effort import efforts
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.torques import Sum
 
@@ -19,7 +19,7 @@ def rolling_moment(machine: Machine, cylinders: Sequence[CylinderForces]) -> Sum
     Of a straight slider-crank whose rod counts as two masses H does not change. Raises UsageError where no force acts.
     """
     turned = MachineEffort(machine, cylinders)
-    swirl = (CylinderEffort(one, turned.cycle, _swirl) for one in cylinders if swirls(one))
+    swirl = efforts(filter(swirls, cylinders), turned.cycle, _swirl)
     return Sum(*((-factor, part) for factor, part in turned.effort.parts), *((-1.0, one) for one in swirl))
 
 

@@ -1,18 +1,14 @@
 """Loads as vectors in the plane square to the shaft, and what of a round surface none of them ever reaches."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Flags
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.arithmetic import bearing
 from kurbel.solver.shaft.statics import Vector
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Flags
 
 HALF_CONTACT = 60.0
 """Degrees to either side of a load over which pin and shell are taken to touch."""
@@ -25,15 +21,15 @@ class Plane(NamedTuple):
     across: Any
 
     @classmethod
-    def of_throw(cls, force: Vector) -> Plane:
+    def of_throw(cls, force: Vector) -> "Plane":
         """Return a force as it stands in the frame of its throw, whose axis points outward: −D + iT."""
         return cls(-force.D, force.T)
 
-    def turned(self, cos: Any, sin: Any) -> Plane:
+    def turned(self, cos: Any, sin: Any) -> "Plane":
         """Return the load in a frame that stands behind this one by the angle of this cosine and sine."""
         return Plane(self.along * cos - self.across * sin, self.along * sin + self.across * cos)
 
-    def turned_by(self, degrees: float) -> Plane:
+    def turned_by(self, degrees: float) -> "Plane":
         """Return the same for an angle in degrees."""
         angle = CrankAngle.of(degrees)
         return self.turned(angle.cos, angle.sin) if degrees else self

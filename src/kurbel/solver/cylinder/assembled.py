@@ -1,17 +1,13 @@
 """The state of a cylinder at the nodes of a grid, of which a coarser grid has most pieces already."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
 from kurbel.solver.cylinder.drive import Drive
-
-if TYPE_CHECKING:
-    from kurbel.solver.cylinder.state import State
+from kurbel.solver.cylinder.state import State
 
 
 class Assembled:

@@ -22,11 +22,22 @@ class Following:
     def __init__(self, forces: CylinderForces, cycle: float) -> None:
         self.forces = forces
         self.drive = forces.drive
-        # whole cycles off, which is exact: beside a large position an angle would lose its digits
-        self.position = math.fmod(forces.drive.cylinder.crank_position, self.drive.cycle)
-        own = Cuts(self.drive.cuts.smooth, forces.grid.breaks[:-1])
-        self.cuts = own.shifted(self.position, cycle)
+        self.position = position(forces)
+        self.cuts = own_cuts(forces).shifted(self.position, cycle)
 
     def jets_at(self, degrees: Array, within: Array) -> State:
         """Return the state with slopes at angles (n,) of crank 1 in degrees, on the sides that hold `within`."""
         return self.drive.jets_at(degrees - self.position, within - self.position)
+
+
+def position(forces: CylinderForces) -> float:
+    """Return by how many degrees the crank of a cylinder stands behind crank 1.
+
+    Whole cycles are taken off, which is exact: beside a large position an angle would lose its digits.
+    """
+    return math.fmod(forces.drive.cylinder.crank_position, forces.drive.cycle)
+
+
+def own_cuts(forces: CylinderForces) -> Cuts:
+    """Return where something of a cylinder bends or jumps, over its own cycle."""
+    return Cuts(forces.drive.cuts.smooth, forces.grid.breaks[:-1])

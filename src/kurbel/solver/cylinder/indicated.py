@@ -1,18 +1,15 @@
 """What a measured trace tells beside forces: exponents, the pumping loop, and the spread of its cycles."""
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.numerics.extreme import Extreme
-from kurbel.solver.pressure.exponents import COMPRESSION, EXPANSION, exponent
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
     from kurbel.solver.cylinder.gas import PistonGas
     from kurbel.solver.pressure.trace import TracePressure
 
@@ -30,16 +27,16 @@ class Cycles(NamedTuple):
 class Indicated:
     """The key values of the traces of a cylinder's own piston, by their ids in SI; None where it has none."""
 
-    def __init__(self, gas: PistonGas | None) -> None:
+    def __init__(self, gas: "PistonGas | None") -> None:
         self.gas = gas
 
     @cached_property
-    def _traces(self) -> tuple[TracePressure, ...]:
+    def _traces(self) -> "tuple[TracePressure, ...]":
         ends = (self.gas.head, self.gas.crank) if self.gas else ()
         return tuple(end for end in ends if hasattr(end, "each"))  # type: ignore[misc]
 
     @property
-    def _one(self) -> TracePressure | None:
+    def _one(self) -> "TracePressure | None":
         """The only trace of the piston."""
         return self._traces[0] if len(self._traces) == 1 else None
 
@@ -52,13 +49,19 @@ class Indicated:
     @property
     def n_compression(self) -> float | None:
         """Exponent of the compression."""
-        found = exponent(self._one, COMPRESSION) if self._one else None
-        return found.value if found else None
+        return self._exponent("COMPRESSION")
 
     @property
     def n_expansion(self) -> float | None:
         """Exponent of the expansion."""
-        found = exponent(self._one, EXPANSION) if self._one else None
+        return self._exponent("EXPANSION")
+
+    def _exponent(self, stretch: str) -> float | None:
+        if not self._one:
+            return None
+        from kurbel.solver.pressure import exponents
+
+        found = exponents.exponent(self._one, getattr(exponents, stretch))
         return found.value if found else None
 
     @property
@@ -81,7 +84,7 @@ class Indicated:
             return None
         return self.gas.work / self.gas.swept_volume - self.mean_pressure_exchange
 
-    def _share(self, pressure: TracePressure) -> float:
+    def _share(self, pressure: "TracePressure") -> float:
         """Return the share of a chamber in the swept volume."""
         assert self.gas is not None
         area = self.gas.piston.head_area if pressure.setting.head_end else self.gas.piston.crank_area
@@ -152,7 +155,7 @@ class Indicated:
         return int(np.argmin(self.cycles.mean_pressure)) + 1 if self.cycles else None
 
 
-def _of_cycles(pressure: TracePressure, count: int) -> Cycles:
+def _of_cycles(pressure: "TracePressure", count: int) -> Cycles:
     """Return what one chamber alone shows in its cycles: its p_i is the area of its diagram over the stroke."""
     each = pressure.each
     at = np.mod(pressure.trace.angles + pressure.shift, pressure.setting.cycle)

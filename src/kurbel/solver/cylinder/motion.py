@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -210,19 +209,19 @@ def _curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
     return mechanism.curvature(angle)
 
 
-@dataclass(frozen=True)
 class _Evaluated:
     """A function of the mechanism with its slope; see `search.Evaluate`."""
 
-    mechanism: Mechanism
-    function: Kinematic
+    def __init__(self, mechanism: Mechanism, function: Kinematic) -> None:
+        self.mechanism = mechanism
+        self.function = function
 
     def __call__(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         return {"it": Sampled.of(self.function(self.mechanism, jet_angle(degrees)), degrees.shape)}
 
     def of(self, variant: Indices) -> _Evaluated:
         """Return the same of these variants."""
-        return replace(self, mechanism=taken(self.mechanism, variant))
+        return _Evaluated(taken(self.mechanism, variant), self.function)
 
     def on(self, grid: Grid) -> dict[str, Sampled]:
         """Return it at the nodes of a grid."""

@@ -6,14 +6,13 @@ the moment also acts on the rod, as a couple that guide and crank pin carry. The
 friction: what it changes in them is of second order in f, as with the friction circles of the books.
 """
 
-from __future__ import annotations
-
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kurbel.mechanisms import crank_formulas as formulas
+from kurbel import crank_formulas as formulas
+from kurbel.arrays import Array
 from kurbel.mechanisms import fan
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import Sampled, curves
@@ -21,7 +20,6 @@ from kurbel.solver.shaft.line import ShaftLine, shaft_obstacle
 from kurbel.solver.shaft.statics import Vector, norm
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.solver.cylinder.drive import Drive
     from kurbel.solver.cylinder.state import State
 
@@ -70,7 +68,7 @@ _NEAR = 0.5
 class PinFriction:
     """The frictions of one cylinder that are given, each as f times the radius in m, 0 where it is not."""
 
-    def __init__(self, drive: Drive) -> None:
+    def __init__(self, drive: "Drive") -> None:
         friction, shaft = drive.cylinder.friction, drive.machine.crankshaft
         assert friction is not None
         self._drive = drive
@@ -109,7 +107,7 @@ class PinFriction:
                 found += fan(float(degrees[one]), math.degrees(beside[one]))
         return np.asarray(np.mod(found, self._drive.cycle))
 
-    def moments(self, state: State) -> Rubbing:
+    def moments(self, state: "State") -> Rubbing:
         """Return the moments under the forces of a state without this friction."""
         drive, angle = state.drive, state.angle
         _, cos_psi = drive.mechanism.rod_angle(angle) or (0.0, 1.0)
@@ -123,7 +121,7 @@ class PinFriction:
             slope,
         )
 
-    def _on_journals(self, state: State) -> tuple[Vector, ...]:
+    def _on_journals(self, state: "State") -> tuple[Vector, ...]:
         """Return the forces of the throw on its bearings; without a crankshaft, that on the pin stands for their sum.
 
         Of several cylinders each counts by itself, with an equal part of what else loads the bearings of its throw.
@@ -138,12 +136,12 @@ class PinFriction:
         return tuple(Vector(force.D / count, force.T / count) for force in found)
 
 
-def on_pin(state: State) -> Vector:
+def on_pin(state: "State") -> Vector:
     """Return the force of the rod on the crank pin in N, in the frame of the throw."""
     return Vector(state.D - state.drive.rod_pull, state.T)
 
 
-def on_crosshead_pin(state: State) -> Vector:
+def on_crosshead_pin(state: "State") -> Vector:
     """Return the force of the crosshead on its pin in N, along as P and across as N, without inertia of the rod.
 
     Along it is the rod load less friction.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -40,13 +39,13 @@ _SURE = 4.0
 """Standard deviations that the noise of thousands of samples does not reach."""
 
 
-@dataclass(frozen=True)
 class Quantities:
     """Columns of a drive with their slopes at any (degrees, within); see `search.Evaluate`."""
 
-    drive: Drive
-    names: tuple[str, ...]
-    rubs: bool = True
+    def __init__(self, drive: Drive, names: tuple[str, ...], rubs: bool = True) -> None:
+        self.drive = drive
+        self.names = names
+        self.rubs = rubs
 
     def __call__(self, degrees: Array, within: Array | Inside) -> dict[str, Sampled]:
         state = self.drive.jets_at(degrees, within)
@@ -62,7 +61,7 @@ class Quantities:
 
     def of(self, variant: Indices) -> Quantities:
         """Return the same of these variants (n,)."""
-        return replace(self, drive=self.drive.taken(variant))
+        return Quantities(self.drive.taken(variant), self.names, self.rubs)
 
 
 class Searched:

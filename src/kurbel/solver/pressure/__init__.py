@@ -4,21 +4,19 @@ A kind of chamber is a class of `kurbel.machine`, named in `_CHAMBER` of `kurbel
 and in `_PROCESSES` or `_PRESSURES` here; its module is imported only when a machine has one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.variants import Chambers, count_of, taken
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
     from kurbel.solver.pressure.segments import Processes
 
 
@@ -37,7 +35,7 @@ class Setting(NamedTuple):
     absolute: bool
     mirrored: bool = False
 
-    def taken(self, index: Indices) -> Setting:
+    def taken(self, index: Indices) -> "Setting":
         """Return the setting of these variants, with numbers of the shape of the index."""
         return self._replace(mechanism=taken(self.mechanism, index), ambient=taken(self.ambient, index))
 
@@ -81,7 +79,7 @@ class Pressure(Protocol):
         """
         ...
 
-    def taken(self, index: Indices) -> Pressure:
+    def taken(self, index: Indices) -> "Pressure":
         """Return the pressure of these of many variants, at angles of the shape of the index."""
         ...
 
@@ -114,7 +112,7 @@ def pressure_in(chamber: Any, setting: Setting) -> Pressure:
     return _load(chamber, _PRESSURES)(chamber, setting)  # type: ignore[no-any-return]
 
 
-def _processes(chamber: Any, setting: Setting) -> Processes:
+def _processes(chamber: Any, setting: Setting) -> "Processes":
     from kurbel.solver.pressure.segments import Processes
 
     chambers = chamber if isinstance(chamber, Chambers) else Chambers((chamber,), None)

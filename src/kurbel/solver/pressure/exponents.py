@@ -1,16 +1,14 @@
 """The exponent of p V^n = const that a measured compression or expansion follows."""
 
-from __future__ import annotations
-
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.solver.pressure.trace import TracePressure
 
 COMPRESSION = -90.0, -40.0
@@ -38,7 +36,7 @@ class Exponent(NamedTuple):
 AS_GIVEN = Supposed()
 
 
-def exponent(pressure: TracePressure, stretch: tuple[float, float], supposed: Supposed = AS_GIVEN) -> Exponent | None:
+def exponent(pressure: "TracePressure", stretch: tuple[float, float], supposed: Supposed = AS_GIVEN) -> Exponent | None:
     """Return −d ln p/d ln V by least squares over a stretch of angle, with absolute pressures.
 
     None without a clearance, with fewer than five samples there, or where the pressure is not above the vacuum.
@@ -63,14 +61,14 @@ def _slope(volumes: Array, pressures: Array) -> Exponent:
     return Exponent(0.0 - slope, math.sqrt(float(left @ left) / (len(left) - 2) / square))
 
 
-def from_dead_centre(pressure: TracePressure) -> Array:
+def from_dead_centre(pressure: "TracePressure") -> Array:
     """Return the angles (n,) in degrees of the samples from the chamber's own (firing) dead centre, −½ to ½ cycle."""
     inner, outer = pressure.setting.mechanism.dead_centres()
     own, cycle = (inner if pressure.setting.head_end else outer), pressure.setting.cycle
     return np.asarray(np.remainder(pressure.trace.angles + pressure.shift - own + cycle / 2, cycle) - cycle / 2)
 
 
-def stroke_fraction(pressure: TracePressure, after: Array) -> Array:
+def stroke_fraction(pressure: "TracePressure", after: Array) -> Array:
     """Return the fraction (n,) of the stroke from the chamber's smallest volume, so many degrees after it."""
     mechanism, head = pressure.setting.mechanism, pressure.setting.head_end
     inner, outer = mechanism.dead_centres()

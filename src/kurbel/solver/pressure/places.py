@@ -1,19 +1,15 @@
 """Where the segments of a process lie over the crank angle, of one machine or of many variants."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.machine.variants import taken
 from kurbel.numerics.cycles import Flat, located
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.pressure import Setting
 from kurbel.solver.pressure.segments import Processes, Segment
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
 
 _NO_WIDTH = 1e-10
 """Degrees of crank angle; over less a line cannot be followed, and its segment is a jump."""

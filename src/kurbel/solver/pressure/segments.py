@@ -1,17 +1,15 @@
 """The segments that lines of cards are made of: straight over the stroke, or polytropic, each with its closed area."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Indices
 from kurbel.machine.variants import count_of
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Indices
     from kurbel.solver.pressure import Setting
 
 
@@ -68,7 +66,7 @@ class Processes(NamedTuple):
     each: tuple[Process, ...]
     which: Indices | None = None
 
-    def variants(self, setting: Setting) -> int | None:
+    def variants(self, setting: "Setting") -> int | None:
         """Return of how many variants they are in this setting; None where all have the same."""
         return count_of(setting.mechanism) if self.which is None else len(self.which)
 

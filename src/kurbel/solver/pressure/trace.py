@@ -1,13 +1,12 @@
 """The pressure of a measured trace: straight over the crank angle between its samples."""
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.trace import Trace
 from kurbel.numerics.extreme import Extreme
@@ -15,10 +14,6 @@ from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
 from kurbel.solver.pressure import Setting
 from kurbel.solver.pressure.corrected import corrected
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
-
 
 _OF_MEDIAN = 1.4826
 """Standard deviation over the median of the magnitude, of what is normally distributed."""
@@ -88,7 +83,7 @@ class TracePressure:
         value = held.p + held.gradient * (held.since + (angle.degrees - held.within))
         return Jet(value, held.gradient * (180 / math.pi)) if isinstance(x, Jet) else value
 
-    def taken(self, index: Indices) -> TracePressure:
+    def taken(self, index: Indices) -> "TracePressure":
         """Return itself: a trace is of one machine."""
         return self
 

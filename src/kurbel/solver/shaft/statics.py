@@ -14,20 +14,20 @@ pin gives A_D and B_D of its own sign. An overhung crank has nothing before its 
 its only web and bearing B.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.units import GRAVITY
+from kurbel.machine import Cylinder, Machine
 from kurbel.numerics.arithmetic import where
 from kurbel.numerics.jet import Jet
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.machine.crankshaft import Crankshaft
 
 
@@ -66,6 +66,19 @@ def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Vec
     )
 
 
+def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> Vector:
+    """Return the weight of the flywheel in the frame of a cylinder's throw; nothing where its direction is not known.
+
+    angle: crank angles φ (n,) of that cylinder; what inclines is the stroke line of cylinder 1.
+    """
+    shaft, first = machine.crankshaft, machine.cylinders[0]
+    lean = machine.lean_of(first)
+    if shaft is None or lean is None or not shaft.flywheel_mass:
+        return Vector(0.0, 0.0)
+    inclination = lean + cylinder.bank_angle - first.bank_angle
+    return weight_in_throw(shaft.flywheel_mass * GRAVITY, angle, inclination)
+
+
 def turned(force: Vector, degrees: float) -> Vector:
     """Return a force in the frame of one throw as it is in that of another, which stands `degrees` behind it.
 
@@ -97,7 +110,7 @@ class FreeBody:
     The torque T r leaves the shaft at the flywheel; nothing is taken off at A.
     """
 
-    def __init__(self, shaft: Crankshaft, crank: float, pin: Vector, weight: Vector) -> None:
+    def __init__(self, shaft: "Crankshaft", crank: float, pin: Vector, weight: Vector) -> None:
         self.shaft = shaft
         self.crank = crank
         self.pin = pin

@@ -6,17 +6,13 @@ piece, so that the sign of s, of which the negative ones count the modes below Ï
 k differ by rounding. A symmetric eigenproblem would lose the low modes of a chain of very unequal masses.
 """
 
-from __future__ import annotations
-
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.solver.shaft_line.chain import Chain
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
 
 _NOTHING = 1e-40
 """What stands for a quotient of exactly zero: a mass that stands still."""

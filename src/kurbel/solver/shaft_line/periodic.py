@@ -4,21 +4,17 @@ All masses move nearly uniformly: d/dt = ω_n d/dφ. With the torque T = S + d (
 Ṡ = k (ω_i − ω_{i+1}), every mass has J ω̇ = T before it − T behind it − c (ω − ω_n) + M, and one of them − L(ω).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.numerics.collocation import Periodic, periodic
 from kurbel.numerics.elements import Elements
 from kurbel.solver.shaft_line.chain import Chain
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
 
 _SWING = 120.0
 """Degrees of a natural oscillation that one element may hold at first, …"""
@@ -112,7 +108,7 @@ class ChainEquation:
             floor[..., self._risen] = -self._height
         return floor
 
-    def eased(self, by: float) -> ChainEquation:
+    def eased(self, by: float) -> "ChainEquation":
         """See `collocation.Equation`: the load minds the speed as if its mass had so much more J ω_n², in N m."""
         return ChainEquation(self.chain, self.omega, self.order, self.driving, self.rise, by)
 

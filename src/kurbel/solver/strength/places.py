@@ -20,8 +20,6 @@ journal A is bent by F and twisted by T r, at the web and in its bearing, and th
 A web is bent out of the plane of the throw most at one end of its arm, at the axis of the pin or at that of the shaft.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from operator import attrgetter
 from typing import Any, NamedTuple

@@ -1,23 +1,18 @@
 """Steady forced vibration of a shaft line: what the orders of all torques make of it at any speed."""
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray, Flags
 from kurbel.machine.shaft_line import ShaftLine
 from kurbel.numerics.waves import crests
 from kurbel.solver.shaft_line.chain import Chain
 from kurbel.solver.shaft_line.response import responding, twisting
 from kurbel.solver.turning.harmonics import MachineOrders, Spectrum, spectrum
 from kurbel.solver.turning.speed_lines import speed_law
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray, Flags
-
 
 _ENDLESS = 1e9
 """Torque in a piece, over the largest that drives, beyond which nothing but rounding bounds it."""

@@ -1,20 +1,19 @@
 """What `kurbel torsion` answers: natural vibrations of the shaft line, critical speeds, and forced vibration."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
 from kurbel.numerics.collocation import Unsettled
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Results
+from kurbel.solver.figures import Columns, Results
 from kurbel.solver.shaft_line.chain import Chain
 from kurbel.solver.shaft_line.modes import Holzer, Modes
 from kurbel.solver.torsion.forced import Excitation, Vibration, excitation, stress
@@ -22,9 +21,6 @@ from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.turning.effort import CylinderEffort, reduced_inertia
 from kurbel.solver.turning.harmonics import MachineOrders, every_order, phases
 from kurbel.solver.turning.machine_effort import MachineEffort, MovingInertia
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 NEAR = 0.1
 """A critical speed so near the working speed, relatively, is worth a note."""
@@ -87,7 +83,9 @@ class ShaftVibration(Results):
         """Return J in kg m²: what is given, the flywheel, and the mean of what the parts of the cylinders reduce to."""
         wheel = self.machine.flywheel.inertia if self.machine.flywheel else None
         moving = [self._forces[name] for name in mass.cylinders if self._forces[name].drive.cylinder.masses]
-        reduced = (MovingInertia([CylinderEffort(one, self.cycle, reduced_inertia)], self.cycle).mean for one in moving)
+        reduced = (
+            MovingInertia([CylinderEffort((one,), self.cycle, reduced_inertia)], self.cycle).mean for one in moving
+        )
         inertia = math.fsum((mass.inertia, mass.flywheel * (wheel or 0.0), *reduced))
         if not inertia > 0:
             raise UsageError(f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'")
@@ -206,7 +204,7 @@ class ShaftVibration(Results):
         )
 
     @cached_property
-    def pieces(self) -> tuple[PieceTorque, ...]:
+    def pieces(self) -> "tuple[PieceTorque, ...]":
         """The torque in every piece at the working speed; none where no forced vibration can be told."""
         if self.vibration is None:
             return ()
@@ -264,18 +262,7 @@ class PieceTorque:
         """Half of what the stress swings, in Pa."""
         return self._stressed(self.M_vibratory)
 
-    def at(self, degrees: Array) -> WaveColumns:
+    def at(self, degrees: Array) -> Columns:
         """Return torque and stress at crank angles (n,) in degrees."""
-        return WaveColumns(self._vibration.over(self._piece, degrees), self._stress)
-
-
-class WaveColumns(NamedTuple):
-    """Torque in a piece in N m over the angle (n,), and by what it becomes a stress."""
-
-    M_shaft: Array
-    factor: float | None
-
-    @property
-    def tau(self) -> Array | None:
-        """Stress in Pa (n,)."""
-        return None if self.factor is None else self.M_shaft * self.factor
+        torque, factor = self._vibration.over(self._piece, degrees), self._stress
+        return Columns(degrees, {"M_shaft": lambda: torque, "tau": lambda: None if factor is None else torque * factor})

@@ -1,12 +1,17 @@
-"""What one cylinder gives to the shaft, over the angle of crank 1: its torque, that of its masses, their inertia."""
+"""What cylinders give to the shaft, over the angle of crank 1: its torque, that of its masses, their inertia."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from kurbel.machine.alike import gathered, work_alike
+from kurbel.numerics.brackets import Sampled
+from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
-from kurbel.solver.cylinder.following import Following
+from kurbel.solver.cylinder.following import own_cuts, position
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.state import State
 
@@ -14,20 +19,34 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
 
 
-class CylinderEffort(Following):
-    """A torque of one cylinder at the angles φ of crank 1.
+class CylinderEffort:
+    """The sum of a torque of cylinders that work alike, at the angles φ of crank 1: one cylinder, asked at all angles.
 
     torque_in: what is asked of the cylinder's state: all its torque, or one of the functions below.
     """
 
-    def __init__(self, forces: CylinderForces, cycle: float, torque_in: Callable[[State], Any]) -> None:
-        super().__init__(forces, cycle)
+    def __init__(self, alike: Sequence[CylinderForces], cycle: float, torque_in: Callable[[State], Any]) -> None:
+        self._drive = alike[0].drive
+        self._positions = np.array([position(one) for one in alike])
         self._torque_in = torque_in
+        cuts = own_cuts(alike[0])
+        self.cuts = Cuts.joined([cuts.shifted(behind, cycle) for behind in self._positions.tolist()])
 
     def torque(self, degrees: Array, within: Array) -> Jet:
         """Return the torque; see `Torque`."""
-        torque: Jet = self._torque_in(self.jets_at(degrees, within))
-        return torque
+        behind = self._positions.reshape(-1, *(1 for _ in degrees.shape))
+        angles = degrees - behind
+        torque = self._torque_in(self._drive.jets_at(angles.ravel(), (within - behind).ravel()))
+        every = Sampled.of(torque, (angles.size,))
+        return Jet(*(part.reshape(angles.shape).sum(axis=0) for part in every))
+
+
+def efforts(
+    cylinders: Iterable[CylinderForces], cycle: float, torque_in: Callable[[State], Any]
+) -> tuple[CylinderEffort, ...]:
+    """Return a torque of several cylinders, those that work alike as one."""
+    groups = gathered(cylinders, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder))
+    return tuple(CylinderEffort(group, cycle, torque_in) for group in groups)
 
 
 def inertia_torque(state: State) -> Any:

@@ -4,22 +4,19 @@ M has a corner or a jump wherever a card has one; samples at equal angles see th
 integrated by itself. What the inertia forces give is told apart: it goes with ω², the rest does not mind the speed.
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray
 from kurbel.numerics.gauss import GAUSS
 from kurbel.numerics.grid import Pieces
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.torques import Sum, Torque
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
 
 HIGHEST = 24
 """Order up to which they are told unless others are asked for."""
@@ -44,17 +41,22 @@ class Spectrum(NamedTuple):
     orders: Array
     amplitudes: ComplexArray
 
-    def times(self, factor: float) -> Spectrum:
+    def times(self, factor: float) -> "Spectrum":
         """Return that of the torque times a factor."""
         return self._replace(mean=factor * self.mean, amplitudes=factor * self.amplitudes)
 
-    def plus(self, other: Spectrum) -> Spectrum:
+    def plus(self, other: "Spectrum") -> "Spectrum":
         """Return that of the sum with a torque of the same orders."""
         return self._replace(mean=self.mean + other.mean, amplitudes=self.amplitudes + other.amplitudes)
 
-    def cleared(self, size: float) -> Spectrum:
+    def cleared(self, size: float) -> "Spectrum":
         """Return it with 0 for what is rounding beside torques of this size in N m."""
         return self._replace(amplitudes=np.where(np.abs(self.amplitudes) > _ROUNDING * size, self.amplitudes, 0.0))
+
+    def turned(self, degrees: float) -> "Spectrum":
+        """Return that of the torque put earlier by an angle."""
+        turn = np.exp(1j * np.radians(np.mod(self.orders * degrees, 360.0)))
+        return self._replace(amplitudes=self.amplitudes * turn)
 
     @property
     def size(self) -> float:
@@ -100,35 +102,25 @@ class Orders(NamedTuple):
     @property
     def whole(self) -> Spectrum:
         """Both together."""
-        return self.gas if self.inertia is None else self.gas.plus(self.inertia)
+        return self.at_speed(1.0)
+
+    def at_speed(self, ratio: float) -> Spectrum:
+        """Return both together at a speed, over the nominal one."""
+        return self.gas if self.inertia is None else self.gas.plus(self.inertia.times(ratio**2))
 
     @property
     def size(self) -> float:
         """The largest of the parts of both in N m."""
         return max(one.size for one in self if one)
 
-    def cleared(self, size: float) -> Orders:
-        """Return both with 0 for what is rounding beside torques of this size in N m."""
-        return Orders(*(one and one.cleared(size) for one in self))  # type: ignore[arg-type]
+    def each(self, change: Callable[[Spectrum], Spectrum]) -> "Orders":
+        """Return both, each changed."""
+        return Orders(change(self.gas), self.inertia and change(self.inertia))
 
-    def at_speed(self, ratio: float) -> Spectrum:
-        """Return both together at a speed, over the nominal one."""
-        return self.gas if self.inertia is None else self.gas.plus(self.inertia.times(ratio**2))
-
-    def times(self, gas: float, inertia: float) -> Orders:
-        """Return both, each times a factor."""
-        return Orders(self.gas.times(gas), None if self.inertia is None else self.inertia.times(inertia))
-
-    def plus(self, other: Orders) -> Orders:
+    def plus(self, other: "Orders") -> "Orders":
         """Return the orders of two torques together."""
         one, two = self.inertia, other.inertia
         return Orders(self.gas.plus(other.gas), one.plus(two) if one and two else one or two)
-
-    def turned(self, degrees: float) -> Orders:
-        """Return those of the torque put earlier by an angle."""
-        turn = np.exp(1j * np.radians(np.mod(self.gas.orders * degrees, 360.0)))
-        each = (one and one._replace(amplitudes=one.amplitudes * turn) for one in self)
-        return Orders(*each)  # type: ignore[arg-type]
 
 
 class CylinderOrders:
@@ -165,8 +157,9 @@ class MachineOrders:
         rest = effort if inertia is None else Sum((1.0, effort), (-1.0, inertia))
         of_masses = None if inertia is None else spectrum(inertia, self.orders)
         found = Orders(spectrum(rest, self.orders), of_masses)
-        found = found.cleared(found.size)
-        return CylinderOrders(forces, found, found.turned(forces.drive.cylinder.crank_position))
+        size, behind = found.size, forces.drive.cylinder.crank_position
+        found = found.each(lambda one: one.cleared(size))
+        return CylinderOrders(forces, found, found.each(lambda one: one.turned(behind)))
 
     @cached_property
     def machine(self) -> Orders:
@@ -178,7 +171,7 @@ class MachineOrders:
         for other in others:
             total = total.plus(other)
         size = math.fsum(one.size for one in each)
-        return total.cleared(size).times(self.turned.efficiency, self.turned.efficiency)
+        return total.each(lambda one: one.cleared(size).times(self.turned.efficiency))
 
     @property
     def M_mean(self) -> float:

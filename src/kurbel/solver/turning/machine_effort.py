@@ -1,14 +1,13 @@
 """The turning effort of the whole machine, what it works against, and the masses that move with it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -16,12 +15,10 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.piecewise import Piecewise
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.turning.effort import CylinderEffort, inertia_torque, reduced_inertia
+from kurbel.solver.cylinder.state import State
+from kurbel.solver.turning.effort import CylinderEffort, efforts, inertia_torque, reduced_inertia
 from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.torques import Diagram, Sum, Torque, known_torque
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
@@ -58,7 +55,7 @@ class MachineEffort:
         """The torque without the losses of the machine."""
         if self.machine.effort:
             return Sum((1.0, known_torque(self.machine.effort, self.cycle)))
-        return Sum(*((1.0, one.effort) for one in self.of_cylinders))
+        return Sum(*((1.0, one) for one in efforts(self._driving, self.cycle, _effort)))
 
     @cached_property
     def of_cylinders(self) -> tuple[Driving, ...]:
@@ -67,8 +64,8 @@ class MachineEffort:
         return tuple(
             Driving(
                 forces,
-                CylinderEffort(forces, self.cycle, lambda state: state.M),
-                CylinderEffort(forces, self.cycle, inertia_torque) if id(forces) in moving else None,
+                CylinderEffort((forces,), self.cycle, _effort),
+                CylinderEffort((forces,), self.cycle, inertia_torque) if id(forces) in moving else None,
             )
             for forces in self._driving
         )
@@ -93,7 +90,7 @@ class MachineEffort:
     @cached_property
     def masses(self) -> tuple[CylinderEffort, ...]:
         """The torques of the moving masses of the cylinders."""
-        return tuple(one.inertia for one in self.of_cylinders if one.inertia)
+        return efforts(self._moving, self.cycle, inertia_torque)
 
     @cached_property
     def excess(self) -> Excess:
@@ -111,11 +108,13 @@ class MachineEffort:
         return Excess(Sum(*self.effort.parts, *whole), self.excess.load)
 
     @cached_property
-    def inertia(self) -> MovingInertia:
+    def inertia(self) -> "MovingInertia":
         """What the moving masses add to the inertia of the shaft."""
-        return MovingInertia(
-            [CylinderEffort(forces, self.cycle, reduced_inertia) for forces in self._moving], self.cycle
-        )
+        return MovingInertia(efforts(self._moving, self.cycle, reduced_inertia), self.cycle)
+
+
+def _effort(state: State) -> Any:
+    return state.M
 
 
 class MovingInertia:

@@ -1,0 +1,101 @@
+"""How the text behind an option is read; what cannot be read is told with the option that it stands behind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import click
+
+Value = TypeVar("Value")
+_MOST_SPEEDS = 10_000
+
+
+def _told(read: Callable[[str], Value], text: str) -> Value:
+    """Return what is read; what the units refuse is told as click tells it."""
+    from kurbel.errors import UnitError
+
+    try:
+        return read(text)
+    except UnitError as error:
+        raise click.BadParameter(str(error)) from None
+
+
+def number(text: str | float) -> float:
+    """Return a finite number with a decimal point, also 10/3 or 75 %."""
+    if not isinstance(text, str):  # what stands for it where it is not given
+        return text
+    from kurbel.declared.numerals import parse_ratio
+
+    return _told(parse_ratio, text)
+
+
+def numbers(text: str) -> tuple[float, ...]:
+    """Return numbers separated by commas, in the order given."""
+    return tuple(map(number, text.split(",")))
+
+
+def words(text: str) -> tuple[str, ...]:
+    """Return words separated by commas, in the order given, without those that are empty."""
+    return tuple(word.strip() for word in text.split(",") if word.strip())
+
+
+def columns(text: str) -> tuple[str, ...]:
+    """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
+    from kurbel.declared.quantities import COLUMNS
+
+    named = words(text)
+    if all(word in COLUMNS for word in named):
+        return named
+    from kurbel.declared.quantity import ambiguity, called, joined
+    from kurbel.mechanisms import every_quantity
+
+    known = [column for column in every_quantity().all_columns if column.commands]
+
+    def only(name: str) -> str:
+        found = called(name, known)
+        if wrong := ambiguity(name, found):
+            raise click.BadParameter(wrong)
+        return found[0] if found else name  # the report knows what this machine has
+
+    return tuple(map(only, joined(named, known)))
+
+
+def speeds(text: str) -> tuple[float, ...]:
+    """Return speeds in revolutions per second, in the order given.
+
+    They have one unit or each its own: `300, 350 rpm`; or they go from, to, by steps: `300:1500:10 rpm`.
+    """
+    from kurbel.declared.units import parse_quantity, written_unit
+
+    each = text.replace(":", ",").split(",")
+    unit = written_unit(each[-1])
+    found = tuple(
+        _told(lambda one: parse_quantity(one, "speed"), one if written_unit(one) else f"{one} {unit}".strip())
+        for one in each
+    )
+    if ":" in text:
+        found = _stepped(found, text)
+    if not all(speed > 0 for speed in found):
+        raise click.BadParameter(f"'{text}': a speed is more than 0")
+    return found
+
+
+def _stepped(found: tuple[float, ...], text: str) -> tuple[float, ...]:
+    if len(found) != 3 or "," in text or not found[2] > 0 or found[1] < found[0]:
+        raise click.BadParameter(f"'{text}': write from, to and step as '300:1500:10 rpm'")
+    low, high, step = found
+    count = (high - low) / step
+    if count > _MOST_SPEEDS:
+        raise click.BadParameter(f"'{text}': more than {_MOST_SPEEDS} speeds; take a larger step")
+    return tuple(low + step * index for index in range(int(count + 1e-9) + 1))
+
+
+def spread(text: str) -> tuple[str, str]:
+    """Return a dotted key with its standard uncertainty as a text."""
+    from kurbel.declared.forms.uncertainties import spread_text
+
+    key, _, size = text.partition("=")
+    if not (key.strip() and spread_text(size)):
+        raise click.UsageError(f"--uncertainty {text}: write KEY=SPREAD, above 0, such as bore='0.2 mm'.")
+    return key.strip(), spread_text(size)

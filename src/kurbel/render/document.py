@@ -1,0 +1,104 @@
+"""A report as documents have it, Markdown, HTML and LaTeX: one walk through it, and what each of them must write."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple, Protocol
+
+from kurbel.render import Look
+from kurbel.render.numbers import angle
+from kurbel.render.prose import number_text, sentence_text
+from kurbel.render.sheet import part_name, sheets
+from kurbel.report.alike import told_once
+from kurbel.report.tables import KeyValue, Report
+
+ON_PAPER = 9
+"""Columns of a table beside that of the angle: what a page of A4 holds; more make a table of their own."""
+KEY_VALUE_HEADS = ("Symbol", "Value", "Unit", "At", "Meaning")
+
+
+class Table(NamedTuple):
+    """A table of texts: heads of its columns with their units, and its rows.
+
+    of_row: how many columns are heads of their rows, such as crank angles; names: how many are words; all others are
+    numbers.
+    """
+
+    caption: str
+    heads: Sequence[tuple[str, str]]
+    rows: Iterable[Sequence[str]]
+    of_row: int
+    names: int
+
+
+class _Writer(Protocol):
+    """What a format writes: the texts are in the characters of the output, and none is escaped yet.
+
+    across: the most columns of numbers in a table, None for all of them in one.
+    """
+
+    @property
+    def across(self) -> int | None: ...
+    def title(self, text: str) -> Iterator[str]: ...
+    def paragraph(self, text: str) -> Iterator[str]: ...
+    def table(self, table: Table) -> Iterator[str]: ...
+    def key_values(self, title: str, found: Iterable[KeyValue]) -> Iterator[str]: ...
+    def items(self, title: str, lines: Sequence[str]) -> Iterator[str]: ...
+
+
+def document(report: Report, look: Look, writer: _Writer) -> Iterator[str]:
+    """Yield the report, piece by piece, as the writer writes it; equal cylinders are told once."""
+    report = told_once(report)
+    yield from writer.title(look.charset.text(report.title))
+    for text in report.head:
+        yield from writer.paragraph(look.charset.text(text))
+    for table in (*_angle_tables(report, look, writer.across), *_place_tables(report, look, writer.across)):
+        yield from writer.table(table)
+    for text in filter(None, (report.mirrored, *report.notes)):
+        yield from writer.paragraph(sentence_text(text, look))
+    for part in report.all_parts:
+        name = part_name(report, part, look)
+        said = f": {name}" if name else ""
+        if part.key_values:
+            yield from writer.key_values(f"Key values{said}", part.key_values)
+        if part.left_out:
+            lines = [sentence_text(f"{one.what}: {one.why}", look) for one in part.left_out]
+            yield from writer.items(f"Left out{said}", lines)
+        if part.warnings:
+            yield from writer.items(f"Warnings{said}", [sentence_text(one, look) for one in part.warnings])
+
+
+def _angle_tables(report: Report, look: Look, across: int | None) -> Iterator[Table]:
+    for sheet in sheets(report, look):
+        for band in sheet.bands:
+            for part in _parts(len(band.rows), across):
+                columns = [*sheet.heads, *band.rows[part]]
+                heads = [(row.symbol, row.unit) for row in columns]
+                yield Table(band.name, heads, zip(*(row.cells for row in columns)), len(sheet.heads), 0)
+
+
+def _place_tables(report: Report, look: Look, across: int | None) -> Iterator[Table]:
+    from kurbel.render.place_table import cells_of
+
+    for one in (one for part in report.all_parts for one in part.place_tables):
+        cells = cells_of(one, look)
+        for part in _parts(len(cells.heads), across):
+            heads = [*((head, "") for head in one.heads), *cells.heads[part]]
+            rows = [(*names, *texts[part]) for names, texts in zip(cells.names, cells.rows)]
+            yield Table(look.charset.text(one.title), heads, rows, 0, len(one.heads))
+
+
+def _parts(count: int, across: int | None) -> Iterator[slice]:
+    """Yield what of so many columns each table has; of none there is one table, too."""
+    most = across or max(count, 1)
+    return (slice(start, start + most) for start in range(0, max(count, 1), most))
+
+
+def key_value_cells(one: KeyValue, look: Look) -> tuple[str, ...]:
+    """Return symbol, value, unit, where it stands, and what it is."""
+    charset = look.charset
+    return (
+        charset.symbol(one.symbol, one.ascii_symbol),
+        number_text(one, look),
+        charset.unit(one.unit),
+        "" if one.at_deg is None else angle(one.at_deg, look.comma) + charset.degree,
+        sentence_text(one.text, look),
+    )

@@ -1,0 +1,98 @@
+"""What looks wrong in what was given: sizes, crank pins and cards; said as notes, since the file may be right."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from kurbel.declared.unit_systems import show
+from kurbel.machine import Cylinder, Machine
+
+if TYPE_CHECKING:
+    from kurbel.machine.indicator import Card
+    from kurbel.machine.piston import Piston
+
+_LARGEST_BORE = 5.0  # m; the widest cylinder built, of the Cruquius engine of 1849, has 3.66 m
+_LARGEST_MASS = 1e5  # kg going to and fro in one cylinder; those of the largest marine diesels weigh some 2e4
+_HIGHEST_SPEED = 1000.0  # 1/s; model racing engines stay below 700
+_ASK = "is beyond anything built; is its unit right?"
+_SAME_PLACE = 1e-9  # m
+_SAME_ANGLE = 1e-6  # degrees
+_PLAIN = 0.02
+"""Lean of a card, over its range of pressures, below which it has no high end; one open for half the stroke has ¼."""
+
+
+def speed_notes(machine: Machine) -> Iterable[str]:
+    """Yield a note on a speed that no crank has reached."""
+    if machine.speed is not None and machine.speed > _HIGHEST_SPEED:
+        yield f"a speed of {show(machine.speed, 'speed')} {_ASK}"
+
+
+def size_notes(cylinder: Cylinder) -> Iterable[str]:
+    """Yield a note on each bore, and on moving parts, that no machine has had."""
+    for piston in cylinder.pistons:
+        if piston.bore > _LARGEST_BORE:
+            yield f"{piston.name}: a bore of {show(piston.bore, 'length')} {_ASK}"
+    if cylinder.masses:
+        rod = cylinder.masses.connecting_rod
+        moving = cylinder.masses.parts + (rod.mass if rod else 0.0)
+        if moving > _LARGEST_MASS:
+            yield f"a mass of {show(moving, 'mass')} in moving parts {_ASK}"
+
+
+def pin_notes(machine: Machine) -> Iterator[str]:
+    """Yield which cylinders that stand at one place along the shaft share no crank pin."""
+    placed = [one for one in machine.cylinders if one.axial_position is not None]
+    for first, second in pairwise(sorted(placed, key=_place)):
+        apart = math.remainder(_throw(second) - _throw(first), 360.0)
+        if _place(second) - _place(first) <= _SAME_PLACE and abs(apart) > _SAME_ANGLE:
+            yield (
+                f"{first.name} and {second.name} stand at one place along the shaft, but their throws "
+                f"{show(abs(apart), 'angle')} apart: they share no crank pin. Two on one pin have crank positions that "
+                "differ as their bank angles do; throws of their own need an 'axial_position' each"
+            )
+
+
+def _place(cylinder: Cylinder) -> float:
+    return cylinder.axial_position or 0.0
+
+
+def _throw(cylinder: Cylinder) -> float:
+    """Return where its throw stands at φ = 0, in degrees."""
+    return cylinder.bank_angle - cylinder.crank_position
+
+
+def card_end_notes(piston: Piston) -> Iterable[str]:
+    """Yield a note where both ends of a piston have their high pressure on the same side, at the same crank angle.
+
+    Their cards may be drawn from the same dead centre.
+    """
+    if not piston.indicator:
+        return
+    from kurbel.machine.indicator import Card
+
+    leans = [_lean(end) for end in (piston.indicator.head_end, piston.indicator.crank_end) if isinstance(end, Card)]
+    if len(leans) < 2 or min(leans) >= -_PLAIN or max(leans) <= _PLAIN:
+        return
+    end, centre = ("crank end", "outer") if leans[1] < 0 else ("head end", "inner")
+    yield (
+        f"{piston.name}, {end}: both ends have their high pressure at the same crank angle; a card counts from its own "
+        f"dead centre, that of the {end} from the {centre} one: is it drawn from the other?"
+    )
+
+
+def _lean(card: Card) -> float:
+    """Return the mean of p (1 − 2z) over both strokes by the range of p: positive where p is high at small volumes."""
+    pressures = [p for line in card.lines for p in line.pressures]
+    middle, span = (max(pressures) + min(pressures)) / 2, max(pressures) - min(pressures)
+    points = [pairwise(zip(line.fractions, line.pressures)) for line in card.lines]
+    parts = [_part(z, p - middle, z2, p2 - middle) for line in points for (z, p), (z2, p2) in line]
+    return sum(parts) / (span * len(card.lines)) if span else 0.0
+
+
+def _part(z: float, p: float, next_z: float, next_p: float) -> float:
+    """Return ∫ p (1 − 2z) |dz| over a straight piece, by Simpson's rule, which is exact."""
+    ends = p * (1 - 2 * z) + next_p * (1 - 2 * next_z)
+    return abs(next_z - z) / 6 * (ends + 2 * (p + next_p) * (1 - z - next_z))
