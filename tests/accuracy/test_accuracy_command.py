@@ -196,6 +196,7 @@ def test_a_picture_that_cannot_be_written(tmp_path: Path) -> None:
     assert "cannot write" in result.stderr
 
 
+@pytest.mark.slow
 def test_plot_is_imported_only_for_a_picture() -> None:
     import subprocess
 

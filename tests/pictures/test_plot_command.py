@@ -131,6 +131,7 @@ def test_matplotlib_is_imported_only_for_png_and_pdf(command: list[str], tmp_pat
     assert done.returncode == 0, done.stderr.decode()
 
 
+@pytest.mark.slow
 def test_no_display_is_needed(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     nowhere = {
