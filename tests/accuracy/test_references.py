@@ -78,7 +78,7 @@ def test_motion_and_its_derivatives(rod: float, offset: float) -> None:
         for degrees in (17.5, 90.0, 200.0, 333.25):
             phi = mp.radians(mpmath.mpf(degrees))
             at = motion.at(Decimal(degrees))
-            assert close(at.x, x(phi), 35)
+            assert close(at.coordinate, x(phi), 35)
             assert close(at.slope, mp.diff(x, phi), 18)
             assert close(at.curvature, mp.diff(x, phi, 2), 12)
 

@@ -54,8 +54,8 @@ SERVES = {"crank_formulas": "slider_crank", "ram": "slotted_lever", "four_bar_lo
 
 
 def planted(file: str, function: str, right: str, wrong: str) -> types.ModuleType:
-    """Return the module of the mechanisms with this text replaced where it first stands from that function on."""
-    module = importlib.import_module(f"kurbel.mechanisms.{file}")
+    """Return the module with this text replaced where it first stands from that function on."""
+    module = importlib.import_module(f"kurbel.{file}" if file == "crank_formulas" else f"kurbel.mechanisms.{file}")
     before, head, after = inspect.getsource(module).partition(f"def {function}(")
     assert right in after, (
         f"{file}.{function} has no '{right}' any more: plant the slip in the formula as it stands now"

@@ -13,9 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from precise import exact_angle, ulps
 
+from kurbel import crank_formulas
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import RuleError
-from kurbel.mechanisms import crank_formulas
 from kurbel.mechanisms.slider_crank import SliderCrank
 from representative import few
 

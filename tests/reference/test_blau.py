@@ -6,8 +6,8 @@ import math
 
 import pytest
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms import crank_formulas as formulas
 
 MINUTE = 1 / 60
 

@@ -10,8 +10,8 @@ import math
 
 import pytest
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.four_bar_loop import Loop
 from kurbel.mechanisms.slider_crank import SliderCrank

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.mechanisms.slider_crank import SliderCrank
 from representative import law_of_each
 

@@ -1,7 +1,7 @@
 """The command line: the group, and the one place where errors become messages and exit statuses.
 
-At import only click is loaded; a command module is imported when it is called or listed, and imports what it computes
-with inside its function.
+At import only click is loaded; a command module is imported when it is called, and imports what it computes with inside
+its function.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from kurbel import __version__
-from kurbel.cli.exit_status import DONE, INTERNAL, INTERRUPTED, WRONG, exit_statuses
 from kurbel.errors import KurbelError, MachineFileError
 
 if TYPE_CHECKING:
@@ -25,14 +24,59 @@ if TYPE_CHECKING:
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-COMMANDS = (
-    *("table", "motion", "forces", "flywheel", "stress", "bearings", "balance", "harmonics", "torsion"),
-    *("plot", "report", "sweep", "accuracy"),
-    *("friction", "check", "example", "keys", "units", "schema"),
-)
-"""In the order in which `kurbel --help` lists them; each is the function of that name in the module of that name."""
+SUMMARIES = {
+    "table": "Zusammenstellung 112 for any L/R; needs no machine file.",
+    "motion": "Displacement, velocity, acceleration of any mechanism.",
+    "forces": "Forces, work and friction loss of every cylinder.",
+    "flywheel": "Turning effort, flywheel and speed line of the machine.",
+    "stress": "Bearing forces and stresses of the crankshaft.",
+    "bearings": "Loads on pins and main bearings.",
+    "balance": "Free forces and moments, counterweights.",
+    "harmonics": "Orders of the turning effort, gas and inertia apart.",
+    "torsion": "Torsional vibration of the shaft line.",
+    "plot": "Pictures, in the terminal or as SVG, PNG, PDF.",
+    "report": "Everything on one page of HTML; two machines side by side.",
+    "sweep": "Key values of many designs of a machine.",
+    "accuracy": "Error against run time; stiff and extreme cases.",
+    "friction": "Body on an inclined plane; needs no machine file.",
+    "check": "Read and check a machine file and its limits.",
+    "example": "List the shipped machines, or print one.",
+    "keys": "The keys of the machine file, or one of them in full.",
+    "units": "The units of every kind of quantity.",
+    "schema": "JSON Schema of the machine file, for editors, or of the answers.",
+}
+"""The commands in the order in which `kurbel --help` lists them; each is the function of that name in its module."""
+COMMANDS = tuple(SUMMARIES)
 
 _DEBUG = "KURBEL_DEBUG"
+
+DONE, BROKEN, WRONG, NO_SOLUTION, INTERNAL, INTERRUPTED = 0, 1, 2, 3, 70, 130
+
+_MEANINGS = {
+    DONE: "done",
+    BROKEN: "a limit is broken (check) or a case failed (accuracy --extremes)",
+    WRONG: "wrong usage or input, or the output cannot be written",
+    NO_SOLUTION: "no solution: the machine stalls, locks itself or is in resonance",
+    INTERNAL: "a fault in kurbel",
+    INTERRUPTED: "interrupted",
+}
+
+
+_OF_SOME = {
+    BROKEN: ("kurbel", "check", "accuracy"),
+    NO_SOLUTION: (
+        *("kurbel", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
+        *("plot", "check", "accuracy"),
+    ),
+}
+"""Statuses that only some commands return."""
+
+
+def exit_statuses(command: str) -> str:
+    """Return the last sentence of the help of a command, or of `kurbel` itself."""
+    return "Exit status: " + "; ".join(
+        f"{status} {meaning}" for status, meaning in _MEANINGS.items() if command in _OF_SOME.get(status, (command,))
+    )
 
 
 class _Context(click.Context):
@@ -61,7 +105,13 @@ class _Kurbel(click.Group):
 
         command: click.Command = getattr(import_module(f"kurbel.cli.{cmd_name}"), cmd_name)
         command.context_class, command.epilog = _Context, exit_statuses(cmd_name)
+        command.short_help = SUMMARIES[cmd_name]
         return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list without importing the commands, as click would."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(SUMMARIES.items()))
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         name = args[0]

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from kurbel.machine import Machine
 
 
-@click.command(short_help="Error against run time; stiff and extreme cases.")
+@click.command()
 @click.argument("file", metavar="[FILE]", required=False, type=click.Path(allow_dash=True))
 @set_option
 @click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")

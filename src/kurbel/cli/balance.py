@@ -7,7 +7,7 @@ import click
 from kurbel.cli.output_options import Asked, machine_table
 
 
-@click.command(short_help="Free forces and moments, counterweights.")
+@click.command()
 @machine_table
 @click.option("--compare", is_flag=True, help="What the books' cos phi + R/L cos 2phi (R 291) gives, beside it.")
 @click.option("--orders", "orders_only", is_flag=True, help="Only the tables of orders and weights, and key values.")

@@ -7,7 +7,7 @@ import click
 from kurbel.cli.output_options import Asked, machine_table
 
 
-@click.command(short_help="Loads on pins and main bearings.")
+@click.command()
 @machine_table
 def bearings(asked: Asked) -> None:
     """Print the loads on crank pins, crosshead pins and main bearings over the cycle.

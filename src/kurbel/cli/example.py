@@ -14,7 +14,7 @@ _PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, 
 _SUFFIX = ".yaml"
 
 
-@click.command(short_help="List the shipped machines, or print one.")
+@click.command()
 @click.argument("name", required=False, shell_complete=complete_example)
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
 def example(name: str | None, file_name: str | None) -> None:
@@ -25,12 +25,12 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks | kurbel forces -
     """
     from kurbel.render.listing import write_entries
-    from kurbel.render.output import write_text
+    from kurbel.render.output import write_out
 
     if name is None:
         write_entries([(each, _described(each)) for each in shipped_names()], file_name)
     else:
-        write_text((_read(_known(name)),), file_name)
+        write_out((_read(_known(name)),), file_name, "utf-8")
 
 
 def _folder() -> str:

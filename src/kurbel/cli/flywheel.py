@@ -7,7 +7,7 @@ import click
 from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option, where_option
 
 
-@click.command(short_help="Turning effort, flywheel and speed line of the machine.")
+@click.command()
 @machine_table
 @where_option
 @uncertainty_option

@@ -7,7 +7,7 @@ import click
 from kurbel.cli.output_options import Asked, Spreads, machine_table, row_options, uncertainty_option
 
 
-@click.command(short_help="Forces, work and friction loss of every cylinder.")
+@click.command()
 @machine_table
 @uncertainty_option
 @row_options

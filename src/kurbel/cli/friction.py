@@ -8,7 +8,7 @@ from kurbel.cli.output_options import Output, output_options
 from kurbel.cli.readings import number
 
 
-@click.command(short_help="Body on an inclined plane; needs no machine file.")
+@click.command()
 @click.option("--incline", type=number, required=True, metavar="DEGREES", help="Plane against the horizontal.")
 @click.option("--coefficient", type=number, required=True, metavar="F", help="Coefficient of friction, such as 0.1.")
 @click.option(

@@ -7,7 +7,7 @@ import click
 from kurbel.cli.output_options import Asked, machine_places, orders_option, speeds_option
 
 
-@click.command(short_help="Orders of the turning effort, gas and inertia apart.")
+@click.command()
 @machine_places
 @orders_option
 @speeds_option

@@ -7,7 +7,7 @@ import click
 from kurbel.cli.completion import complete_key
 
 
-@click.command(short_help="The keys of the machine file, or one of them in full.")
+@click.command()
 @click.argument("key", required=False, shell_complete=complete_key)
 def keys(key: str | None) -> None:
     """List the keys of a machine file: what is written, what it means, what holds without it; or KEY in full.

@@ -7,7 +7,7 @@ import click
 from kurbel.cli.output_options import Asked, machine_table, row_options
 
 
-@click.command(short_help="Displacement, velocity, acceleration of any mechanism.")
+@click.command()
 @machine_table
 @row_options
 def motion(asked: Asked) -> None:

@@ -9,7 +9,7 @@ from kurbel.cli.output_options import loaded, machine_file, number_options, unit
 from kurbel.cli.readings import numbers
 
 
-@click.command(short_help="Pictures, in the terminal or as SVG, PNG, PDF.")
+@click.command()
 @machine_file
 @click.argument("names", metavar="[PICTURE]...", nargs=-1, shell_complete=complete_picture)
 @click.option("--list", "listed", is_flag=True, help="Say which pictures this machine has.")

@@ -15,7 +15,7 @@ _PATIENCE = 1.0
 """Seconds after which a terminal is told what is being done."""
 
 
-@click.command(short_help="Everything on one page of HTML; two machines side by side.")
+@click.command()
 @click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
 @set_option
 @click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
@@ -38,7 +38,7 @@ def report(
     """
     from kurbel.machine_file.given import given
     from kurbel.render import Look
-    from kurbel.render.output import refuse_overwriting, write_text
+    from kurbel.render.output import refuse_overwriting, write_out
     from kurbel.render.report_page import report_page
     from kurbel.report.side_by_side import side_by_side
     from kurbel.report.whole import whole_report
@@ -60,7 +60,7 @@ def report(
         document = side_by_side(cases, keys, system, progress)
     progress("writing")
     look = Look("html", comma=decimal == "comma", digits=digits)
-    write_text(report_page(document, look, _today()), file_name)
+    write_out(report_page(document, look, _today()), file_name, "utf-8")
 
 
 def _today() -> str:

@@ -7,7 +7,7 @@ import click
 from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option
 
 
-@click.command(short_help="Bearing forces and stresses of the crankshaft.")
+@click.command()
 @machine_table
 @uncertainty_option
 @click.option("--places", "places_only", is_flag=True, help="Only the stresses place by place; as csv one line each.")

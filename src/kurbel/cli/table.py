@@ -14,7 +14,7 @@ def _ratio(text: str) -> float:
     return math.inf if text in ("inf", "infinite") else number(text)
 
 
-@click.command(short_help="Zusammenstellung 112 for any L/R; needs no machine file.")
+@click.command()
 @click.option(
     "--ratio",
     "ratios",

@@ -7,7 +7,7 @@ import click
 from kurbel.cli.output_options import Asked, machine_table, orders_option, speeds_option
 
 
-@click.command(short_help="Torsional vibration of the shaft line.")
+@click.command()
 @machine_table
 @orders_option
 @speeds_option

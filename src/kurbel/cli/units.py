@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 
-@click.command(short_help="The units of every kind of quantity.")
+@click.command()
 def units() -> None:
     """List the units that a machine file may use, a line for each kind of quantity.
 

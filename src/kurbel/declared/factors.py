@@ -4,6 +4,15 @@ from __future__ import annotations
 
 from kurbel.declared.quantity import Quantity, by_id
 
+PHI = Quantity(
+    "phi",
+    "φ",
+    "angle",
+    "Crank angle from the inner dead centre, in the sense of rotation",
+    "phi",
+    commands=("motion", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
+)
+"""What these are told over, and so is all else."""
 FACTORS = by_id(
     (
         Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R", "cos phi + R/L cos 2phi"),

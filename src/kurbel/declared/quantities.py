@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES, PIN_LOSSES
+from kurbel.declared.factors import PHI
 from kurbel.declared.flywheel import EFFORT_VALUES, FLYWHEEL_COLUMNS, FLYWHEEL_VALUES
 from kurbel.declared.indicated import INDICATED_COLUMNS, INDICATED_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
@@ -21,14 +22,7 @@ _turning = partial(Quantity, commands=(*_FORCES, *_FLYWHEEL))
 
 
 _COLUMNS = (
-    Quantity(
-        "phi",
-        "φ",
-        "angle",
-        "Crank angle from the inner dead centre, in the sense of rotation",
-        "phi",
-        commands=("motion", *_FORCES, *_FLYWHEEL, *_STRESS, "bearings", "balance", "torsion"),
-    ),
+    PHI,
     _motion(
         "z",
         "z",

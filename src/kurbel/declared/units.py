@@ -12,6 +12,7 @@ import re
 from collections.abc import Callable
 from functools import cache
 
+from kurbel.declared.kinds import KINDS
 from kurbel.declared.numerals import NUMBER, parse_ratio, plain
 from kurbel.errors import UnitError
 
@@ -253,19 +254,25 @@ def parse_quantity(text: str, kind: str) -> float:
     if not unit:
         fitting = f"{stripped} {_fitting_unit(_value(number), kind)}"
         raise UnitError(f"{stripped} has no unit; write it with one, such as '{fitting}'")
-    if re.match(r",[0-9]+(?![0-9.,])", unit):
-        raise UnitError(f"'{stripped}' has a decimal comma; write {stripped.replace(',', '.', 1)}")
-    if re.match(r",[0-9]", unit):
-        raise UnitError(f"'{stripped}' has commas between thousands; leave them out")
-    if re.match(r"[0-9]{3}(?![0-9])", unit):
-        raise UnitError(f"'{stripped}' has spaces between thousands; leave them out")
-    if re.match(r"[0-9._:]", unit) and not unit.startswith("1/"):
-        raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
+    if unit[0] in "0123456789.,_:":
+        _refuse_more_figures(stripped, unit, kind)
     up, down = unit_factor(unit, kind)
     value = _value(number) * up / down
     if not math.isfinite(value):
         raise UnitError(f"{stripped} is too large to compute with")
     return value
+
+
+def _refuse_more_figures(text: str, rest: str, kind: str) -> None:
+    """Raise UnitError where figures go on in the rest of a text, behind its number; but for 1/s, which is a unit."""
+    if re.match(r",[0-9]+(?![0-9.,])", rest):
+        raise UnitError(f"'{text}' has a decimal comma; write {text.replace(',', '.', 1)}")
+    if re.match(r",[0-9]", rest):
+        raise UnitError(f"'{text}' has commas between thousands; leave them out")
+    if re.match(r"[0-9]{3}(?![0-9])", rest):
+        raise UnitError(f"'{text}' has spaces between thousands; leave them out")
+    if rest[0] != "," and not rest.startswith("1/"):
+        raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
 
 
 def written_unit(text: str) -> str:
@@ -280,19 +287,21 @@ def written_unit(text: str) -> str:
     return "" if re.match(r"/\s*[0-9.]", unit) else unit
 
 
-_INCHES = re.compile(r"([-+]?)(?:([0-9]{1,4})[ -])?([0-9]{1,4})/([1-9][0-9]{0,3})(?=\s*[A-Za-z]|$)")
+# compiled only where there is a stroke
+_INCHES = r"([-+]?)(?:([0-9]{1,4})[ -])?([0-9]{1,4})/([1-9][0-9]{0,3})(?=\s*[A-Za-z]|$)"
 """A number as drawings in inches have it: 2 1/4, 2-1/4, 3/8."""
-_QUOTIENT = re.compile(rf"{NUMBER.pattern}\s*/\s*{NUMBER.pattern}(?=\s*[A-Za-z°]|$)")
+_QUOTIENT = rf"{NUMBER.pattern}\s*/\s*{NUMBER.pattern}(?=\s*[A-Za-z°]|$)"
 
 
 def _number_of(text: str) -> re.Match[str] | None:
-    return _INCHES.match(text) or _QUOTIENT.match(text) or NUMBER.match(text)
+    parted = (re.match(_INCHES, text) or re.match(_QUOTIENT, text)) if "/" in text else None
+    return parted or NUMBER.match(text)
 
 
 def _value(number: re.Match[str]) -> float:
     """Return the float of a match of `_number_of`."""
-    if number.re is not _INCHES:
-        return parse_ratio(number.group()) if number.re is _QUOTIENT else float(number.group())
+    if number.re.pattern != _INCHES:
+        return parse_ratio(number.group()) if number.re.pattern == _QUOTIENT else float(number.group())
     sign, whole, above, below = number.groups()
     return float(f"{sign}1") * (int(whole or 0) * int(below) + int(above)) / int(below)
 
@@ -302,7 +311,7 @@ def _fitting_unit(value: float, kind: str) -> str:
     for fitting, least in _FITTING.get(kind, ()):
         if abs(value) >= least:
             return fitting
-    return _unit_example(kind)
+    return unit_example(kind)
 
 
 _FITTING = {
@@ -315,27 +324,14 @@ _FITTING = {
 """Kind -> units with the bare numbers from which on they are likely, the largest first."""
 
 
-def _unit_example(kind: str) -> str:
-    return {
-        "length": "mm",
-        "pressure": "bar",
-        "stress": "N/mm2",
-        "force": "N",
-        "speed": "rpm",
-        "torque": "N m",
-        "gd2": "kgf m2",
-        "spring": "mm/at",
-        "inertia": "kg m2",
-        "volume": "cm3",
-        "pressure_rise": "bar/deg",
-        "unbalance": "kg m",
-    }.get(kind, next(iter(_units_of(kind))))
-
-
 def example(kind: str) -> str:
     """Return a value of this kind as a person would write it, for messages and for the schema."""
-    numbers = {"length": "450", "pressure": "5.4", "stress": "60", "speed": "50", "angle": "90", "mass": "120"}
-    return f"{numbers.get(kind, '10')} {_unit_example(kind)}"
+    return KINDS[kind].written or f"10 {_normal(KINDS[kind].si)}"
+
+
+def unit_example(kind: str) -> str:
+    """Return its unit."""
+    return example(kind).partition(" ")[2]
 
 
 def kinds() -> tuple[str, ...]:

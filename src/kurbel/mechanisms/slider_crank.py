@@ -7,25 +7,25 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Number, Physical
+from kurbel.declared.forms import Number, Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
-from kurbel.mechanisms import crank_formulas as formulas
-from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
     from kurbel.mechanisms.coupler import Coupler
+    from kurbel.mechanisms.sketch import Sketch
 
 _INFINITE = (("infinite", math.inf),)
 CRANK_KEYS: Keys = {
-    "crank": Key(Physical("length", above=0), "Crank radius; or give `stroke`", "R", required=True, example="400 mm"),
-    "stroke": Key(Physical("length", above=0), "Stroke; or give `crank`", "s", instead="crank"),
+    "crank": positive("length", "Crank radius; or give `stroke`", "R", required=True, example="400 mm"),
+    "stroke": positive("length", "Stroke; or give `crank`", "s", instead="crank"),
 }
 """The size of the crank, shared by the mechanisms that can be given by their stroke."""
 
@@ -214,6 +214,8 @@ class SliderCrank(Mechanism):
             from kurbel.mechanisms.scotch_yoke import ScotchYoke
 
             return ScotchYoke(self.crank).sketch(angle)
+        from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
+
         pin, far = on_circle(self.crank, angle.cos, angle.sin), self.rod * self._reaches[0]
         guide = ((far - self.stroke, self.offset), (far, self.offset))
         return Sketch(

@@ -138,7 +138,7 @@ def _with_power(text: str, exponent: int, look: Look) -> str:
 
 def sentence_text(text: str, look: Look) -> str:
     """Return a sentence in the characters of the output, its numbers with the decimal comma where that is asked for."""
-    squared = re.sub(r"(?<=[a-z])\^2", "²", text)
+    squared = re.sub(r"(?<=[a-z])\^2", "²", text) if "^2" in text else text  # compiled only where it is needed
     text = look.charset.text(squared if look.charset.has(squared) else text)
     return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if look.comma else text
 

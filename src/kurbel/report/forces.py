@@ -4,27 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.indicated import CYCLE_VALUES
 from kurbel.errors import UsageError
 from kurbel.report.frame import Frame, Subject, refuse_without_cylinder
-from kurbel.report.guide import guide_notes
-from kurbel.report.left_out import left_out
-from kurbel.report.motion import mechanism_notes
-from kurbel.report.notes import Note, machine_notes, of_cylinder
 from kurbel.report.shown import shown_column
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
+
+if TYPE_CHECKING:
+    from kurbel.report.notes import Note
 
 
 def forces_report(case: Case, frame: Frame) -> Report:
     """Return the forces of every cylinder."""
     machine = case.machine
     refuse_without_cylinder(machine, "forces")
-    notes = (*mechanism_notes(machine), *guide_notes(case), *_rod_notes(case), *_rod_load_notes(case))
-    return frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case), notes=notes)
+    report = frame.report(machine, "Kräfte im Kurbeltriebe", subjects(case))
+    return report._replace(notes=frame.later(lambda: (*_notes(case), *report.notes)))
 
 
 def cycles_report(case: Case, system: str) -> Report:
@@ -48,6 +47,16 @@ def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
         names = tuple((str(number),) for number in range(1, len(cycles.p_max) + 1))
         columns = [shown_column(one, getattr(cycles, one.id).tolist(), system) for one in shown]
         yield PlaceTable("cycles", "Measured cycles", ("cycle",), names, tuple(columns), headed=True)
+
+
+def _notes(case: Case) -> Iterable[str]:
+    from kurbel.report.guide import guide_notes
+    from kurbel.report.motion import mechanism_notes
+
+    yield from mechanism_notes(case.machine)
+    yield from guide_notes(case)
+    yield from _rod_notes(case)
+    yield from _rod_load_notes(case)
 
 
 def _rod_notes(case: Case) -> Iterable[str]:
@@ -76,7 +85,13 @@ def _rod_load_notes(case: Case) -> Iterable[str]:
 
 def subjects(case: Case) -> Iterable[Subject]:
     """Yield every cylinder, with its forces and its motion."""
-    found = cache(lambda: machine_notes(case.machine, case))
+
+    @cache
+    def found() -> Sequence[Note]:
+        from kurbel.report.notes import machine_notes
+
+        return machine_notes(case.machine, case)
+
     for forces in case.cylinders:
         yield _subject(case, forces, found)
 
@@ -89,27 +104,21 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
         return forces.at(degrees)
 
     def warnings() -> Iterable[str]:
+        from kurbel.report.notes import of_cylinder
+
         yield from of_cylinder(found(), case.machine, cylinder)
 
     def left() -> Iterable[LeftOut]:
+        from kurbel.report.left_out import left_out
+
         yield from left_out(case.machine, cylinder)
-        yield from _no_loss(forces)
-        yield from _no_piston_rod(forces)
+        if forces.friction_work is not None and not forces.work_driving:
+            yield LeftOut("friction loss as a share", "no piston drives")
+        masses = cylinder.masses
+        if not forces.rod_load.no_compressor and masses and masses.crosshead is None:
+            yield LeftOut("load on the piston rod", "no mass of the crosshead given")
         if forces.reversals_in_noise:
             why = "are within the noise of the trace and no Druckwechsel"
             yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
 
     return Subject(cylinder.name, forces.answering, at, forces.lists, left, warnings, source=forces)
-
-
-def _no_loss(forces: CylinderForces) -> tuple[LeftOut, ...]:
-    if forces.friction_work is None or forces.work_driving:
-        return ()
-    return (LeftOut("friction loss as a share", "no piston drives"),)
-
-
-def _no_piston_rod(forces: CylinderForces) -> tuple[LeftOut, ...]:
-    masses = forces.drive.cylinder.masses
-    if forces.rod_load.no_compressor or masses is None or masses.crosshead is not None:
-        return ()
-    return (LeftOut("load on the piston rod", "no mass of the crosshead given"),)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from kurbel.declared.quantities import COLUMNS
+from kurbel.declared.factors import PHI
 from kurbel.declared.shaft import STRESSES
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import left_out, strength_left_out
@@ -71,7 +71,7 @@ def _place_tables(strength: CrankshaftStrength, system: str) -> Iterable[PlaceTa
 
 
 def _place_columns(strained: tuple[Strained, ...], system: str) -> Iterable[Column]:
-    yield shown_column(COLUMNS["phi"], [one.degrees for one in strained], system)
+    yield shown_column(PHI, [one.degrees for one in strained], system)
     for name, quantity in STRESSES.items():
         values = [getattr(one if name in ("combined", "von_mises") else one.stresses, name) for one in strained]
         yield shown_column(quantity, values, system)

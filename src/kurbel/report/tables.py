@@ -141,7 +141,7 @@ class Report(NamedTuple):
     parts: tuple[Part, ...]
     whole: Part | None = None
     mirrored: str = ""
-    notes: tuple[str, ...] = ()
+    notes: Collection[str] = ()
     head: tuple[str, ...] = ()
     provenance: Provenance | None = None
     cylinders: tuple[str, ...] = ()

@@ -103,8 +103,10 @@ _LEAST_REVERSAL = 15.0, 0.03
 
 def _reversal_warnings(forces: CylinderForces) -> Iterable[str]:
     load = forces.rod_load
+    if load.no_compressor:
+        return
     angle, ratio = load.reversal_longest, load.reversal_ratio
-    if load.no_compressor or angle is None or ratio is None:
+    if angle is None or ratio is None:
         return
     if not angle:
         yield "the rod load never reverses: no oil comes between crosshead pin and bush on the loaded side"

@@ -5,12 +5,11 @@ from array import array
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.factors import FACTORS
-from kurbel.declared.quantities import COLUMNS
+from kurbel.declared.factors import FACTORS, PHI
 from kurbel.declared.quantity import Quantity, called
 from kurbel.errors import UsageError
-from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.near_words import did_you_mean
 from kurbel.report.tables import Column, Part, Report, Value
 
@@ -45,15 +44,11 @@ def _guide(angle: CrankAngle, rod: _Rod) -> float:
     return float(rod.lam * angle.sin / formulas.cos_rod_angle(angle.sin, angle.cos, rod.rho))
 
 
-def _psi(angle: CrankAngle, rod: _Rod) -> float:
-    return math.degrees(math.atan(_guide(angle, rod)))
-
-
 _EXACT: dict[str, Factor] = {
     "acceleration_factor": lambda a, rod: formulas.acceleration_factor(a.sin, a.cos, rod.lam, rod.rho),
     "velocity_factor": lambda a, rod: formulas.velocity_factor(a.sin, a.cos, rod.lam, rod.rho),
     "displacement_factor": lambda a, rod: formulas.displacement_factor(a.sin, a.cos, rod.lam, rod.rho),
-    "psi": _psi,
+    "psi": lambda a, rod: math.degrees(math.atan(_guide(a, rod))),
     "rod_force_factor": lambda a, rod: 1 / formulas.cos_rod_angle(a.sin, a.cos, rod.rho),
     "guide_force_factor": _guide,
     "radial_force_factor": lambda a, rod: formulas.radial_factor(a.sin, a.cos, rod.lam, rod.rho),
@@ -122,7 +117,7 @@ def _part(ratio: float, ids: tuple[str, ...], angles: Sequence[float], formula: 
         for column, factor in zip(values, factors):
             column.append(factor(angle, rod))
     columns = (_column(FACTORS[id], column, formula) for id, column in zip(ids, values))
-    return Part(ratio, (_column(COLUMNS["phi"], angles, formula), *columns))
+    return Part(ratio, (_column(PHI, angles, formula), *columns))
 
 
 def _column(quantity: Quantity, values: Sequence[Value], formula: str) -> Column:

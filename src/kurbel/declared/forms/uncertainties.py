@@ -12,7 +12,7 @@ from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Reading, is_nothing,
 from kurbel.errors import Path
 
 _EXAMPLE = "'bore: ± 0.2 mm' or 'masses.piston: ± 2 %'"
-_SIGN = re.compile(r"(±|\+/-|\+-)\s*")
+_SIGN = r"(±|\+/-|\+-)\s*"
 
 
 class Uncertainties(Form):
@@ -48,6 +48,6 @@ def spread_text(text: str) -> str:
     >>> spread_text("± 0.2 mm"), spread_text("+-2 %"), spread_text("±-1 mm")
     ('0.2 mm', '2 %', '')
     """
-    rest = _SIGN.sub("", plain(text).strip(), count=1)
+    rest = re.sub(_SIGN, "", plain(text).strip(), count=1)
     number = NUMBER.match(rest)
     return rest if number and float(number.group()) > 0 else ""

@@ -8,7 +8,6 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices
 from kurbel.numerics.extreme import Extreme
-from kurbel.solver.pressure.exponents import COMPRESSION, EXPANSION, exponent
 
 if TYPE_CHECKING:
     from kurbel.solver.cylinder.gas import PistonGas
@@ -50,13 +49,19 @@ class Indicated:
     @property
     def n_compression(self) -> float | None:
         """Exponent of the compression."""
-        found = exponent(self._one, COMPRESSION) if self._one else None
-        return found.value if found else None
+        return self._exponent("COMPRESSION")
 
     @property
     def n_expansion(self) -> float | None:
         """Exponent of the expansion."""
-        found = exponent(self._one, EXPANSION) if self._one else None
+        return self._exponent("EXPANSION")
+
+    def _exponent(self, stretch: str) -> float | None:
+        if not self._one:
+            return None
+        from kurbel.solver.pressure import exponents
+
+        found = exponents.exponent(self._one, getattr(exponents, stretch))
         return found.value if found else None
 
     @property

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms import crank_formulas as formulas
 from kurbel.mechanisms import fan
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import once_each

@@ -11,10 +11,10 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any
 
+from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine.masses import ConnectingRod
-from kurbel.mechanisms import crank_formulas as formulas
 
 RodAngle = tuple[Any, Any]
 

@@ -19,34 +19,11 @@ from kurbel.numerics.collocation import Periodic, Standstill, periodic
 from kurbel.numerics.elements import Elements
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
-from kurbel.numerics.jet import Jet
 from kurbel.numerics.search import Extremes, Sampled, extremes
-from kurbel.solver.turning.excess import Excess
-from kurbel.solver.turning.machine_effort import MovingInertia
+from kurbel.solver.turning.course import Course, Inertia, Place
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-
-
-class Inertia:
-    """The reduced moment of inertia J(φ) = J + Σ m x′² + … in kg m², at a nominal angular velocity ω_n in rad/s."""
-
-    def __init__(self, flywheel: float, moving: MovingInertia, omega: float) -> None:
-        self.flywheel = flywheel
-        self.moving = moving
-        self.omega = omega
-
-    def at(self, degrees: Array, within: Array) -> Jet:
-        """Return J(φ) with its slope at crank angles (…,)."""
-        return self.moving.line.at(degrees, within) + self.flywheel
-
-    def energy(self, degrees: Array, within: Array) -> Jet:
-        """Return ½ J(φ) ω_n² in J."""
-        return self.at(degrees, within) * (self.omega**2 / 2)
-
-    def energy_curvature(self, degrees: Array, within: Array) -> Array:
-        """Return the second derivative of that by φ in J."""
-        return np.asarray(self.moving.bending.at(degrees, within).slope * (self.omega**2 / 2))
 
 
 class SpeedLaw(Protocol):
@@ -83,22 +60,24 @@ class SlipLaw:
 
 
 class SpeedLine(ABC):
-    """ω over the turn. `z(degrees, within)` is the kinetic energy beyond that of uniform rotation, in J.
+    """ω over the turn. `z(place)` is the kinetic energy beyond that of uniform rotation, in J.
 
-    Its extremes, and what hangs on them, raise Standstill where ω falls to SLOWEST times the nominal speed.
+    grid, nodes: on which it is searched. Its extremes, and what hangs on them, raise Standstill where ω falls to
+    SLOWEST times the nominal speed.
     """
 
     SLOWEST = 0.0
 
-    def __init__(self, excess: Excess, inertia: Inertia, grid: Grid) -> None:
-        self.excess = excess
+    def __init__(self, course: Course, inertia: Inertia, grid: Grid, nodes: Place) -> None:
+        self.course = course
         self.inertia = inertia
         self.grid = grid
+        self._nodes = nodes
         self.cycle = float(grid.breaks[-1])
 
     @abstractmethod
-    def z(self, degrees: Array, within: Array) -> Array:
-        """Return z in J at crank angles (n,) within the cycle."""
+    def z(self, place: Place) -> Array:
+        """Return z in J at crank angles (…,) within the cycle."""
 
     def _rise(self, ratio: Array) -> Array:
         """Return what the load takes beyond its torque at the nominal speed, in N m; ratio: (ω/ω_n)² − 1."""
@@ -108,23 +87,20 @@ class SpeedLine(ABC):
         """Return the derivative of that by the ratio."""
         return np.zeros_like(ratio)
 
-    def _ratio(self, degrees: Array, within: Array) -> Sampled:
+    def _ratio(self, place: Place) -> Sampled:
         """Return (ω/ω_n)² − 1 with its slope by φ."""
-        torque = self.excess.line.at(degrees, within).value
-        return self._sampled(self.z(degrees, within), self.inertia.energy(degrees, within), torque)
-
-    def _sampled(self, z: Array, energy: Jet, torque: Array) -> Sampled:
-        ratio = z / energy.value
-        return Sampled(ratio, (torque - self._rise(ratio) - ratio * energy.slope) / energy.value)
+        energy = self.inertia.energy(place)
+        ratio = self.z(place) / energy.value
+        return Sampled(ratio, (place.torque.value - self._rise(ratio) - ratio * energy.slope) / energy.value)
 
     @cached_property
     def _samples(self) -> Sampled:
-        return self._ratio(self.grid.degrees, self.grid.within)
+        return self._ratio(self._nodes)
 
     @cached_property
     def _extremes(self) -> Extremes:
         def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
-            return {"ratio": self._ratio(degrees, within)}
+            return {"ratio": self._ratio(self.course.at(degrees, within))}
 
         if not np.isfinite(self._samples.value).all():
             raise UsageError("the speed line leads beyond what can be computed with: check effort and flywheel")
@@ -136,14 +112,14 @@ class SpeedLine(ABC):
     def omega(self, degrees: Array) -> Array:
         """Return the angular velocity in rad/s at crank angles (n,) in degrees."""
         angles = np.mod(degrees, self.cycle)
-        ratio = self.z(angles, angles) / self.inertia.energy(angles, angles).value
-        return np.asarray(self.inertia.omega * np.sqrt(1 + ratio))
+        return np.asarray(self.inertia.omega * np.sqrt(1 + self._ratio(self.course.at(angles, angles)).value))
 
     def curves(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return ω in rad/s and its derivative by time in rad/s², each with its slope by φ."""
-        ratio, nominal = self._ratio(degrees, within), self.inertia.omega
+        place, nominal = self.course.at(degrees, within), self.inertia.omega
+        ratio = self._ratio(place)
         omega = nominal * np.sqrt(1 + ratio.value)
-        return {"omega": Sampled(omega, nominal**2 * ratio.slope / (2 * omega)), **self._alpha(degrees, within)}
+        return {"omega": Sampled(omega, nominal**2 * ratio.slope / (2 * omega)), "alpha": self._alpha(place)}
 
     @cached_property
     def omega_max(self) -> Extreme:
@@ -158,28 +134,31 @@ class SpeedLine(ABC):
     def _omega_at(self, ratio: Extreme) -> Extreme:
         return Extreme(self.inertia.omega * math.sqrt(1 + ratio.value), ratio.degrees)
 
-    def _alpha(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+    def _alpha(self, place: Place) -> Sampled:
         """Return dω/dt = ½ ω_n² dr/dφ in rad/s², r = (ω/ω_n)² − 1, with its slope by φ.
 
         With e = ½ J(φ) ω_n²: e r′ = M − M_load − r e′, and so e r″ = (M − M_load)′ − 2 r′ e′ − r e″.
         """
-        z, torque, energy = self.z(degrees, within), self.excess.line.at(degrees, within), self.inertia
-        line, bend = energy.energy(degrees, within), energy.energy_curvature(degrees, within)
-        ratio, slope = self._sampled(z, line, torque.value)
+        energy, bend = self.inertia.energy(place), self.inertia.energy_curvature(place)
+        ratio, slope = self._ratio(place)
         rising = self._rise_slope(ratio) * slope
-        curvature = (torque.slope - rising - 2 * slope * line.slope - ratio * bend) / line.value
+        curvature = (place.torque.slope - rising - 2 * slope * energy.slope - ratio * bend) / energy.value
         half = self.inertia.omega**2 / 2
-        return {"alpha": Sampled(half * slope, half * curvature)}
+        return Sampled(half * slope, half * curvature)
 
     def alpha(self, degrees: Array) -> Array:
         """Return the angular acceleration in rad/s² at crank angles (n,) in degrees, just after a jump."""
         angles = np.mod(degrees, self.cycle)
-        return self._alpha(angles, angles)["alpha"].value
+        return self._alpha(self.course.at(angles, angles)).value
 
     @cached_property
     def alpha_extremes(self) -> Extremes:
         """Largest and smallest angular acceleration in rad/s²."""
-        return extremes(self.grid, self._alpha(self.grid.degrees, self.grid.within), self._alpha)["alpha"]
+
+        def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
+            return {"alpha": self._alpha(self.course.at(degrees, within))}
+
+        return extremes(self.grid, {"alpha": self._alpha(self._nodes)}, evaluate)["alpha"]
 
     @cached_property
     def omega_mean(self) -> float:
@@ -203,18 +182,17 @@ class ConstantLoad(SpeedLine):
 
     SLOWEST = 0.01
 
-    def __init__(self, excess: Excess, inertia: Inertia) -> None:
-        super().__init__(excess, inertia, _split_at_dips(excess))
+    def __init__(self, course: Course, inertia: Inertia) -> None:
+        super().__init__(course, inertia, *course.fine)
         self.constant = self._constant()
 
-    def z(self, degrees: Array, within: Array) -> Array:
+    def z(self, place: Place) -> Array:
         """Return E + C in J; see `SpeedLine`."""
-        return self.excess.at(degrees) + self.constant
+        return place.work + self.constant
 
     def _constant(self) -> float:
         """C in J, from ∫ dφ/ω = 2π/ω_n: the mean of 1/√(1 + r) is 1. That falls and is convex: Newton from below."""
-        energy = self.inertia.energy(self.grid.degrees, self.grid.within).value
-        excess = self.excess.at(self.grid.degrees)
+        energy, excess = self.inertia.energy(self._nodes).value, self._nodes.work
         least = -excess + (self.SLOWEST**2 - 1) * energy
         constant = float(least.max())
         whole = math.radians(self.cycle)
@@ -232,15 +210,6 @@ class ConstantLoad(SpeedLine):
         return constant
 
 
-def _split_at_dips(excess: Excess) -> Grid:
-    """Cut the grid ever finer on both sides of the crossings, where a slow machine lingers."""
-    if not excess.crossings:
-        return excess.grid
-    steps = np.array([0.0, *(sign * 10.0 / 3.0**k for k in range(4) for sign in (1, -1))])
-    angles = (np.array(excess.crossings)[:, None] + steps).ravel()
-    return excess.grid.split_at(np.mod(angles, excess.cycle))
-
-
 def floquet(growth: float) -> float:
     """Return the multiplier e^growth; what is beyond the range of a float is the end of it."""
     return math.exp(min(growth, 709.7))
@@ -249,18 +218,18 @@ def floquet(growth: float) -> float:
 class SpeedEquation:
     """z′ = M − M_load(ω), ω from z; see `collocation.Equation`."""
 
-    def __init__(self, excess: Excess, law: SpeedLaw, inertia: Inertia, noise: float, eased: float = 0.0) -> None:
-        self.excess, self.law, self.inertia, self.noise = excess, law, inertia, noise
+    def __init__(self, course: Course, law: SpeedLaw, inertia: Inertia, noise: float, eased: float = 0.0) -> None:
+        self.course, self.law, self.inertia, self.noise = course, law, inertia, noise
         self._more = eased
 
     def prepared(self, degrees: Array, within: Array) -> Array:
         """See `collocation.Equation`."""
-        energy = self.inertia.energy(degrees, within).value + self._more
-        return np.stack((self.excess.line.at(degrees, within).value, energy))
+        place = self.course.at(degrees, within)
+        return np.stack((place.torque.value, self.inertia.energy(place).value + self._more))
 
     def eased(self, by: float) -> SpeedEquation:
         """See `collocation.Equation`: so much more inertia, as ½ J ω_n² in J."""
-        return SpeedEquation(self.excess, self.law, self.inertia, self.noise, by)
+        return SpeedEquation(self.course, self.law, self.inertia, self.noise, by)
 
     def rate(self, prepared: Array, z: Array) -> tuple[Array, Array]:
         """See `collocation.Equation`."""
@@ -276,20 +245,22 @@ class SpeedEquation:
 class SpeedDependentLoad(SpeedLine):
     """ω under a load that depends on speed: the periodic state, found by collocation over the whole cycle."""
 
-    def __init__(self, excess: Excess, law: SpeedLaw, inertia: Inertia) -> None:
+    def __init__(self, course: Course, law: SpeedLaw, inertia: Inertia) -> None:
         # a torque known to one unit in the last place moves z by this in a turn; the energy is not known better either
+        excess = course.excess
         torque = max(abs(extreme.value) for extreme in excess.effort_extremes)
-        energy = inertia.energy(excess.grid.degrees, excess.grid.within).value.min()
+        energy = inertia.energy(course.on(excess.grid)).value.min()
         noise = 1e-16 * min(torque, float(energy))
         self._law = law
         self.solution: Periodic = periodic(
-            SpeedEquation(excess, law, inertia, noise), Elements.over(excess.grid.breaks)
+            SpeedEquation(course, law, inertia, noise), Elements.over(excess.grid.breaks)
         )
-        super().__init__(excess, inertia, Grid(np.append(self.solution.elements.low, excess.cycle)))
+        grid = Grid(np.append(self.solution.elements.low, excess.cycle))
+        super().__init__(course, inertia, grid, course.on(grid))
 
-    def z(self, degrees: Array, within: Array) -> Array:
+    def z(self, place: Place) -> Array:
         """Return z in J; see `SpeedLine`."""
-        return np.asarray(self.solution.at(degrees, within)[..., 0])
+        return np.asarray(self.solution.at(place.degrees, place.within)[..., 0])
 
     def _rise(self, ratio: Array) -> Array:
         return self._law(ratio)[0]

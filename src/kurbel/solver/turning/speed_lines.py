@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.numerics.collocation import Standstill, Unsettled
+from kurbel.solver.turning.course import Course, Inertia
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed import (
     ConstantLoad,
-    Inertia,
     PowerLaw,
     SlipLaw,
     SpeedDependentLoad,
@@ -75,8 +76,12 @@ class SpeedLines:
         """Return the line without a coupling, or with a rigid one."""
         turned = flywheel + (self._coupling.inertia if self._coupling else 0.0)
         self._refuse_no_inertia(turned)
-        inertia, excess = Inertia(turned, self._turned.inertia, self.omega), self._turned.true_excess
-        return ConstantLoad(excess, inertia) if self.law is None else SpeedDependentLoad(excess, self.law, inertia)
+        inertia, course = Inertia(turned, self.omega), self._course
+        return ConstantLoad(course, inertia) if self.law is None else SpeedDependentLoad(course, self.law, inertia)
+
+    @cached_property
+    def _course(self) -> Course:
+        return Course(self._turned.true_excess, self._turned.inertia)
 
     def _refuse_no_inertia(self, flywheel: float) -> None:
         moving = self._turned.inertia
