@@ -18,17 +18,16 @@ from kurbel.solver.balance.best import Least, in_planes, least, shafts
 from kurbel.solver.balance.circles import Circles
 from kurbel.solver.balance.columns import BalanceColumns
 from kurbel.solver.balance.free import Free
-from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.products import Products, of_throws
 from kurbel.solver.balance.rolling import rolling_moment, swirls
 from kurbel.solver.balance.weights import Throw, Weight, counterweights_of, shafts_of
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Results, crank_angles
-from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.torques import Sum
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.solver.balance.locomotive import LocomotiveBalance
 
 _REAL = 1e-12
 """Beside its size, what a counterweight opposite the throw may point aside by rounding."""
@@ -158,7 +157,11 @@ class MachineBalance(Results):
 
     @cached_property
     def _roll_extremes(self) -> Extremes | None:
-        return Excess(self.roll).effort_extremes if self.roll else None
+        if not self.roll:
+            return None
+        from kurbel.solver.turning.excess import Excess
+
+        return Excess(self.roll).effort_extremes
 
     @property
     def M_roll_max(self) -> Extreme | None:
@@ -253,7 +256,11 @@ class MachineBalance(Results):
     def locomotive(self) -> LocomotiveBalance | None:
         """What of it concerns the wheels of a locomotive; None of another machine."""
         given = self.machine.locomotive
-        return LocomotiveBalance(self, given) if given else None
+        if given is None:
+            return None
+        from kurbel.solver.balance.locomotive import LocomotiveBalance
+
+        return LocomotiveBalance(self, given)
 
 
 class BookBalance:

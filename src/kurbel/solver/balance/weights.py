@@ -2,13 +2,15 @@
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.solver.balance.circles import unit_vectors
 from kurbel.solver.cylinder.drive import Drive
+
+if TYPE_CHECKING:
+    from kurbel.machine.balance import Counterweight, SharedCounterweights
 
 
 class Weight(NamedTuple):
@@ -46,7 +48,7 @@ class Throw:
         """Return the counterweight of what turns, and of a share of what goes to and fro."""
         return self.weight(-(self.rotating + share * self.drive.mass))
 
-    def carrying(self, one: Counterweight, beside: float | None) -> Weight:
+    def carrying(self, one: "Counterweight", beside: float | None) -> Weight:
         """Return a counterweight whose angle counts from this throw; beside: its place where none is given."""
         direction = complex(unit_vectors(self.bank - self.late + one.angle))
         return Weight(one.product * direction, 1, beside if one.axial_position is None else one.axial_position)
@@ -63,7 +65,7 @@ def counterweights_of(machine: Machine, throws: tuple[Throw, ...], wheels: tuple
 
 
 def _given(
-    throws: tuple[Throw, ...], given: SharedCounterweights | tuple[Counterweight, ...], wheels: tuple[float, ...]
+    throws: tuple[Throw, ...], given: "SharedCounterweights | tuple[Counterweight, ...]", wheels: tuple[float, ...]
 ) -> Iterator[Weight]:
     if isinstance(given, tuple):
         # among several throws nobody knows beside which one a weight stands

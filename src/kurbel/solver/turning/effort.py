@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,11 +27,17 @@ class CylinderEffort:
     """
 
     def __init__(self, alike: Sequence[CylinderForces], cycle: float, torque_in: Callable[[State], Any]) -> None:
+        self._alike = alike
+        self._cycle = cycle
         self._drive = alike[0].drive
         self._positions = np.array([position(one) for one in alike])
         self._torque_in = torque_in
-        cuts = own_cuts(alike[0])
-        self.cuts = Cuts.joined([cuts.shifted(behind, cycle) for behind in self._positions.tolist()])
+
+    @cached_property
+    def cuts(self) -> Cuts:
+        """Where it bends or jumps over the cycle; searched only where more is asked than the torque at some angles."""
+        cuts = own_cuts(self._alike[0])
+        return Cuts.joined([cuts.shifted(behind, self._cycle) for behind in self._positions.tolist()])
 
     def torque(self, degrees: Array, within: Array) -> Jet:
         """Return the torque; see `Torque`."""

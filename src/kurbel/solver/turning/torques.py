@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from kurbel.machine.turning import Effort, Harmonics
 from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.machine.turning import Effort, Harmonics
 
 
 class Torque(Protocol):
@@ -103,4 +103,6 @@ class Diagram:
 
 def known_torque(effort: Effort | Harmonics, cycle: float) -> Torque:
     """Return the torque of an effort that is known from elsewhere, over a cycle in degrees."""
+    from kurbel.machine.turning import Harmonics
+
     return HarmonicTorque(effort, cycle) if isinstance(effort, Harmonics) else Diagram(effort, cycle)
