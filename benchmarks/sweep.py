@@ -23,7 +23,7 @@ from kurbel.designs.workers import rows_of
 from kurbel.machine import Machine
 from kurbel.machine_file import source
 from kurbel.render import Look
-from kurbel.render.sweep_rows import Titles, csv_rows
+from kurbel.render.sweep_output import Titles, csv_rows
 
 WATERWORKS = source.read(Path(__file__).parent.parent / "configs" / "waterworks.yaml")
 SINGLE = 30

@@ -12,10 +12,11 @@ import click
 
 from kurbel.cli import COMMANDS, kurbel
 from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
-from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, SIZES, range_of
+from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, range_of
 from kurbel.declared.factors import FACTORS
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Key, Keys, required
+from kurbel.declared.kinds import KINDS
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.shaft import STRESSES
 from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
@@ -123,7 +124,7 @@ def _units() -> Iterator[str]:
 
 def _sizes() -> Iterator[str]:
     yield "## What a machine file may hold\n\nWhatever is smaller or larger is refused; the sign is free."
-    rows = [(kind.replace("_", " "), range_of(kind)) for kind in SIZES]
+    rows = [(kind.replace("_", " "), range_of(kind)) for kind in KINDS]
     rows += [("points of one diagram or trace", f"up to {MOST_POINTS}"), ("items of one list", f"up to {MOST_ITEMS}")]
     yield _table(("kind", "size"), rows)
 

@@ -1,6 +1,6 @@
-"""Write docs/gallery.md and its pictures: every picture that kurbel draws, each by the command that stands above it.
+"""The pictures of the pages: every one that kurbel draws for docs/gallery.md, one of each machine for docs/machines.md.
 
-python docs/gallery.py
+`pytest --rewrite tests/pictures/test_gallery.py` writes the gallery and the files of both.
 """
 
 from __future__ import annotations
@@ -9,31 +9,77 @@ from pathlib import Path
 
 from kurbel.machine_file import load
 from kurbel.render import Look
-from kurbel.render.output import write_file
 from kurbel.render.pictures.svg import svg_file
 from kurbel.report.pictures import PICTURES, Wish, pictures
 from kurbel.solver.case import Case
 
-FOLDER = Path(__file__).parent
-CONFIGS = FOLDER.parent / "configs"
-MACHINES = {
-    "free-orders": "v8-cross-plane",
-    "effort": "waterworks-two-cranks",
-    "throw-stress": "gas-engine",
-    "card-volume": "compressor",
+CONFIGS = Path(__file__).parent.parent / "configs"
+TEACHING = {
+    "boxer": "free-angle",
+    "compressor": "card-volume",
+    "compressor-two-stage": "effort",
+    "coupled-axle": "mechanism",
+    "coupled-blower": "orders",
+    "crank-rocker": "mechanism",
+    "diesel-four-stroke": "piston-force",
+    "diesel-trace": "card",
+    "diesel-two-stroke": "card",
+    "four-cylinder-generator": "effort",
+    "four-in-line": "free-orders",
+    "gas-engine": "throw-stress",
+    "gas-engine-double-acting": "effort",
+    "generator-coupling": "modes",
+    "locomotive": "forces",
+    "locomotive-two-cylinders": "free-angle",
+    "marine-diesel": "modes",
+    "offset-engine": "mechanism",
+    "punch": "effort",
+    "radial-three": "free-vectors",
+    "scotch-yoke-pump": "mechanism",
+    "shaper": "mechanism",
+    "steam-ideal": "card",
+    "torsional-damper": "modes",
+    "v8-cross-plane": "free-orders",
+    "waterworks": "piston-force",
+    "waterworks-two-cranks": "effort",
+    "yoke-frame-pump": "mechanism",
+}
+"""Shipped machine -> the picture that teaches most of it."""
+BEST = {
     "bearing-loads": "gas-engine",
-    "orders": "marine-diesel",
+    "card-volume": "compressor",
+    "effort": "waterworks-two-cranks",
+    "free-orders": "v8-cross-plane",
     "modes": "marine-diesel",
+    "orders": "marine-diesel",
+    "throw-stress": "gas-engine",
 }
 """Picture -> the shipped machine that shows it best; the others are of the waterworks engine."""
 USUAL = "waterworks"
 MOVING = ("scotch-yoke-pump", "shaper", "crank-rocker", "coupled-axle", "yoke-frame-pump")
 """The other mechanisms of the book."""
+_DECLARED = {one.id: one for one in PICTURES}
 
 
 def shown() -> list[tuple[str, str]]:
-    """Return every picture with the machine that it is of."""
-    return [*((one.id, MACHINES.get(one.id, USUAL)) for one in PICTURES), *(("mechanism", name) for name in MOVING)]
+    """Return every picture of the gallery with the machine that it is of."""
+    return [*((id, BEST.get(id, USUAL)) for id in _DECLARED), *(("mechanism", name) for name in MOVING)]
+
+
+def every_file() -> dict[str, tuple[str, str]]:
+    """Return the files of both pages, each with its picture and machine."""
+    drawn = [*shown(), *((id, machine) for machine, id in TEACHING.items())]
+    return {file_of(id, machine): (id, machine) for id, machine in drawn}
+
+
+def file_of(id: str, machine: str) -> str:
+    """Return the file of a picture, as the pages name it."""
+    return f"gallery/{machine}-{id}.svg"
+
+
+def embedded(id: str, machine: str) -> str:
+    """Return a picture as Markdown, with what it shows for those who do not see it."""
+    return f"![{machine}: {_DECLARED[id].text}]({file_of(id, machine)})"
 
 
 def svg_of(id: str, machine: str) -> str:
@@ -44,32 +90,19 @@ def svg_of(id: str, machine: str) -> str:
 
 
 def page() -> str:
-    """Return the page."""
-    titles = {one.id: one for one in PICTURES}
+    """Return the page of the gallery."""
     blocks = [
         "# Gallery",
         "Every picture that `kurbel plot` draws, of machines that come with kurbel; `--list` says which "
-        "of them a machine has. `python docs/gallery.py` writes this page.",
+        "of them a machine has. Written by `pytest --rewrite tests/pictures/test_gallery.py`.",
     ]
     for id, machine in shown():
-        one = titles[id]
-        heading = one.title if machine in (USUAL, MACHINES.get(id)) else f"{one.title}: {machine}"
+        one = _DECLARED[id]
+        heading = one.title if machine in (USUAL, BEST.get(id)) else f"{one.title}: {machine}"
         blocks += [
             f"## {heading}",
             f"```sh\nkurbel plot configs/{machine}.yaml {id} -o {id}.svg\n```",
-            f"![{one.text}](gallery/{machine}-{id}.svg)",
+            embedded(id, machine),
             one.text,
         ]
     return "\n\n".join(blocks) + "\n"
-
-
-def main() -> None:
-    """Write the page and its pictures."""
-    (FOLDER / "gallery").mkdir(exist_ok=True)
-    for id, machine in shown():
-        write_file(str(FOLDER / "gallery" / f"{machine}-{id}.svg"), (svg_of(id, machine),))
-    write_file(str(FOLDER / "gallery.md"), (page(),))
-
-
-if __name__ == "__main__":
-    main()

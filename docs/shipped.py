@@ -1,6 +1,6 @@
-"""The page of the machines that come with kurbel: what each is and teaches, its answers, its file.
+"""The page of the machines that come with kurbel: what each is and teaches, its picture, its answers, its file.
 
-`pytest --rewrite tests/test_documents.py` writes it.
+`pytest --rewrite tests/test_documents.py` writes it, and the same on tests/pictures/test_gallery.py its pictures.
 """
 
 from __future__ import annotations
@@ -11,7 +11,10 @@ from typing import Any
 
 from click.testing import CliRunner
 
+import gallery  # docs/gallery.py
 from kurbel.cli import kurbel
+from kurbel.render.charset import Charset
+from kurbel.report.alike import gathered, together
 
 _CONFIGS = Path(__file__).parent.parent / "configs"
 _SHOWN = {
@@ -41,10 +44,11 @@ def page() -> str:
 
 def _machine(file: Path) -> str:
     text = file.read_text(encoding="utf-8")
+    picture = gallery.embedded(gallery.TEACHING[file.stem], file.stem)
     answers = "".join(_answers(command, ids, file) for command, ids in _SHOWN.items())
-    table = f"| | | at |\n| --- | --: | --: |\n{answers}".rstrip()
+    table = f"| Key value | Value | At |\n| --- | --: | --: |\n{answers}".rstrip()
     source = f"<details markdown>\n<summary>The file</summary>\n\n```yaml\n{text.rstrip()}\n```\n\n</details>"
-    return f"## {file.stem}\n\n{_comment(text)}\n\n{table}\n\n{source}\n"
+    return f"## {file.stem}\n\n{_comment(text)}\n\n{picture}\n\n{table}\n\n{source}\n"
 
 
 def _comment(text: str) -> str:
@@ -64,11 +68,12 @@ def _answers(command: str, ids: tuple[str, ...], file: Path) -> str:
     if ran.exit_code:
         return ""
     answer = json.loads(ran.stdout)
-    parts = [(part["name"], part["key_values"]) for part in answer.get("cylinders", [])]
+    equal = gathered(answer.get("cylinders", []), lambda one, other: one["key_values"] == other["key_values"])
+    parts = [(together([part["name"] for part in parts]), parts[0]["key_values"]) for parts in equal]
+    several = len(parts) > 1
     parts.append(("", answer.get("machine_key_values", [])))
-    several = len(parts) > 2
     rows = [
-        f"| {_named(one, name if several else '')} | {one['value']:g} {one['unit']} | {_angle(one)} |"
+        f"| {_named(one, name if several else '')} | {one['value']:g} {Charset().unit(one['unit'])} | {_angle(one)} |"
         for name, values in parts
         for one in values
         if one["id"] in ids and abs(one["value"]) > _ROUNDING

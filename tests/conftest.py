@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-# random examples have no deadline either; .ci/run draws four times as many
-settings.register_profile("brief", deadline=None, max_examples=25)
+# random examples have no deadline either; .ci/run draws twelve times as many
+settings.register_profile("brief", deadline=None, max_examples=8)
 settings.register_profile("thorough", deadline=None, max_examples=100)
 settings.load_profile("brief")
 

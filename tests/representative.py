@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 import pytest
 from _pytest.mark import ParameterSet
 
+from kurbel.machine_file import load
+from kurbel.solver.case import Case
+
 SHIPPED = sorted((Path(__file__).parent.parent / "configs").glob("*.yaml"))
 """The machines that come with kurbel."""
+CONFIGS = {path.stem: path for path in SHIPPED}
+
+
+@cache
+def case_of(name: str) -> Case:
+    """The results of a machine that comes with kurbel: computed once, since nothing can change them."""
+    return Case(load(CONFIGS[name]))
 
 
 def shipped(*names: str) -> list[ParameterSet]:

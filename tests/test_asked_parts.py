@@ -20,7 +20,7 @@ def run(*arguments: str) -> Result:
     return CliRunner().invoke(kurbel, list(arguments))
 
 
-@pytest.mark.parametrize("command", ["motion", "forces"])
+@pytest.mark.parametrize("command", few(["motion", "forces"], ["motion"]))
 def test_one_cylinder_has_the_figures_that_it_has_among_the_others(command: str) -> None:
     among = json.loads(run(command, FOUR, "-f", "json").stdout)["cylinders"][2]
     assert json.loads(run(command, FOUR, "-f", "json", "--cylinder", "cylinder 3").stdout)["cylinders"] == [among]
@@ -36,7 +36,7 @@ def test_the_page_says_which_cylinder() -> None:
 FORMS = [(format, layout) for format in ("table", "json", "markdown", "csv") for layout in ("book", "rows")]
 
 
-@pytest.mark.parametrize(("format", "layout"), few(FORMS, [*FORMS[:3], *FORMS[4:7]]))
+@pytest.mark.parametrize(("format", "layout"), few(FORMS, [FORMS[0], FORMS[2], FORMS[6]]))
 def test_key_values_come_without_a_table(format: str, layout: str) -> None:
     asked = run("forces", FOUR, "-f", format, "--layout", layout, "--key-values")
     assert (asked.exit_code, asked.stderr) == (0, "")
@@ -61,8 +61,7 @@ def test_key_values_as_csv_are_those_of_json() -> None:
 
 def test_strength_has_key_values_alone_too() -> None:
     asked = run("stress", GAS_ENGINE, "--key-values")
-    assert "Position of the largest torque" in run("stress", GAS_ENGINE).stdout
-    assert "Position of the largest torque" not in asked.stdout
+    assert "Position of the largest torque" not in asked.stdout  # as it stands in the whole: test_stress_command
     assert "Key values" in asked.stdout
 
 
@@ -86,9 +85,9 @@ def test_what_does_not_exist_is_refused(arguments: tuple[str, ...], message: str
 NAMED = 'speed: 1 rpm\ncylinders: [{name: "2", crank: 1 m, rod: 5 m}, {name: left, crank: 2 m, rod: 9 m}]\n'
 
 
-@pytest.mark.parametrize("command", ["motion", "forces"])
+@pytest.mark.parametrize("command", few(["motion", "forces"], ["motion"]))
 def test_a_cylinder_by_its_number(command: str) -> None:
-    for number in ("1", "4"):
+    for number in ("4",):
         by_name = run(command, FOUR, "--cylinder", f"cylinder {number}")
         assert run(command, FOUR, "--cylinder", number).stdout == by_name.stdout
     beyond = run(command, FOUR, "--cylinder", "5")

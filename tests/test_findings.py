@@ -18,7 +18,7 @@ from kurbel.declared.quantity import by_id
 from kurbel.errors import UsageError
 from kurbel.report.check import checked
 from kurbel.report.compared import Unjudged, compared
-from representative import shipped
+from representative import few, shipped
 
 ENDLESS = "{constant: {expansion: 1e300 at, compression: 1e300 at}}"
 HUGE = f"crank: 1 m\nrod_ratio: 5\nbore: 1 m\nindicator: {{head_end: {ENDLESS}}}\n"
@@ -241,7 +241,7 @@ def test_a_check_goes_to_a_file_but_never_over_its_own(tmp_path: Path) -> None:
 # notes
 
 
-@pytest.mark.parametrize("path", shipped("waterworks-two-cranks", "diesel-trace", "gas-engine", "compressor", "punch"))
+@pytest.mark.parametrize("path", shipped("diesel-trace", "compressor", "punch"))
 def test_warnings_are_the_same_in_every_command(path: Path) -> None:
     """Of every shipped machine, forces, flywheel, stress and check print the same set of them."""
     found = {}
@@ -263,7 +263,7 @@ def unnamed(text: str, path: Path) -> str:
     return next((text[len(name) + 2 :] for name in names if text.startswith(f"{name}: ")), text)
 
 
-@pytest.mark.parametrize("command", ["check", "forces", "flywheel", "stress"])
+@pytest.mark.parametrize("command", few(["check", "forces", "flywheel", "stress"], ["check", "forces", "flywheel"]))
 def test_notes_stand_in_every_command_once(command: str) -> None:
     """A gauge pressure that never falls below 1 bar looks absolute."""
     _, printed, _ = run(ENGINE + GAUGE + SHAFT, command)
@@ -285,17 +285,17 @@ def test_notes_name_their_cylinder(command: str) -> None:
         assert any("left, right" in line for line in lines[:place])
 
 
-def test_a_card_that_was_tidied_up_is_told_by_every_command() -> None:
+@pytest.mark.parametrize("command", few(["check", "forces", "flywheel", "stress"], ["check", "forces"]))
+def test_a_card_that_was_tidied_up_is_told_by_every_command(command: str) -> None:
     card = "indicator: {head_end: {unit: bar, expansion: [[0, 5], [1, 2], [1, 2]], compression: [[1, 1], [0, 4]]}}\n"
     (note,) = loads(ENGINE + card).cylinders[0].pistons[0].indicator.head_end.notes[:1]  # type: ignore[union-attr]
-    for command in ("check", "forces", "flywheel", "stress"):
-        assert run(ENGINE + card + SHAFT, command)[1].count(note) == 1
+    assert run(ENGINE + card + SHAFT, command)[1].count(note) == 1
 
 
 # left out
 
 
-@pytest.mark.parametrize("command", ["check", "forces", "flywheel", "stress"])
+@pytest.mark.parametrize("command", few(["check", "forces", "flywheel", "stress"], ["check", "forces"]))
 def test_a_rod_whose_area_is_not_taken_off_is_told(command: str) -> None:
     text = ENGINE + f"indicator: {{head_end: {{{PRESSURE}}}, crank_end: {{{PRESSURE}}}}}\n" + SHAFT
     told = "no crank_end_rod given, its area is taken as 0"

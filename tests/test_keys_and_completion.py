@@ -78,10 +78,10 @@ def test_a_key_that_is_not_there() -> None:
     assert "did you mean 'bore'" in CliRunner().invoke(kurbel, ["keys", "boore"]).stderr
 
 
-@pytest.mark.parametrize("path", sorted(every_place()))
-def test_every_key_says_what_it_means(path: str) -> None:
-    lines = [dict(one.full) for one in every_place()[path]]
-    assert all(one["meaning"] and one["form"] and one["absent"] for one in lines)
+def test_every_key_says_what_it_means() -> None:
+    told = [(path, dict(one.full)) for path, places in every_place().items() for one in places]
+    assert len(told) > 250
+    assert [path for path, lines in told if not (lines["meaning"] and lines["form"] and lines["absent"])] == []
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
+from representative import few
 
 FOLDER = Path(__file__).parent
 CONFIGS = FOLDER.parent / "configs"
@@ -95,9 +96,15 @@ def test_columns_and_key_values_fit_the_mechanism_and_no_others(name: str) -> No
     assert all(math.isfinite(value) for values in columns.values() for value in values)
 
 
-@pytest.mark.parametrize("name", MACHINES)
-@pytest.mark.parametrize("format", ["table", "csv", "json", "markdown"])
-@pytest.mark.parametrize("units", ["si", "technical"])
+PRINTED = [
+    (name, format, units)
+    for units in ("si", "technical")
+    for format in ("table", "csv", "json", "markdown")
+    for name in MACHINES
+]
+
+
+@pytest.mark.parametrize(("name", "format", "units"), few(PRINTED, PRINTED[::7]))
 def test_every_format(name: str, format: str, units: str) -> None:
     text = f"name: It\nspeed: 60 rpm\n{MACHINES[name]}"
     result = run("motion", "-", "-f", format, "--units", units, "--step", "30", text=text)

@@ -13,6 +13,7 @@ from click.testing import CliRunner, Result
 from kurbel.cli import kurbel
 from kurbel.machine.shaft_line import ShaftPart
 from kurbel.machine.shaft_list import line_of
+from representative import few
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 BLOWER, SHIP = (str(CONFIGS / f"{name}.yaml") for name in ("coupled-blower", "marine-diesel"))
@@ -141,7 +142,6 @@ REFUSED = [
     ("torsion", BLOWER, ("--speeds", "1e200 rpm"), "is too large to compute with"),
     ("torsion", BLOWER, ("--columns", "tau"), "'tau' is left out for this machine"),
     ("torsion", str(CONFIGS / "waterworks.yaml"), (), "no 'shaft' is given; write its masses"),
-    ("torsion", BLOWER, ("--set", "flywheel.fluctuation=0.01", "--set", "flywheel.inertia=0 kg m2"), ""),
     ("harmonics", BLOWER, ("--set", "speed=0 rpm", "--speeds", "5 rpm"), "--speeds: the inertia forces are told from"),
 ]
 
@@ -150,9 +150,7 @@ REFUSED = [
 def test_what_is_refused(command: str, file: str, options: tuple[str, ...], message: str) -> None:
     result = run(command, file, *options)
     assert message in " ".join(result.stderr.split())
-    assert "Traceback" not in result.output
-    if message:
-        assert (result.exit_code, result.stdout) == (2, "")
+    assert (result.exit_code, result.stdout) == (2, "")
 
 
 def test_a_cylinder_without_any_inertia_is_refused() -> None:
@@ -193,7 +191,10 @@ coupling: {stiffness: 13784 N m/rad, damping: 5.84372 N m s/rad, inertia: 66.24 
 """
 
 
-@pytest.mark.parametrize(("command", "status"), [("flywheel", 3), ("harmonics", 0), ("torsion", 0)])
+ENDLESS = [("flywheel", 3), ("harmonics", 0), ("torsion", 0)]
+
+
+@pytest.mark.parametrize(("command", "status"), few(ENDLESS, ENDLESS[1:2]))
 def test_a_coupling_whose_motion_finds_no_end_is_no_fault_of_kurbel(command: str, status: int) -> None:
     answer = CliRunner().invoke(kurbel, [command, "-"], input=STALLS)
     assert answer.exit_code == status

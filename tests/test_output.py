@@ -128,7 +128,7 @@ def test_a_file_that_may_not_be_written_is_not_replaced(tmp_path: Path, monkeypa
 
 @POSIX_ONLY
 def test_output_to_what_is_no_file(tmp_path: Path) -> None:
-    printed = run("table", "-f", "csv", capture_output=True).stdout
+    printed = CliRunner().invoke(kurbel, ["table", "-f", "csv"]).stdout_bytes
     assert run("table", "-f", "csv", "-o", "/dev/stdout", capture_output=True).stdout == printed
     with open(tmp_path / "out.csv", "wb") as out:
         assert run("table", "-f", "csv", "-o", "/dev/stdout", stdout=out).returncode == 0
@@ -193,30 +193,33 @@ def test_nothing_is_hashed_where_nobody_reads_it(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text(MACHINE)
     code = (
         "import sys; from kurbel.cli import kurbel\n"
-        "try: kurbel.main(sys.argv[1:])\n"
-        "except SystemExit: print('hashlib' in sys.modules, file=sys.stderr)"
+        "for format in ('csv', 'json'):\n"
+        "    try: kurbel.main([*sys.argv[1:], '-f', format])\n"
+        "    except SystemExit: print('hashlib' in sys.modules, file=sys.stderr)"
     )
-    for format, hashed in (("csv", b"False\n"), ("json", b"True\n")):
-        arguments = [sys.executable, "-S", "-c", code, "motion", str(tmp_path / "m.yaml"), "-f", format]
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-        assert subprocess.run(arguments, capture_output=True, check=False, env=environment).stderr == hashed
+    arguments = [sys.executable, "-S", "-c", code, "motion", str(tmp_path / "m.yaml")]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    assert subprocess.run(arguments, capture_output=True, check=False, env=environment).stderr.split() == [
+        b"False",
+        b"True",
+    ]
 
 
 # statuses
 
 
+ENDS = [
+    ("check missing.yaml", 2),  # KurbelError
+    ("table --ratio 5,4", 2),  # click's usage error
+    ("check m.yaml", 2),  # MachineFileError
+    ("table >/dev/full", 2),  # OSError
+    ("flywheel stalls.yaml", 3),
+]
+UNHEARD = [(*end, stderr) for stderr in ("2>/dev/full", "2>&-") for end in ENDS]
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-@pytest.mark.parametrize("stderr", ["2>/dev/full", "2>&-"])
-@pytest.mark.parametrize(
-    ("arguments", "status"),
-    [
-        ("check missing.yaml", 2),  # KurbelError
-        ("table --ratio 5,4", 2),  # click's usage error
-        ("check m.yaml", 2),  # MachineFileError
-        ("table >/dev/full", 2),  # OSError
-        ("flywheel stalls.yaml", 3),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "status", "stderr"), few(UNHEARD, UNHEARD[::2]))
 def test_no_status_hangs_on_standard_error(arguments: str, status: int, stderr: str, tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text("crank: 400\n")
     (tmp_path / "stalls.yaml").write_text(MACHINE + PRESSURE + "flywheel: {inertia: 1e-3 kg m2}\n")
@@ -235,9 +238,10 @@ def test_help_names_the_statuses(command: str) -> None:
     assert (" 3 " in said) == (command in ("", *solved))
 
 
-@pytest.mark.parametrize(
-    "module", ["typing", "kurbel.cli", "click", "kurbel.cli.motion", "numpy", "kurbel.report.motion"]
-)
+IMPORTED = ["typing", "kurbel.cli", "click", "kurbel.cli.motion", "numpy", "kurbel.report.motion"]
+
+
+@pytest.mark.parametrize("module", few(IMPORTED, ["typing", "click", "kurbel.report.motion"]))
 def test_an_interrupt_while_importing_is_130_and_silent(module: str, tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text(MACHINE)
     code = (
@@ -277,7 +281,7 @@ def test_columns_are_computed_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None
 LOOKS = [(format, layout) for format in FORMATS for layout in ("book", "rows")]
 
 
-@pytest.mark.parametrize(("format", "layout"), few(LOOKS, [look for look in LOOKS if look[1] == "book"]))
+@pytest.mark.parametrize(("format", "layout"), few(LOOKS, [(format, "book") for format in ("table", "csv", "json")]))
 def test_rows_are_written_as_they_are_made(format: str, layout: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(json_text, "_AT_ONCE", 100)
     case, look = Case(loads(MACHINE + PRESSURE)), Look(format, layout)

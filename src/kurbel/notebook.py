@@ -1,11 +1,11 @@
 """What a notebook shows of results: the tables of the reports, and pictures."""
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.case import Case as Case
-from kurbel.solver.figures import Figure, Results, Shown
+from kurbel.solver.figures import Results, Shown
 
 if TYPE_CHECKING:
     from kurbel.report.pictures.picture import Picture
@@ -65,14 +65,12 @@ def _key_values(results: Results, caption: str) -> str:
 
     with np.errstate(all="ignore"):
         try:
-            found = [shown_key_value(one.quantity, _value(one), "metric") for one in results.key_values().values()]
+            every = results.key_values().values()
+            values = [one.value if one.degrees is None else Extreme(one.value, one.degrees) for one in every]
+            found = [shown_key_value(one.quantity, value, "metric") for one, value in zip(every, values)]
         except KurbelError as error:
             return f"<p>{escape(str(error))}</p>"
     return key_values(found, caption, Look("html"))
-
-
-def _value(figure: Figure) -> Any:
-    return figure.value if figure.degrees is None else Extreme(figure.value, figure.degrees)
 
 
 Shown.as_html = as_html

@@ -21,6 +21,7 @@ from kurbel.render.pictures.drawing import draw_file
 from kurbel.report import accuracy
 from kurbel.report.pictures.accuracy import accuracy_picture, dots
 from kurbel.report.tables import Column, Part, PlaceTable, Report
+from representative import few
 
 MOTION = "{name: plain, speed: 50 rpm, crank: 400 mm, rod_ratio: 5}"
 ENGINE = """
@@ -157,11 +158,9 @@ def test_a_panel_holds_all_scenes_of_a_quantity() -> None:
 
 
 def test_picture_is_drawn_the_same_every_time(tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
-    for name in ("a.svg", "b.svg", "c.png"):
+    for name in ("a.svg", "b.svg"):
         draw_file([accuracy_picture(TWO_SCENES)], Look(), str(tmp_path / name))
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
-    assert (tmp_path / "c.png").read_bytes().startswith(b"\x89PNG")
     svg = (tmp_path / "a.svg").read_text(encoding="utf-8")
     assert ">book</text>" in svg
 
@@ -248,7 +247,7 @@ WORKLESS = {
 }
 
 
-@pytest.mark.parametrize("text", WORKLESS.values(), ids=WORKLESS)
+@pytest.mark.parametrize("text", few(WORKLESS.values(), [WORKLESS["both ends"]], WORKLESS))
 def test_no_error_is_relative_to_zero(text: str) -> None:
     """Such cards do no work; what a quadrature makes of that is a rounding, to which nothing is relative."""
     for more in ("", "masses: {piston: 100 kg}\nfriction: {crosshead: 0.1}\n"):

@@ -93,7 +93,7 @@ def test_nothing_is_printed_for_what_is_absent() -> None:
 
 def test_every_thing_left_out_saves_stages() -> None:
     found = list(savings(loads(FULL), everything, Patience(1, 0.0)))
-    assert [one.what for one in found] == [
+    assert [one.machine for one in found] == [
         "everything",
         "no friction",
         "no masses either",

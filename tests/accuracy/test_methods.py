@@ -12,9 +12,9 @@ from kurbel.accuracy.decimals import precise
 from kurbel.accuracy.oracle import CrankMotion, CylinderOracle
 from kurbel.accuracy.periodic import SpeedOracle
 from kurbel.accuracy.scenes import Scene
-from kurbel.accuracy.textbook import TextbookCylinder, TextbookMachine, alone, moved
+from kurbel.accuracy.textbook import Moved, TextbookCylinder, TextbookMachine
 from kurbel.accuracy.timing import Patience, timed
-from kurbel.accuracy.trials import Row, dominating, errors, questions
+from kurbel.accuracy.trials import Lacking, Question, Row, dominating, errors, questions
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slider_crank import SliderCrank
@@ -35,12 +35,11 @@ def order(error_of: object, coarse: int, fine: int) -> float:
 def test_textbook_motion_is_that_of_the_reference() -> None:
     mechanism = SliderCrank(0.4, 2.0, 0.15)
     degrees = np.arange(361.0)
-    with precise():
-        truth = references.motion_at(CrankMotion(0.4, 2.0, 0.15), degrees.tolist())
-    for index in range(3):
-        expected = np.array([float(at[index]) for at in truth])
-        assert moved(mechanism, np.radians(degrees))[index] == pytest.approx(expected, abs=1e-14)
-        assert alone(mechanism, np.radians(degrees), index) == pytest.approx(expected, abs=1e-14)
+    for asked in ("coordinate", "slope", "curvature"):
+        with precise():
+            truth = references.motion_at(CrankMotion(0.4, 2.0, 0.15), degrees.tolist(), asked)
+        found = getattr(Moved(mechanism, np.radians(degrees)), asked)
+        assert found == pytest.approx(np.array(list(map(float, truth))), abs=1e-14)
 
 
 def test_textbook_torque_is_that_of_the_reference() -> None:
@@ -62,17 +61,17 @@ def test_textbook_torque_is_that_of_the_reference() -> None:
 
 def test_first_order_formulas_are_those_of_the_book() -> None:
     """B 31: λ = 1/5, 45° 0.343 R, 90° 1.1 R, 135° 1.757 R."""
-    found = moved(SliderCrank(1.0, 5.0), np.radians([45.0, 90.0, 135.0]), "first-order").x
+    found = Moved(SliderCrank(1.0, 5.0), np.radians([45.0, 90.0, 135.0]), "first-order").coordinate
     assert found == pytest.approx([0.343, 1.1, 1.757], abs=5e-4)
 
 
 def test_differences_have_order_two() -> None:
     mechanism = SliderCrank(0.4, 2.0)
     degrees = np.array([33.0])
-    truth = alone(mechanism, np.radians(degrees), 1)
+    truth = Moved(mechanism, np.radians(degrees)).slope
 
     def missed(count: int) -> float:
-        return float(abs(rivals._differences(mechanism, degrees, 1, 2 * math.pi / count)() - truth)[0])
+        return float(abs(rivals.differences(mechanism, degrees, 1, 2 * math.pi / count) - truth)[0])
 
     assert order(missed, 36, 360) == pytest.approx(2, abs=0.02)
 
@@ -161,11 +160,11 @@ def test_timing_repeats_until_patience_ends() -> None:
 
 
 def test_only_quantities_of_the_machine_are_asked_for() -> None:
-    asked, lacking = questions(Scene(loads("{speed: 50 rpm, crank: 400 mm, rod_ratio: 5}")), quick=True)
-    assert ([one.quantity for one in asked], lacking) == (["x", "c", "b"], [])
-    asked, lacking = questions(Scene(loads(SMOOTH)), quick=True)
-    assert [one.quantity for one in asked] == ["x", "c", "b", "A_i", "T_max, T_min", "ΔE", "ω"]
+    def asked(text: str) -> list[str]:
+        return [one.quantity for one in questions(Scene(loads(text))) if isinstance(one, Question)]
+
+    assert asked("{speed: 50 rpm, crank: 400 mm, rod_ratio: 5}") == ["x", "c", "b"]
+    assert asked(SMOOTH) == ["x", "c", "b", "A_i", "T_max, T_min", "ΔE", "ω"]
     four_bar = "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm}"
-    asked, lacking = questions(Scene(loads(four_bar)), quick=True)
-    assert asked == []
-    assert lacking[0].why == "no independent calculation of the four-bar"
+    lacking = Lacking("x, c, b", "no independent calculation of the four-bar")
+    assert list(questions(Scene(loads(four_bar)))) == [lacking]

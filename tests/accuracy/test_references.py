@@ -12,6 +12,7 @@ from kurbel.accuracy.decimals import arcsin, integral, largest, pi, precise, roo
 from kurbel.accuracy.oracle import CrankMotion, CylinderOracle
 from kurbel.accuracy.periodic import SpeedOracle
 from kurbel.machine_file import loads
+from representative import few
 
 mp = mpmath.mp
 STEAM = """
@@ -77,7 +78,7 @@ def test_motion_and_its_derivatives(rod: float, offset: float) -> None:
         for degrees in (17.5, 90.0, 200.0, 333.25):
             phi = mp.radians(mpmath.mpf(degrees))
             at = motion.at(Decimal(degrees))
-            assert close(at.x, x(phi), 35)
+            assert close(at.coordinate, x(phi), 35)
             assert close(at.slope, mp.diff(x, phi), 18)
             assert close(at.curvature, mp.diff(x, phi, 2), 12)
 
@@ -148,7 +149,7 @@ def test_excess_energy_of_two_levels() -> None:
         assert close(references.excess_energy(machine), truth, 20)
 
 
-@pytest.mark.parametrize("inertia", ["1e6 kg m2", "900 kg m2", "9 kg m2"])
+@pytest.mark.parametrize("inertia", few(["1e6 kg m2", "900 kg m2", "9 kg m2"], ["900 kg m2"]))
 def test_speed_under_a_fan_in_closed_form(inertia: str) -> None:
     """Without masses and with a load ∝ ω² the energy obeys K′ = M − a K, a linear equation."""
     card = "{constant: {expansion: 5 bar, compression: 0 bar}}"

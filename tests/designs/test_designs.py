@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.stats import qmc
 
 from kurbel.designs.binding import Binder, Unbound
 from kurbel.designs.inputs import read_input
@@ -95,6 +94,8 @@ def test_shards_are_the_whole() -> None:
 
 
 def test_the_sequence_of_sobol_is_that_of_joe_and_kuo() -> None:
+    from scipy.stats import qmc  # takes most of a second
+
     assert (_digits(256, 13) / 2.0**32 == qmc.Sobol(13, scramble=False).random(256)).all()
     points = sobol(64, 3, 5)
     assert all((np.sort(np.floor(64 * column)) == np.arange(64)).all() for column in points.T)

@@ -92,14 +92,14 @@ def test_a_summary_tells_quantiles_and_ranks() -> None:
 
 
 def test_parts_one_after_another_are_the_whole_byte_for_byte() -> None:
-    asked = ("--vary", "rod_ratio=3:6:0.1", "--columns", "T_max", "-f", "csv")
+    asked = ("--vary", "rod_ratio=3:6:0.3", "--columns", "T_max", "-f", "csv")
     whole = run(*asked).stdout
     assert "".join(run(*asked, "--shard", f"{k}/4").stdout for k in (1, 2, 3, 4)) == whole
-    assert len(whole.splitlines()) == 32
+    assert len(whole.splitlines()) == 12
 
 
 def test_resuming_ends_in_the_same_file(tmp_path: Path) -> None:
-    asked = ("--vary", "rod_ratio=3:6:0.1", "--columns", "T_max")
+    asked = ("--vary", "rod_ratio=3:6:0.3", "--columns", "c_max")
     for suffix in ("csv", "json"):
         file = tmp_path / f"rows.{suffix}"
         assert run(*asked, "-o", str(file)).exit_code == 0

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 
-from kurbel.machine_file import load
 from kurbel.machine_file.given import given
 from kurbel.render import Look
 from kurbel.render.report_page import report_page
 from kurbel.report.side_by_side import side_by_side
 from kurbel.report.whole import whole_report
 from kurbel.solver.case import Case
-
-CONFIGS = {path.stem: path for path in sorted((Path(__file__).parent.parent.parent / "configs").glob("*.yaml"))}
+from representative import case_of
 
 
 def page_of_case(case: Case) -> str:
@@ -26,7 +23,7 @@ def page_of_case(case: Case) -> str:
 @cache
 def page_of(*names: str) -> str:
     """The report of one shipped machine, or of two."""
-    cases = [Case(load(CONFIGS[name])) for name in names]
+    cases = [case_of(name) for name in names]
     if len(cases) == 1:
         return page_of_case(cases[0])
     keys = [given(case.machine.origin) for case in cases if case.machine.origin]

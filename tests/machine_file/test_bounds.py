@@ -11,8 +11,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
-from kurbel.declared.bounds import SIZES
 from kurbel.declared.forms import points
+from kurbel.declared.kinds import KINDS
 from kurbel.declared.unit_systems import SI
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine_file import columns, events, load, loads
@@ -61,9 +61,9 @@ def test_absurd_values_are_refused_by_name(command: str, text: str, message: str
     assert message in result.stderr
 
 
-@pytest.mark.parametrize("kind", SIZES)
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_has_sizes_that_can_be_squared_and_divided(kind: str) -> None:
-    smallest, largest = SIZES[kind]
+    smallest, largest, *_ = KINDS[kind]
     assert 0 <= smallest < 1 <= largest
     assert largest**6 < 1e300
     assert kind in SI

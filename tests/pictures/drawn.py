@@ -4,22 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
-from kurbel.machine_file import load, loads
+from kurbel.machine_file import loads
 from kurbel.report.pictures import FILE, Wish, pictures, pictures_of
 from kurbel.report.pictures.picture import Picture
 from kurbel.solver.case import Case
+from representative import case_of
 
-CONFIGS = {path.stem: path for path in sorted((Path(__file__).parent.parent.parent / "configs").glob("*.yaml"))}
 BAD_NAME = "<script>alert(1)</script> \x1b[31m & \"'"
 """Markup, an escape sequence (which a machine file refuses, but Python does not), and quotation marks."""
-
-
-@cache
-def case_of(name: str) -> Case:
-    """The results of a shipped machine."""
-    return Case(load(CONFIGS[name]))
 
 
 @cache

@@ -6,11 +6,12 @@ import itertools
 
 import numpy as np
 import pytest
-from drawn import case_of, drawn, ids_of
+from drawn import drawn, ids_of
 
 from kurbel.machine_file import loads
 from kurbel.report.pictures import Wish, pictures_of
 from kurbel.solver.case import Case
+from representative import case_of
 
 
 def test_the_tip_of_the_free_force_is_the_solvers() -> None:

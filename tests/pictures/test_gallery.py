@@ -1,8 +1,9 @@
-"""The gallery shows every picture as it is drawn now."""
+"""The pages show every picture as it is drawn now; `pytest --rewrite` on this file draws them anew."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -12,27 +13,39 @@ import gallery  # docs/gallery.py
 from kurbel.mechanisms import MECHANISMS
 from kurbel.report.pictures import PICTURES
 
-FOLDER = Path(__file__).parent.parent.parent / "docs"
+ROOT = Path(__file__).parent.parent.parent
+DOCS = ROOT / "docs"
 
 
-def test_the_page_is_current_and_complete() -> None:
-    assert (FOLDER / "gallery.md").read_text(encoding="utf-8") == gallery.page()
+def test_the_page_is_current_and_complete(kept: Callable[[Path, str], str]) -> None:
+    assert kept(DOCS / "gallery.md", gallery.page()) == gallery.page()
     assert {id for id, _ in gallery.shown()} == {one.id for one in PICTURES}
     assert sum(id == "mechanism" for id, _ in gallery.shown()) == len(MECHANISMS)
 
 
-def test_it_shows_each_file_and_each_file_is_shown() -> None:
-    named = re.findall(r"\(gallery/([^)]*)\)", gallery.page())
-    assert sorted(named) == sorted(path.name for path in (FOLDER / "gallery").iterdir())
-    assert all((FOLDER / "gallery" / name).stat().st_size <= 60_000 for name in named)
+def test_every_shipped_machine_has_a_picture() -> None:
+    assert sorted(gallery.TEACHING) == sorted(path.stem for path in (ROOT / "configs").glob("*.yaml"))
 
 
-def words_in(svg: str) -> list[str | None]:
-    return [one.text for one in ElementTree.fromstring(svg).iter() if one.tag.endswith(("text", "title"))]
+def test_each_file_is_shown_and_small() -> None:
+    files = sorted((DOCS / "gallery").iterdir())
+    shown = {name for page in ("gallery", "machines") for name in pictures_on(DOCS / f"{page}.md")}
+    assert shown == {path.relative_to(DOCS).as_posix() for path in files}
+    assert all(path.stat().st_size <= 60_000 for path in files)
+    assert sum(path.stat().st_size for path in files) <= 1_000_000
+
+
+def pictures_on(page: Path) -> list[str]:
+    return re.findall(r"!\[[^]]+\]\((gallery/[^)]*)\)", page.read_text(encoding="utf-8"))
+
+
+def words_in(svg: str) -> list[str]:
+    found = (one for one in ElementTree.fromstring(svg).iter() if one.tag.endswith(("text", "title")))
+    return ["".join(one.itertext()) for one in found]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("id", "machine"), gallery.shown())
-def test_every_file_says_what_is_drawn_now(id: str, machine: str) -> None:
-    kept = (FOLDER / "gallery" / f"{machine}-{id}.svg").read_text(encoding="utf-8")
-    assert words_in(kept) == words_in(gallery.svg_of(id, machine))
+@pytest.mark.parametrize("name", gallery.every_file())
+def test_every_file_says_what_is_drawn_now(name: str, kept: Callable[[Path, str], str]) -> None:
+    drawn = gallery.svg_of(*gallery.every_file()[name])
+    assert words_in(kept(DOCS / name, drawn)) == words_in(drawn)

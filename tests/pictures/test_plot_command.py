@@ -10,10 +10,11 @@ from xml.etree import ElementTree
 
 import pytest
 from click.testing import CliRunner, Result
-from drawn import CONFIGS
 
 from kurbel.cli import kurbel
+from kurbel.machine_file import load
 from kurbel.report.pictures import PICTURES
+from representative import CONFIGS, few
 
 WATERWORKS = str(CONFIGS["waterworks"])
 
@@ -48,11 +49,11 @@ def test_several_pictures_stand_one_below_the_other(tmp_path: Path) -> None:
 
 
 def test_all_are_drawn_where_all_are_asked_for() -> None:
-    result = run(WATERWORKS, "all", "--width", "60")
+    shaper = str(CONFIGS["shaper"])
+    result = run(shaper, "all", "--width", "60")
     assert result.exit_code == 0
-    listed = len(run(WATERWORKS, "--list").stdout.splitlines())
-    # each pin has its own polar diagram
-    assert result.stdout.count("Waterworks engine, high-pressure side. ") == listed + 1
+    listed = len(run(shaper, "--list").stdout.splitlines())
+    assert result.stdout.count(f"{load(shaper).name}. ") == listed
 
 
 def test_a_mechanism_at_chosen_angles(tmp_path: Path) -> None:
@@ -116,7 +117,10 @@ def test_without_matplotlib_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch
     assert run(WATERWORKS, "card", "-o", str(tmp_path / "x.svg")).exit_code == 0
 
 
-@pytest.mark.parametrize("command", [["plot", WATERWORKS], ["plot", WATERWORKS, "-o", "x.svg"], ["report", WATERWORKS]])
+DRAWING = [["plot", WATERWORKS, "-o", "x.svg"], ["plot", WATERWORKS], ["report", WATERWORKS]]
+
+
+@pytest.mark.parametrize("command", few(DRAWING, DRAWING[:1]))
 def test_matplotlib_is_imported_only_for_png_and_pdf(command: list[str], tmp_path: Path) -> None:
     code = (
         "import sys\nfrom kurbel.cli import kurbel\n"

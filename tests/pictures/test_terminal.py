@@ -16,6 +16,7 @@ from kurbel.render.pictures.canvas import Canvas
 from kurbel.render.pictures.letters import letters
 from kurbel.report.pictures import TERMINAL, Wish, pictures
 from kurbel.report.pictures.picture import Picture
+from representative import few
 
 GOLDEN = Path(__file__).parent.parent / "golden"
 
@@ -42,8 +43,14 @@ def test_golden(name: str, id: str, look: Look, kept: Callable[[Path, str], str]
     assert text == kept(GOLDEN / f"plot-{id}-{look.width}{ascii_}.txt", text)
 
 
-@pytest.mark.parametrize("columns", [20, 24, 31, 40, 60, 80, 120, 160])
-@pytest.mark.parametrize("encoding", ["utf-8", "ascii", "cp1252", "cp850"])
+WIDTHS = [
+    (columns, encoding)
+    for columns in (20, 24, 31, 40, 60, 80, 120, 160)
+    for encoding in ("utf-8", "ascii", "cp1252", "cp850")
+]
+
+
+@pytest.mark.parametrize(("columns", "encoding"), few(WIDTHS, WIDTHS[::5]))
 def test_pictures_fit_every_width(columns: int, encoding: str) -> None:
     for id in ("forces", "effort", "mechanism", "effort-polar"):
         text = text_of(drawn("waterworks", id, TERMINAL)[0], Look(width=columns, encoding=encoding))

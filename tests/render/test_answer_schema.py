@@ -14,9 +14,9 @@ from kurbel.cli import kurbel
 CONFIGS = Path(__file__).parents[2] / "configs"
 MACHINES = [
     *(("motion", name) for name in ("shaper", "offset-engine")),
-    *(("forces", name) for name in ("waterworks", "diesel-trace", "coupled-axle", "four-cylinder-generator")),
+    *(("forces", name) for name in ("waterworks", "diesel-trace", "coupled-axle", "waterworks-two-cranks")),
     *(("flywheel", name) for name in ("punch", "coupled-blower")),
-    *(("check", name) for name in ("gas-engine", "compressor")),
+    *(("check", name) for name in ("waterworks", "compressor")),
     ("stress", "gas-engine"),
 ]
 ANSWERS = [

@@ -18,6 +18,7 @@ from kurbel.machine_file import load, loads
 from kurbel.report.check import checked
 from kurbel.solver.case import Case
 from kurbel.solver.turning.machine_effort import dead_centre_force
+from representative import few
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 ENGINE = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8")
@@ -160,7 +161,7 @@ def random_light_machine(random: Random) -> str:
     return "\n".join(lines) + "\n"
 
 
-@pytest.mark.parametrize("seed", [*range(10), *(pytest.param(n, marks=pytest.mark.slow) for n in range(10, 100))])
+@pytest.mark.parametrize("seed", few(range(100), range(3)))
 def test_a_light_machine_turns_or_stalls_with_advice_that_holds(seed: int) -> None:
     text = random_light_machine(Random(seed))
     answer = run(text, "--step", "90")

@@ -251,21 +251,6 @@ def test_drawn_cards_and_ideal_cards_agree() -> None:
     assert cylinder(drawn, absolute=True).work == pytest.approx(cylinder(exact, absolute=True).work or 0, rel=1e-5)
 
 
-def test_the_module_of_ideal_cards_is_left_alone_without_them() -> None:
-    import subprocess
-    import sys
-
-    code = (
-        "import sys; from kurbel.machine_file import loads; from kurbel.solver.case import Case;"
-        "m = loads('{stroke: 1 m, rod_ratio: 5, bore: 1 m, indicator: {head_end: {constant: "
-        "{expansion: 1 bar, compression: 0 bar}}}}'); assert Case(m).cylinders[0].work > 0;"
-        "own = ('ideal', 'ideal_cards', 'trace', 'whole_cycle', 'columns', 'solver.rod');"
-        "print(*(n for n in sys.modules if n.endswith(own)))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == ""
-
-
 @pytest.mark.parametrize("beside", [np.nextafter(0.3, 1), np.nextafter(0.3, 1) + 1e-16, 0.3 + 1e-15])
 @pytest.mark.parametrize("crank_end", [False, True])
 def test_fractions_a_rounding_apart_are_a_jump(beside: float, crank_end: bool) -> None:

@@ -15,6 +15,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.pin_works import PinWorks
 from kurbel.solver.cylinder.pins import on_crosshead_pin, on_pin
+from representative import few
 
 ENGINE = (Path(__file__).parents[2] / "configs" / "gas-engine.yaml").read_text("utf-8")
 RUBS = """friction: {crosshead: 0.05, crank_pin: 0.05, crosshead_pin: 0.06, crosshead_pin_diameter: 180 mm,
@@ -85,18 +86,24 @@ def test_a_rod_without_mass_is_in_equilibrium_with_friction_at_both_its_ends(deg
     assert state.M[0] == pytest.approx(0.1 * tangential - crank - journals, rel=1e-12)
 
 
+ENGINES = {
+    "share": ENGINE,
+    "exact": EXACT,
+    "leaning": EXACT.replace("inclination: 0", "inclination: 70"),
+    "infinite": ENGINE.replace("rod_ratio: 5", "rod_ratio: infinite"),
+    "offset": ENGINE.replace("rod_ratio: 5", "rod_ratio: 3\noffset: 100 mm"),
+}
+RUBBING = [(engine, rubs) for rubs in (RUBS, STRONGLY) for engine in ENGINES.values()]
+
+
 @pytest.mark.parametrize(
-    "engine",
-    [
-        ENGINE,
-        EXACT,
-        EXACT.replace("inclination: 0", "inclination: 70"),
-        ENGINE.replace("rod_ratio: 5", "rod_ratio: infinite"),
-        ENGINE.replace("rod_ratio: 5", "rod_ratio: 3\noffset: 100 mm"),
-    ],
-    ids=["share", "exact", "leaning", "infinite", "offset"],
+    ("engine", "rubs"),
+    few(
+        RUBBING,
+        [(ENGINES["leaning"], STRONGLY), (ENGINES["offset"], RUBS)],
+        [f"{rubs}-{name}" for rubs in ("rubs", "strongly") for name in ENGINES],
+    ),
 )
-@pytest.mark.parametrize("rubs", [RUBS, STRONGLY], ids=["rubs", "strongly"])
 def test_energy_balance_closes(engine: str, rubs: str) -> None:
     """Also by the pieces of the cycle that all quadratures share: each is cut just where N changes sides."""
     case = Case(loads(engine + rubs))

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
@@ -25,6 +23,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.shaft.statics import FreeBody, weight_in_throw
 from kurbel.solver.strength.places import PARTS, places
 from machines import STEAM_CARD, constant_pressure
+from representative import few
 from shafts import body, place_at, shaft, strength
 
 HEAVY = {"flywheel_mass": 5000.0, "flywheel_position": 0.5}
@@ -89,7 +88,7 @@ def test_equilibrium(name: str) -> None:
     assert strength(**ENGINES[name]).equilibrium_residual <= 1e-14
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", few(ENGINES, [next(iter(ENGINES)), "steam"]))
 def test_largest_stresses_are_those_of_the_whole_cycle(name: str) -> None:
     """Brute force over 0.005° never finds more, and comes as near as its step allows beside a bend of the card."""
     solved = strength(**ENGINES[name])
@@ -298,12 +297,3 @@ def test_refused(changed: dict[str, Any], message: str) -> None:
     machine = Machine(both or (cylinder,), crankshaft=changed.get("crankshaft", shaft()))
     with pytest.raises(UsageError, match=message):
         _ = Case(machine).strength
-
-
-def test_forces_import_no_strength() -> None:
-    code = (
-        "import sys\nfrom kurbel.solver.case import Case\nimport kurbel.report.forces\n"
-        "assert not [name for name in sys.modules if 'strength' in name]"
-    )
-    result = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, encoding="utf-8")
-    assert result.returncode == 0, result.stderr

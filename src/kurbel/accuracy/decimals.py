@@ -102,15 +102,8 @@ def root(function: Function, low: Decimal, high: Decimal) -> Decimal:
 
 
 def arcsin(sin: Decimal) -> Decimal:
-    """Return the angle in degrees, from −90 to 90, by Newton from the float."""
-    import math
-
-    angle = Decimal(math.degrees(math.asin(float(sin))))
-    for _ in range(2 + getcontext().prec.bit_length()):
-        value, slope = sin_cos(angle)
-        if slope:
-            angle -= (value - sin) / slope * 180 / pi()
-    return angle
+    """Return the angle in degrees, from −90 to 90."""
+    return root(lambda degrees: sin_cos(degrees)[0] - sin, Decimal(-90), Decimal(90))
 
 
 _GOLD = Decimal("0.6180339887498948482045868343656381177203")

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurbel.accuracy.oracle import why_no_motion, why_not
-from kurbel.accuracy.rivals import summed_excess, trapezoid
-from kurbel.accuracy.textbook import TextbookCylinder, TextbookMachine, moved
+from kurbel.accuracy.rivals import MOTIONS, summed_excess, trapezoid
+from kurbel.accuracy.textbook import Moved, TextbookCylinder, TextbookMachine
 from kurbel.machine import Cylinder, Machine
 from kurbel.solver.cylinder.friction import mean_friction_over_rod_angle, redtenbacher_logarithm, redtenbacher_loss
 
@@ -39,25 +39,27 @@ def model_errors(machine: Machine) -> Iterator[Difference]:
     if not machine.cylinders or why_no_motion(machine.cylinders[0]):
         return
     first = machine.cylinders[0]
-    if not math.isinf(getattr(first.mechanism, "rod", math.inf)):
+    if not math.isinf(first.mechanism.rod_length):
         yield from _of_motion(first)
         if _has_torque(machine, first):
-            yield from _of_torque(machine, first)
+            yield from _of_torque(machine, {cause: {"formula": formula} for cause, formula in _FORMULAS.items()})
     if _has_torque(machine, first) and any(cylinder.masses for cylinder in machine.cylinders) and machine.speed:
-        yield from _massless(machine)
+        yield from _of_torque(machine, {"inertia left out": {"massless": True}})
     yield from _of_friction(machine, first)
 
 
-_FORMULAS = (("first-order formulas", "first-order"), ("infinite rod", "infinite"))
+_FORMULAS = {"first-order formulas": "first-order", "infinite rod": "infinite"}
 
 
 def _of_motion(cylinder: Cylinder) -> Iterator[Difference]:
-    phi = np.radians(np.arange(361.0))
-    exact = moved(cylinder.mechanism, phi)
-    for index, quantity in enumerate(("x", "c", "b")):
-        for cause, formula in _FORMULAS:
-            missed = np.abs(moved(cylinder.mechanism, phi, formula)[index] - exact[index]).max()
-            yield Difference(quantity, cause, float(missed / np.abs(exact[index]).max()))
+    exact, *others = (
+        Moved(cylinder.mechanism, np.radians(np.arange(361.0)), how) for how in ("exact", *_FORMULAS.values())
+    )
+    for quantity, asked in MOTIONS.items():
+        truth = getattr(exact, asked)
+        for cause, approximate in zip(_FORMULAS, others):
+            missed = np.abs(getattr(approximate, asked) - truth).max()
+            yield Difference(quantity, cause, float(missed / np.abs(truth).max()))
 
 
 def _has_torque(machine: Machine, cylinder: Cylinder) -> bool:
@@ -65,31 +67,17 @@ def _has_torque(machine: Machine, cylinder: Cylinder) -> bool:
     return has_gas and not any(why_not(machine, one) for one in machine.cylinders)
 
 
-def _of_torque(machine: Machine, cylinder: Cylinder) -> Iterator[Difference]:
-    phi = _turn(machine)
-    for formula in _FORMULAS:
-        approximate = TextbookCylinder(machine, cylinder, formula[1]).torque(phi)
-        yield from _of_largest(formula[0], approximate, TextbookCylinder(machine, cylinder).torque(phi))
-    for formula in _FORMULAS:
-        yield from _of_excess(formula[0], TextbookMachine(machine, formula[1]), TextbookMachine(machine), phi)
-
-
-def _massless(machine: Machine) -> Iterator[Difference]:
-    phi = _turn(machine)
-    first, cause = machine.cylinders[0], "inertia left out"
-    without = TextbookCylinder(machine, first, massless=True).torque(phi)
-    yield from _of_largest(cause, without, TextbookCylinder(machine, first).torque(phi))
-    yield from _of_excess(cause, TextbookMachine(machine, massless=True), TextbookMachine(machine), phi)
-
-
-def _of_largest(cause: str, torque: Array, exact: Array) -> Iterator[Difference]:
-    largest = float(exact.max())
-    yield from _relative("T_max", cause, float(torque.max()) - largest, largest, float(np.abs(exact).max()))
-
-
-def _of_excess(cause: str, textbook: TextbookMachine, exact: TextbookMachine, phi: Array) -> Iterator[Difference]:
-    swing = summed_excess(exact, _COUNT)
-    yield from _relative("ΔE", cause, summed_excess(textbook, _COUNT) - swing, swing, _turnover(exact.torque(phi)))
+def _of_torque(machine: Machine, causes: dict[str, dict[str, Any]]) -> Iterator[Difference]:
+    """Yield by how much simpler calculations miss the largest torque of the first cylinder, and ΔE."""
+    phi, first = _turn(machine), machine.cylinders[0]
+    exact, whole = TextbookCylinder(machine, first).torque(phi), TextbookMachine(machine)
+    largest, swing = float(exact.max()), summed_excess(whole, _COUNT)
+    for cause, simpler in causes.items():
+        missed = float(TextbookCylinder(machine, first, **simpler).torque(phi).max()) - largest
+        yield from _relative("T_max", cause, missed, largest, float(np.abs(exact).max()))
+    for cause, simpler in causes.items():
+        missed = summed_excess(TextbookMachine(machine, **simpler), _COUNT) - swing
+        yield from _relative("ΔE", cause, missed, swing, _turnover(whole.torque(phi)))
 
 
 _ZERO = 1e-12
@@ -110,11 +98,8 @@ def _of_friction(machine: Machine, cylinder: Cylinder) -> Iterator[Difference]:
     """Redtenbacher's means over the rod angle against each other, and against the work truly lost."""
     from kurbel.solver.cylinder.forces import CylinderForces
 
-    mechanism: Any = cylinder.mechanism
-    lam = getattr(mechanism, "lam", None)
-    f = cylinder.friction.crosshead if cylinder.friction else None
-    offset: float = getattr(mechanism, "offset", 0.0)
-    if not f or not lam or offset:
+    lam, f = cylinder.mechanism.lam, cylinder.friction.crosshead if cylinder.friction else None
+    if not f or not lam or cylinder.mechanism.offset:
         return
     true_mean = mean_friction_over_rod_angle(math.asin(lam), f)
     yield Difference("F_m", "Redtenbacher's logarithm, D 5", abs(redtenbacher_logarithm(lam, f) / true_mean - 1))

@@ -13,7 +13,7 @@ from kurbel.solver.case import Case
 class Saving(NamedTuple):
     """A machine with something left out: cached stages evaluated, seconds, and the time over that of the whole."""
 
-    what: str
+    machine: str
     stages: int
     median: float
     least: float

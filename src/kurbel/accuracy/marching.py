@@ -9,8 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kurbel.accuracy.periodic import SAMPLE_STEP
-from kurbel.accuracy.textbook import TextbookMachine, moved
+from kurbel.accuracy.given import Given
+from kurbel.accuracy.periodic import SAMPLE_STEP, around
+from kurbel.accuracy.textbook import Moved, TextbookMachine
 from kurbel.machine import Machine
 
 Array = NDArray[np.float64]
@@ -61,12 +62,10 @@ class SpeedProblem:
         """Return Σ (m x′² + (1 − s) m_r R²), with the rod's share s, and Σ m x′ x″ in kg m²."""
         square, product = np.zeros_like(phi), np.zeros_like(phi)
         for cylinder in self._machine.cylinders:
-            masses = cylinder.masses
-            rod = masses.connecting_rod if masses else None
-            mass = masses.parts + (rod.mass * rod.share if rod else 0.0) if masses else 0.0
-            at = moved(cylinder.mechanism, phi - math.radians(cylinder.crank_position))
-            square += mass * at.slope**2 + (rod.mass * (1 - rod.share) * cylinder.mechanism.crank**2 if rod else 0.0)
-            product += mass * at.slope * at.curvature
+            given = Given(self._machine, cylinder, float)
+            at = Moved(cylinder.mechanism, phi - math.radians(cylinder.crank_position))
+            square += given.mass * at.slope**2 + given.turning_inertia
+            product += given.mass * at.slope * at.curvature
         return square, product
 
     def effort(self, phi: Array) -> Array:
@@ -186,15 +185,8 @@ def implicit_trapezoid(problem: SpeedProblem, steps: int) -> March:
 
 def _cyclic(before: Array, after: Array, left: Array) -> Array:
     """Solve after_i d_(i+1) − before_i d_i = −left_i around the cycle."""
-    alpha, beta = (before / after).tolist(), (-left / after).tolist()
-    a, b = 1.0, 0.0
-    for factor, rest in zip(alpha, beta):
-        a, b = factor * a, factor * b + rest
-    value, found = b / (1 - a), []
-    for factor, rest in zip(alpha, beta):
-        found.append(value)
-        value = factor * value + rest
-    return np.array(found)
+    moves = zip((-left / after).tolist(), (before / after).tolist())
+    return np.roll([end for (end,) in around([[move] for move in moves])], 1)
 
 
 def scipy_march(problem: SpeedProblem, method: str, tolerance: float, turns: int) -> March:

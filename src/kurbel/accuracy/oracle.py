@@ -12,15 +12,15 @@ from math import isinf
 from typing import Any, NamedTuple
 
 from kurbel.accuracy.decimals import Function, arcsin, pi, root, sin_cos
-from kurbel.machine import CYCLES, Cylinder, Machine
-
-GRAVITY = Decimal("9.80665")
+from kurbel.accuracy.given import End, Given
+from kurbel.machine import Cylinder, Machine
+from kurbel.mechanisms import Mechanism
 
 
 class Position(NamedTuple):
-    """Where a slider-crank stands: x in m, dx/dφ, d²x/dφ², and sine and cosine of the rod angle."""
+    """Where a slider-crank stands: its coordinate x in m, dx/dφ, d²x/dφ², and sine and cosine of the rod angle."""
 
-    x: Decimal
+    coordinate: Decimal
     slope: Decimal
     curvature: Decimal
     sin_psi: Decimal
@@ -28,13 +28,18 @@ class Position(NamedTuple):
 
 
 class CrankMotion:
-    """R 285, 288, 291 (exact) with R, L, e in m; rod None is the infinite rod."""
+    """R 285, 288, 291 (exact) with R, L, e in m; an infinite rod has no offset."""
 
-    def __init__(self, crank: float, rod: float | None, offset: float = 0.0) -> None:
+    def __init__(self, crank: float, rod: float, offset: float = 0.0) -> None:
         self.crank = Decimal(crank)
-        self.rod = None if rod is None or isinf(rod) else Decimal(rod)
+        self.rod = None if isinf(rod) else Decimal(rod)
         self.offset = Decimal(offset) if self.rod is not None else Decimal(0)
         self.at = lru_cache(maxsize=4096)(self._at)
+
+    @classmethod
+    def of(cls, mechanism: Mechanism) -> "CrankMotion":
+        """Return that of a slider-crank, or of a Scotch yoke, its rod infinite."""
+        return cls(mechanism.crank, mechanism.rod_length, mechanism.offset)
 
     def _at(self, degrees: Decimal) -> Position:
         """Return x, dx/dφ, d²x/dφ² and the rod angle at a crank angle in degrees."""
@@ -76,7 +81,7 @@ class CrankMotion:
         low, high = (inner, outer) if outstroke else (outer, inner + 360)
         if fraction in (0, 1):
             return low if (fraction == 0) == outstroke else high
-        return root(lambda degrees: self.at(degrees).x / self.stroke - fraction, low, high)
+        return root(lambda degrees: self.at(degrees).coordinate / self.stroke - fraction, low, high)
 
 
 class Segment(NamedTuple):
@@ -92,12 +97,13 @@ class Segment(NamedTuple):
 class Chamber:
     """One end of a cylinder with a card. Gauge pressures in Pa."""
 
-    def __init__(self, card: Any, area: Decimal, head_end: bool, lift: Decimal, base: Decimal) -> None:
-        self.area = area
-        self.head_end = head_end
-        self._lift, self._base = lift, base
-        self._clearance = None if card.interpolate == "linear" else Decimal(card.clearance)
-        self.lines = tuple(tuple(self._segments(line)) for line in card.lines)
+    def __init__(self, end: End) -> None:
+        self.area: Decimal = end.area
+        self.head_end = end.head_end
+        self._lift: Decimal = end.lift
+        self._base: Decimal = end.base
+        self._clearance = None if end.card.interpolate == "linear" else Decimal(end.card.clearance)
+        self.lines = tuple(tuple(self._segments(line)) for line in end.card.lines)
 
     def _segments(self, line: Any) -> Iterator[Segment]:
         points = [(Decimal(z), Decimal(p)) for z, p in zip(line.fractions, line.pressures)]
@@ -163,18 +169,18 @@ class CylinderOracle:
     """Forces of one cylinder; angles in degrees of its own crank."""
 
     def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
-        mechanism: Any = cylinder.mechanism
-        self.motion = CrankMotion(mechanism.crank, getattr(mechanism, "rod", None), getattr(mechanism, "offset", 0.0))
-        self.turns = CYCLES[machine.cycle_of(cylinder)]
+        self.motion = CrankMotion.of(cylinder.mechanism)
+        given = Given(machine, cylinder, Decimal)
+        self.turns = given.turns
         self.omega = None if machine.speed is None else 2 * pi() * Decimal(machine.speed)
-        self.chambers = tuple(_chambers(machine, cylinder))
-        self.mass = _mass(cylinder) if self.omega is not None else Decimal(0)
-        self.turning_inertia = _turning_inertia(cylinder)
-        self._has_guide = mechanism.name != "scotch-yoke"
-        self.weight, self.guide_weight = _weights(machine, cylinder)
-        friction = cylinder.friction
-        self.friction = Decimal(friction.crosshead or 0) if friction and self._has_guide else Decimal(0)
-        self.rings = _steady_friction(cylinder)
+        self.chambers = tuple(map(Chamber, given.ends))
+        self.mass: Decimal = given.mass if self.omega is not None else Decimal(0)
+        self.turning_inertia: Decimal = given.turning_inertia
+        sin, cos = sin_cos(Decimal(given.lean or 0))
+        self.weight: Decimal = given.weight * sin
+        self.guide_weight: Decimal = given.weight * cos
+        self.friction: Decimal = given.crosshead
+        self.rings: Decimal = given.steady_friction
 
     def stroke_number(self, within: Decimal) -> int:
         """Return how many dead centres lie between the first inner one of the cycle and an angle."""
@@ -186,7 +192,7 @@ class CylinderOracle:
     def gas_force(self, degrees: Decimal, within: Decimal) -> Decimal:
         """Return p_H A_H − p_C A_C of all pistons in N."""
         stroke, motion = self.stroke_number(within), self.motion
-        share, inside = motion.at(degrees).x / motion.stroke, motion.at(within).x / motion.stroke
+        share, inside = motion.at(degrees).coordinate / motion.stroke, motion.at(within).coordinate / motion.stroke
         return sum(
             (c.area * c.pressure(stroke, share, inside) * (1 if c.head_end else -1) for c in self.chambers), Decimal(0)
         )
@@ -259,58 +265,3 @@ def _apart(angles: list[Decimal]) -> tuple[Decimal, ...]:
 def _modulo(value: Decimal, period: int) -> Decimal:
     rest = value % period
     return rest + period if rest < 0 else rest
-
-
-def _chambers(machine: Machine, cylinder: Cylinder) -> Iterator[Chamber]:
-    ambient = Decimal(machine.ambient)
-    for piston in cylinder.pistons:
-        if piston.indicator is None:
-            continue
-        absolute = piston.indicator.absolute
-        lift, base = (Decimal(0), ambient) if absolute else (ambient, Decimal(0))
-        ends = (
-            (piston.indicator.head_end, piston.head_end_rod, True),
-            (
-                piston.indicator.crank_end,
-                piston.crank_end_rod,
-                False,
-            ),
-        )
-        for card, rod, head_end in ends:
-            if card is not None:
-                area = pi() / 4 * (Decimal(piston.bore) ** 2 - Decimal(rod) ** 2)
-                yield Chamber(card, area, head_end, lift, base)
-
-
-def _mass(cylinder: Cylinder) -> Decimal:
-    masses = cylinder.masses
-    if masses is None:
-        return Decimal(0)
-    rod = masses.connecting_rod
-    return Decimal(masses.parts) + (Decimal(rod.mass) * Decimal(rod.share) if rod else 0)
-
-
-def _turning_inertia(cylinder: Cylinder) -> Decimal:
-    """Return (1 − s) m_r R² in kg m²: what of the connecting rod turns with the crank pin."""
-    rod = cylinder.masses.connecting_rod if cylinder.masses else None
-    return Decimal(rod.mass) * (1 - Decimal(rod.share)) * Decimal(cylinder.mechanism.crank) ** 2 if rod else Decimal(0)
-
-
-def _weights(machine: Machine, cylinder: Cylinder) -> tuple[Decimal, Decimal]:
-    lean = machine.lean_of(cylinder)
-    if lean is None or cylinder.masses is None:
-        return Decimal(0), Decimal(0)
-    sin, cos = sin_cos(Decimal(lean))
-    weight = _mass(cylinder) * GRAVITY
-    return weight * sin, weight * cos
-
-
-def _steady_friction(cylinder: Cylinder) -> Decimal:
-    rings = cylinder.friction.rings if cylinder.friction else None
-    constant = Decimal((cylinder.friction.constant if cylinder.friction else None) or 0.0)
-    if rings is None:
-        return constant
-    bore = Decimal(cylinder.pistons[0].bore)
-    return constant + rings.count * pi() * bore * Decimal(rings.height) * Decimal(rings.pressure) * Decimal(
-        rings.coefficient
-    )

@@ -214,7 +214,7 @@ def _periodic(elements: list[_Element], law: _Law, matrix: Any, start: list[list
             _linearised(element, law, matrix, own, stages[index - 1][-1])
             for index, (element, own) in enumerate(zip(elements, stages))
         ]
-        steps = _around([[(part, slope) for part, slope in move] for move in moves])
+        steps = around(moves)
         stages = [[value + step for value, step in zip(own, moved)] for own, moved in zip(stages, steps)]
         size = max(
             abs(step) / energy for moved, element in zip(steps, elements) for step, energy in zip(moved, element.energy)
@@ -224,7 +224,7 @@ def _periodic(elements: list[_Element], law: _Law, matrix: Any, start: list[list
     raise NoReference("the reference of the speed line did not converge")
 
 
-def _around(moves: list[list[tuple[Any, Any]]]) -> list[list[Any]]:
+def around(moves: Sequence[Sequence[Sequence[Any]]]) -> list[list[Any]]:
     """Return the corrections of all stages: d = part + slope · d_start, and the last of an element starts the next.
 
     Over the cycle d_end = α d_start + β, and the cycle closes with d_start = β/(1 − α).
@@ -281,7 +281,7 @@ class Sketch:
             system = np.eye(len(self._matrix)) - scaled * slope[:, None, :]
             left = np.roll(stages[:, -1], 1)[:, None] + np.einsum("kij,kj->ki", scaled, rate) - stages
             moves = np.linalg.solve(system, np.stack((left, np.ones_like(left)), axis=2))
-            steps = np.array(_around(moves.tolist()))
+            steps = np.array(around(moves.tolist()))
             stages = stages + steps * min(1.0, *(0.5 / np.maximum(-steps / stages, 1e-9)).ravel().tolist())
             size = float(np.abs(steps / energy).max())
             # a heavy flywheel amplifies rounding; where the steps shrink no more, the decimals take over

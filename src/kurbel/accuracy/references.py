@@ -16,9 +16,9 @@ from kurbel.accuracy.oracle import Chamber, CrankMotion, CylinderOracle, Segment
 from kurbel.machine import Machine
 
 
-def motion_at(motion: CrankMotion, degrees: Sequence[float]) -> list[tuple[Decimal, Decimal, Decimal]]:
-    """Return x, dx/dφ and d²x/dφ² in m at crank angles (n,)."""
-    return [motion.at(Decimal(angle))[:3] for angle in degrees]
+def motion_at(motion: CrankMotion, degrees: Sequence[float], asked: str) -> list[Decimal]:
+    """Return the `coordinate`, `slope` or `curvature` in m at crank angles (n,)."""
+    return [getattr(motion.at(Decimal(angle)), asked) for angle in degrees]
 
 
 def largest_slope(motion: CrankMotion) -> Decimal:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,9 +11,9 @@ from numpy.typing import NDArray
 
 from kurbel.accuracy import marching
 from kurbel.accuracy.periodic import SAMPLE_STEP
-from kurbel.accuracy.textbook import TextbookCylinder, TextbookMachine, alone
+from kurbel.accuracy.textbook import Moved, TextbookCylinder, TextbookMachine
 from kurbel.crank_angle import CrankAngle
-from kurbel.machine import CYCLES, Cylinder, Machine
+from kurbel.machine import CYCLES, Machine
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
@@ -44,38 +45,51 @@ def _turn(count: int, turns: int = 1) -> Array:
     return np.asarray(np.arange(count * turns) * (2 * math.pi / count))
 
 
+def _tabled(answers: dict[str, Callable[[int, str], Any]], turns: int, quick: bool) -> Iterator[Method]:
+    """Yield methods by divisions of a turn: the book's with its printed factors, then ever finer ones.
+
+    answers: takes how many divisions, and by which formula of `Moved`; the book has the first.
+    """
+    by_book = next(iter(answers.values()))
+    for parts in (18, 36):
+        name, run = f"book, {parts // 2} divisions", partial(by_book, parts, "printed")
+        yield Method(name, str(parts), run, parts * turns)
+    for name, answer in answers.items():
+        for count in divisions(quick):
+            yield Method(name, str(count), partial(answer, count, "exact"), count * turns)
+
+
 # motion
 
-MOTIONS = ("x", "c", "b")
-_COORDINATES = ("coordinate", "slope", "curvature")
+MOTIONS = {"x": "coordinate", "c": "slope", "b": "curvature"}
+"""What is asked of a motion -> what mechanisms and `Moved` call it."""
 
 
-def motion_methods(cylinder: Cylinder, quantity: str, angles: Sequence[float], quick: bool) -> Iterator[Method]:
+def motion_methods(quantity: str, angles: Sequence[float], machine: Machine, quick: bool) -> Iterator[Method]:
     """Yield methods for x, c or b at crank angles (n,) in degrees, each as its derivative by φ in m."""
-    order = MOTIONS.index(quantity)
-    degrees = np.array(angles)
-    mechanism: Any = cylinder.mechanism
-    own = getattr(mechanism, _COORDINATES[order])
+    asked, order, degrees = MOTIONS[quantity], list(MOTIONS).index(quantity), np.array(angles)
+    mechanism: Any = machine.cylinders[0].mechanism
+    own = getattr(mechanism, asked)
     yield Method(OWN, "closed", lambda: own(CrankAngle.of(degrees)), len(degrees))
-    yield Method("textbook, radians", "closed", lambda: alone(mechanism, np.radians(degrees), order), len(degrees))
+    by_book = partial(_of_textbook, mechanism, degrees, asked)
+    yield Method("textbook, radians", "closed", by_book, len(degrees))
     for count in divisions(quick) if order else ():
-        step = 2 * math.pi / count
-        yield Method(
-            "differences of x", str(count), _differences(mechanism, degrees, order, step), (order + 1) * len(degrees)
-        )
+        run = partial(differences, mechanism, degrees, order, 2 * math.pi / count)
+        yield Method("differences of x", str(count), run, (order + 1) * len(degrees))
 
 
-def _differences(mechanism: Any, degrees: Array, order: int, step: float) -> Callable[[], Array]:
-    def first() -> Array:
-        phi = np.radians(degrees)
-        return np.asarray((alone(mechanism, phi + step, 0) - alone(mechanism, phi - step, 0)) / (2 * step))
+def _of_textbook(mechanism: Any, degrees: Array, asked: str) -> Array:
+    found: Array = getattr(Moved(mechanism, np.radians(degrees)), asked)
+    return found
 
-    def second() -> Array:
-        phi = np.radians(degrees)
-        around = alone(mechanism, phi + step, 0) - 2 * alone(mechanism, phi, 0) + alone(mechanism, phi - step, 0)
-        return np.asarray(around / step**2)
 
-    return first if order == 1 else second
+def differences(mechanism: Any, degrees: Array, order: int, step: float) -> Array:
+    """Return dx/dφ (order 1) or d²x/dφ² (order 2) in m by differences of x over a step in radians."""
+    phi = np.radians(degrees)
+    before, after = (Moved(mechanism, phi + sign * step).coordinate for sign in (-1, 1))
+    if order == 1:
+        return np.asarray((after - before) / (2 * step))
+    return np.asarray((after - 2 * Moved(mechanism, phi).coordinate + before) / step**2)
 
 
 # quadratures
@@ -92,75 +106,59 @@ def simpson(function: Callable[[Array], Array], count: int, turns: int) -> float
     return float((2 * np.sum(values[::2]) + 4 * np.sum(values[1::2])) / 3 * (2 * math.pi / count))
 
 
-def _quadratures(machine: Machine, cylinder: Cylinder, quick: bool, power: str) -> Iterator[Method]:
-    """Yield the book's and the usual quadratures of a power of TextbookCylinder."""
+def _quadratures(machine: Machine, quick: bool, power: str) -> Iterator[Method]:
+    """Yield the book's and the usual quadratures of a power of the first cylinder's TextbookCylinder."""
+    first = machine.cylinders[0]
 
-    def rule(how: Callable[..., float], count: int, formula: str = "exact") -> Callable[[], float]:
-        def run() -> float:
-            textbook = TextbookCylinder(machine, cylinder, formula)
-            return how(getattr(textbook, power), count, textbook.turns)
+    def by(rule: Callable[..., float]) -> Callable[[int, str], float]:
+        def answer(count: int, formula: str) -> float:
+            textbook = TextbookCylinder(machine, first, formula)
+            return rule(getattr(textbook, power), count, textbook.turns)
 
-        return run
+        return answer
 
-    turns = CYCLES[machine.cycle_of(cylinder)]
-    for parts in (9, 18):
-        yield Method(
-            f"book, {parts} divisions", str(2 * parts), rule(trapezoid, 2 * parts, "printed"), 2 * parts * turns
-        )
-    for name, how in (("trapezium rule", trapezoid), ("Simpson's rule", simpson)):
-        for count in divisions(quick):
-            yield Method(name, str(count), rule(how, count), count * turns)
+    rules = {"trapezium rule": by(trapezoid), "Simpson's rule": by(simpson)}
+    return _tabled(rules, CYCLES[machine.cycle_of(first)], quick)
 
 
-def work_methods(machine: Machine, cylinder: Cylinder, quick: bool) -> Iterator[Method]:
-    """Yield methods for the indicated work in J per cycle."""
-    yield Method(OWN, "closed", lambda: CylinderForces(machine, cylinder).work)
-    yield from _quadratures(machine, cylinder, quick, "gas_power")
+def work_methods(machine: Machine, quick: bool) -> Iterator[Method]:
+    """Yield methods for the indicated work in J per cycle of the first cylinder."""
+    yield Method(OWN, "closed", lambda: CylinderForces(machine, machine.cylinders[0]).work)
+    yield from _quadratures(machine, quick, "gas_power")
 
 
-def friction_methods(machine: Machine, cylinder: Cylinder, quick: bool) -> Iterator[Method]:
-    """Yield methods for the work of friction in J per cycle."""
-    yield Method(OWN, "Gauss 16", lambda: CylinderForces(machine, cylinder).friction_work)
-    yield from _quadratures(machine, cylinder, quick, "friction_power")
+def friction_methods(machine: Machine, quick: bool) -> Iterator[Method]:
+    """Yield methods for its work of friction in J per cycle."""
+    yield Method(OWN, "Gauss 16", lambda: CylinderForces(machine, machine.cylinders[0]).friction_work)
+    yield from _quadratures(machine, quick, "friction_power")
 
 
-def extreme_methods(machine: Machine, cylinder: Cylinder, quick: bool) -> Iterator[Method]:
-    """Yield methods for the largest and the smallest T in N."""
+def extreme_methods(machine: Machine, quick: bool) -> Iterator[Method]:
+    """Yield methods for its largest and its smallest T in N."""
+    first = machine.cylinders[0]
 
     def own() -> Array:
-        found = CylinderForces(machine, cylinder).extremes_of("T")
+        found = CylinderForces(machine, first).extremes_of("T")
         assert found is not None
         return np.array([found.largest.value, found.smallest.value])
 
-    def sampled(count: int, formula: str) -> Callable[[], Array]:
-        def run() -> Array:
-            textbook = TextbookCylinder(machine, cylinder, formula)
-            values = textbook.torque(_turn(count, textbook.turns)) / textbook.mechanism.crank
-            return np.array([values.max(), values.min()])
+    def ordinates(count: int, formula: str) -> Array:
+        textbook = TextbookCylinder(machine, first, formula)
+        values = textbook.torque(_turn(count, textbook.turns)) / textbook.mechanism.crank
+        return np.array([values.max(), values.min()])
 
-        return run
-
-    turns = TextbookCylinder(machine, cylinder).turns
     yield Method(OWN, "roots of T′", own)
-    for parts in (9, 18):
-        yield Method(f"book, {parts} divisions", str(2 * parts), sampled(2 * parts, "printed"), 2 * parts * turns)
-    for count in divisions(quick):
-        yield Method("largest ordinate", str(count), sampled(count, "exact"), count * turns)
+    yield from _tabled({"largest ordinate": ordinates}, CYCLES[machine.cycle_of(first)], quick)
 
 
 def excess_methods(machine: Machine, quick: bool) -> Iterator[Method]:
     """Yield methods for ΔE in J."""
 
-    def summed(count: int, formula: str) -> Callable[[], float]:
-        return lambda: summed_excess(TextbookMachine(machine, formula), count)
+    def summed(count: int, formula: str) -> float:
+        return summed_excess(TextbookMachine(machine, formula), count)
 
     yield Method(OWN, "closed", lambda: Case(machine).flywheel.dE)
-    for parts in (9, 18):
-        yield Method(
-            f"book, {parts} divisions", str(2 * parts), summed(2 * parts, "printed"), 2 * parts * machine.revolutions
-        )
-    for count in divisions(quick):
-        yield Method("trapezium rule", str(count), summed(count, "exact"), count * machine.revolutions)
+    yield from _tabled({"trapezium rule": summed}, machine.revolutions, quick)
 
 
 def summed_excess(textbook: TextbookMachine, count: int, **disturbed: Any) -> float:
@@ -186,22 +184,18 @@ def speed_methods(machine: Machine, quick: bool) -> Iterator[Method]:
     yield Method(OWN, "1e-13", lambda: Case(machine).flywheel.at(angles).omega)
     mean = Case(machine).flywheel.M_mean
 
-    def problem() -> marching.SpeedProblem:
-        return marching.SpeedProblem(machine, mean)
+    def by(how: Callable[..., Any], *rest: Any) -> Callable[[], Any]:
+        return lambda: how(marching.SpeedProblem(machine, mean), *rest)
 
     for steps in (360,) if quick else (360, 3600):
-        yield Method("Runge-Kutta 4, marched", str(steps), _bound(marching.runge_kutta, problem, steps, turns))
+        yield Method("Runge-Kutta 4, marched", str(steps), by(marching.runge_kutta, steps, turns))
     for steps in (360, 3600) if quick else (360, 3600, 36_000):
-        yield Method("implicit trapezium, periodic", str(steps), _bound(marching.implicit_trapezoid, problem, steps))
+        yield Method("implicit trapezium, periodic", str(steps), by(marching.implicit_trapezoid, steps))
     if has_scipy():
         for name in ("LSODA",) if quick else ("Radau", "BDF", "LSODA"):
             for tolerance in (1e-8,) if quick else (1e-6, 1e-10):
-                run = _bound(marching.scipy_march, problem, name, tolerance, turns)
+                run = by(marching.scipy_march, name, tolerance, turns)
                 yield Method(f"scipy {name}, marched", f"{tolerance:.0e}", run)
-
-
-def _bound(how: Callable[..., Any], problem: Callable[[], Any], *rest: Any) -> Callable[[], Any]:
-    return lambda: how(problem(), *rest)
 
 
 def has_scipy() -> bool:
@@ -220,7 +214,7 @@ class Counted:
     def __init__(self, mechanism: Any) -> None:
         self._mechanism = mechanism
         self.angles = 0
-        self._counts = dict.fromkeys(_COORDINATES, 0)
+        self._counts = dict.fromkeys(MOTIONS.values(), 0)
 
     def __getattr__(self, name: str) -> Any:
         found = getattr(self._mechanism, name)

@@ -24,55 +24,22 @@ class Scene(NamedTuple):
         return tuple(360.0 * self.turns + degree for degree in range(361))
 
 
-_STEAM = """
-bore: 450 mm
-indicator:
-  head_end:
-    unit: at
-    expansion:   [[0, 9.5], [0.35, 9.5], [0.5, 6.7], [0.7, 4.7], [0.95, 3.3], [1, 2.2]]
-    compression: [[1, 1.2], [0.25, 1.2], [0.1, 2.4], [0.02, 6.5], [0, 9.5]]
-  crank_end: mirrored
-"""
-_ENGINE = f"""
-name: Steam engine
-speed: 50 rpm
-crank: 400 mm
-rod: 2000 mm
-{_STEAM}
-masses: {{piston: 200 kg}}
-inclination: 0 deg
-friction: {{crosshead: 0.06}}
-flywheel: {{inertia: 900 kg m2}}
-load: {{power_law: 2}}
-"""
-_STIFF = f"""
-name: "Stiff: on the grid, slip 1e-6"
-speed: 50 rpm
-crank: 400 mm
-rod: 2000 mm
-{_STEAM}
-masses: {{piston: 200 kg}}
-flywheel: {{inertia: 20 kg m2}}
-load: {{slip: 1e-6}}
-"""
-_HEAVY = f"""
-name: "Slow: heavy flywheel and a fan"
-speed: 50 rpm
-crank: 400 mm
-rod: 2000 mm
-{_STEAM}
-flywheel: {{inertia: 6e7 kg m2}}
-load: {{power_law: 2}}
-"""
-_SHORT_ROD = f"""
-name: Short rod, L/R = 1.01
-speed: 50 rpm
-crank: 400 mm
-rod: 404 mm
-{_STEAM}
-masses: {{piston: 200 kg}}
-friction: {{crosshead: 0.06}}
-"""
+STEAM = (
+    "{unit: at, expansion: [[0, 9.5], [0.35, 9.5], [0.5, 6.7], [0.7, 4.7], [0.95, 3.3], [1, 2.2]], "
+    "compression: [[1, 1.2], [0.25, 1.2], [0.1, 2.4], [0.02, 6.5], [0, 9.5]]}"
+)
+"""The card of a steam engine."""
+
+
+def _plain(name: str, rod: str = "2000 mm", more: str = "") -> str:
+    return f'{{name: "{name}", speed: 50 rpm, crank: 400 mm, rod: {rod}{more}}}'
+
+
+def _steam(name: str, more: str, rod: str = "2000 mm") -> str:
+    return _plain(name, rod, f", bore: 450 mm, indicator: {{head_end: {STEAM}, crank_end: mirrored}}, {more}")
+
+
+_PISTON, _RUBS, _FAN = "masses: {piston: 200 kg}", "friction: {crosshead: 0.06}", "load: {power_law: 2}"
 _GAS_ENGINE = """
 name: Gas engine, offset
 speed: 160 rpm
@@ -97,19 +64,6 @@ friction: {crosshead: 0.05, rings: {count: 5, height: 12 mm, pressure: 0.4 bar, 
 flywheel: {inertia: 4000 kg m2}
 load: {slip: 0.02}
 """
-_LONG_ROD = """
-name: Long rod, L/R = 1e6
-speed: 50 rpm
-crank: 400 mm
-rod: 400 km
-"""
-_MILLIONTH = """
-name: Millionth turn
-speed: 50 rpm
-crank: 400 mm
-rod: 2000 mm
-"""
-
 
 Loads = Callable[[str], Machine]
 """Reads the text of a machine file: only the command line knows how."""
@@ -117,13 +71,16 @@ Loads = Callable[[str], Machine]
 
 def built_in(quick: bool, loads: Loads) -> list[Scene]:
     """Return the built-in scenes, of the quick run those that belong to it."""
+    engine = f"{_PISTON}, inclination: 0 deg, {_RUBS}, flywheel: {{inertia: 900 kg m2}}, {_FAN}"
+    stiff = f"{_PISTON}, flywheel: {{inertia: 20 kg m2}}, load: {{slip: 1e-6}}"
+    heavy = f"flywheel: {{inertia: 6e7 kg m2}}, {_FAN}"
     scenes = [
-        Scene(loads(_ENGINE), quick=True),
+        Scene(loads(_steam("Steam engine", engine)), quick=True),
         Scene(loads(_GAS_ENGINE)),
-        Scene(loads(_SHORT_ROD)),
-        Scene(loads(_LONG_ROD), quick=True),
-        Scene(loads(_MILLIONTH), turns=10**6),
-        Scene(loads(_STIFF), quick=True, moving=False),
-        Scene(loads(_HEAVY), moving=False),
+        Scene(loads(_steam("Short rod, L/R = 1.01", f"{_PISTON}, {_RUBS}", "404 mm"))),
+        Scene(loads(_plain("Long rod, L/R = 1e6", "400 km")), quick=True),
+        Scene(loads(_plain("Millionth turn")), turns=10**6),
+        Scene(loads(_steam("Stiff: on the grid, slip 1e-6", stiff)), quick=True, moving=False),
+        Scene(loads(_steam("Slow: heavy flywheel and a fan", heavy)), moving=False),
     ]
     return [scene for scene in scenes if scene.quick or not quick]

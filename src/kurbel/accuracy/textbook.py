@@ -6,57 +6,81 @@ velocity factor to three decimals, as Zusammenstellung 112 has it.
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kurbel.machine import CYCLES, Cylinder, Machine
+from kurbel.accuracy.given import End, Given
+from kurbel.machine import Cylinder, Machine
 
 Array = NDArray[np.float64]
-_GRAVITY = 9.80665
 FORMULAS = ("exact", "first-order", "infinite", "printed")
 
 
-class Moved(NamedTuple):
-    """x in m, dx/dφ and d²x/dφ² in m, and the rod angle ψ in radians, each (n,)."""
+class Moved:
+    """The motion at crank angles (n,) in radians, (n,) each; every formula is computed when it is asked for."""
 
-    x: Array
-    slope: Array
-    curvature: Array
-    psi: Array
+    def __init__(self, mechanism: Any, phi: Array, formula: str = "exact") -> None:
+        self.phi, self.r, self.rod, self.offset = phi, mechanism.crank, mechanism.rod_length, mechanism.offset
+        self.lam = self.r / self.rod
+        self.formula = "infinite" if math.isinf(self.rod) else formula
 
+    @cached_property
+    def psi(self) -> Array:
+        """The rod angle in radians."""
+        if self.formula == "infinite":
+            return np.zeros_like(self.phi)
+        return np.asarray(np.arcsin((self.r * np.sin(self.phi) - self.offset) / self.rod))
 
-def moved(mechanism: Any, phi: Array, formula: str = "exact") -> Moved:
-    """Return the motion at crank angles (n,) in radians."""
-    r, rod = mechanism.crank, getattr(mechanism, "rod", math.inf)
-    if math.isinf(rod) or formula == "infinite":
-        return Moved(r * (1 - np.cos(phi)), r * np.sin(phi), r * np.cos(phi), np.zeros_like(phi))
-    lam, offset = r / rod, mechanism.offset
-    psi = np.arcsin((r * np.sin(phi) - offset) / rod)
-    if formula == "first-order":
-        x = r * (1 - np.cos(phi) + lam / 2 * np.sin(phi) ** 2)
-        return Moved(x, r * (np.sin(phi) + lam / 2 * np.sin(2 * phi)), r * (np.cos(phi) + lam * np.cos(2 * phi)), psi)
-    factor = np.sin(phi + psi) / np.cos(psi)
-    x = math.sqrt((rod + r) ** 2 - offset**2) - r * np.cos(phi) - rod * np.cos(psi)
-    if formula == "printed":
-        return Moved(x, r * np.round(factor, 3), r * (np.cos(phi) + lam * np.cos(2 * phi)), psi)
-    bend = np.cos(phi + psi) / np.cos(psi) + lam * np.cos(phi) ** 2 / np.cos(psi) ** 3
-    return Moved(x, r * factor, r * bend, psi)
+    @property
+    def coordinate(self) -> Array:
+        """The way x in m."""
+        r, phi = self.r, self.phi
+        if self.formula == "infinite":
+            return np.asarray(r * (1 - np.cos(phi)))
+        if self.formula == "first-order":
+            return np.asarray(r * (1 - np.cos(phi) + self.lam / 2 * np.sin(phi) ** 2))
+        outer = math.sqrt((self.rod + r) ** 2 - self.offset**2)
+        return np.asarray(outer - r * np.cos(phi) - self.rod * np.cos(self.psi))
 
+    @property
+    def slope(self) -> Array:
+        """dx/dφ in m."""
+        if self.formula == "infinite":
+            return np.asarray(self.r * np.sin(self.phi))
+        if self.formula == "first-order":
+            return np.asarray(self.r * (np.sin(self.phi) + self.lam / 2 * np.sin(2 * self.phi)))
+        factor = np.sin(self.phi + self.psi) / np.cos(self.psi)
+        return np.asarray(self.r * (np.round(factor, 3) if self.formula == "printed" else factor))
 
-def alone(mechanism: Any, phi: Array, order: int) -> Array:
-    """Return x, dx/dφ or d²x/dφ² (order 0, 1, 2) in m by the exact formulas of the book, and nothing else."""
-    r, rod = mechanism.crank, getattr(mechanism, "rod", math.inf)
-    if math.isinf(rod):
-        return np.asarray((r * (1 - np.cos(phi)), r * np.sin(phi), r * np.cos(phi))[order])
-    psi = np.arcsin((r * np.sin(phi) - mechanism.offset) / rod)
-    if order == 0:
-        outer = math.sqrt((rod + r) ** 2 - mechanism.offset**2)
-        return np.asarray(outer - r * np.cos(phi) - rod * np.cos(psi))
-    if order == 1:
-        return np.asarray(r * np.sin(phi + psi) / np.cos(psi))
-    return np.asarray(r * (np.cos(phi + psi) / np.cos(psi) + r / rod * np.cos(phi) ** 2 / np.cos(psi) ** 3))
+    @property
+    def curvature(self) -> Array:
+        """d²x/dφ² in m."""
+        phi, psi = self.phi, self.psi
+        if self.formula == "infinite":
+            return np.asarray(self.r * np.cos(phi))
+        if self.formula in ("first-order", "printed"):
+            return np.asarray(self.r * (np.cos(phi) + self.lam * np.cos(2 * phi)))
+        bend = self.lam * np.cos(phi) ** 2 / np.cos(psi) ** 3
+        return np.asarray(self.r * (np.cos(phi + psi) / np.cos(psi) + bend))
+
+    @property
+    def stroke(self) -> float:
+        """s in m."""
+        if self.formula == "infinite":
+            return float(2 * self.r)
+        far, near = ((self.rod + sign * self.r) ** 2 - self.offset**2 for sign in (1, -1))
+        return math.sqrt(far) - math.sqrt(near)
+
+    @property
+    def dead_centres(self) -> tuple[float, float]:
+        """The inner and the outer one in radians."""
+        if self.formula == "infinite":
+            return 0.0, math.pi
+        outer = math.pi + math.asin(self.offset / (self.rod - self.r))
+        return math.asin(self.offset / (self.rod + self.r)), outer
 
 
 class TextbookCylinder:
@@ -65,58 +89,39 @@ class TextbookCylinder:
     def __init__(self, machine: Machine, cylinder: Cylinder, formula: str = "exact", massless: bool = False) -> None:
         self.mechanism: Any = cylinder.mechanism
         self.formula = formula
-        self.turns = CYCLES[machine.cycle_of(cylinder)]
-        masses = None if massless else cylinder.masses
-        rod = masses.connecting_rod if masses else None
-        mass = masses.parts + (rod.mass * rod.share if rod else 0.0) if masses else 0.0
-        self._inertia = mass * (2 * math.pi * machine.speed) ** 2 if machine.speed else 0.0
-        incline = math.radians(machine.lean_of(cylinder) or 0.0)
-        has_weight = masses is not None and cylinder.inclination is not None
-        self._along = mass * _GRAVITY * math.sin(incline) if has_weight else 0.0
-        self._across = mass * _GRAVITY * math.cos(incline) if has_weight else 0.0
-        friction = cylinder.friction
-        self._f = (friction.crosshead or 0.0) if friction and cylinder.mechanism.has_rod else 0.0
-        self._rings = _steady_friction(cylinder)
-        self._ends = [end for piston in cylinder.pistons if piston.indicator for end in _ends(piston, machine.ambient)]
+        given = Given(machine, cylinder, float, massless)
+        self.turns = given.turns
+        self._inertia = given.mass * (2 * math.pi * machine.speed) ** 2 if machine.speed else 0.0
+        lean = math.radians(given.lean or 0.0)
+        self._along, self._across = given.weight * math.sin(lean), given.weight * math.cos(lean)
+        self._f: float = given.crosshead
+        self._rings: float = given.steady_friction
+        self._ends = [(end, [_line(end, line) for line in end.card.lines]) for end in given.ends]
 
     def gas_force(self, phi: Array, shift: float = 0.0, noise: Callable[[Array], Array] | None = None) -> Array:
         """Return the gas force in N.
 
         shift: radians by which the pressures are taken too late; noise: what is put on each chamber's pressures.
         """
-        from_card = moved(self.mechanism, phi - shift, "infinite" if self.formula == "infinite" else "exact")
-        stroke = self._stroke
-        share, turned = np.clip(from_card.x / stroke, 0.0, 1.0), np.mod(phi - shift, 2 * math.pi * self.turns)
-        inner, outer = self._dead_centres
-        since = np.mod(turned - inner, 2 * math.pi * self.turns)
+        on_card = Moved(self.mechanism, phi - shift, "infinite" if self.formula == "infinite" else "exact")
+        share, cycle = np.clip(on_card.coordinate / on_card.stroke, 0.0, 1.0), 2 * math.pi * self.turns
+        inner, outer = on_card.dead_centres
+        since = np.mod(np.mod(phi - shift, cycle) - inner, cycle)
         number = 2 * (since // (2 * math.pi)) + (np.mod(since, 2 * math.pi) >= outer - inner)
         total = np.zeros_like(phi)
-        for area, sign, lines in self._ends:
-            z, which = (share, number) if sign > 0 else (1 - share, number - 1)
+        for end, lines in self._ends:
+            z, which = (share, number) if end.head_end else (1 - share, number - 1)
             pressure = np.zeros_like(phi)
             for index, line in enumerate(lines):
                 here = which % len(lines) == index
                 pressure[here] = line(z[here])
-            total += sign * area * (pressure if noise is None else pressure + noise(pressure))
+            area = end.area if end.head_end else -end.area
+            total += area * (pressure if noise is None else pressure + noise(pressure))
         return total
-
-    @property
-    def _stroke(self) -> float:
-        r, rod, e = self.mechanism.crank, getattr(self.mechanism, "rod", math.inf), getattr(self.mechanism, "offset", 0)
-        if math.isinf(rod) or self.formula == "infinite":
-            return float(2 * r)
-        return math.sqrt((rod + r) ** 2 - e**2) - math.sqrt((rod - r) ** 2 - e**2)
-
-    @property
-    def _dead_centres(self) -> tuple[float, float]:
-        r, rod, e = self.mechanism.crank, getattr(self.mechanism, "rod", math.inf), getattr(self.mechanism, "offset", 0)
-        if math.isinf(rod) or self.formula == "infinite":
-            return 0.0, math.pi
-        return math.asin(e / (rod + r)), math.pi + math.asin(e / (rod - r))
 
     def forces(self, phi: Array, **disturbed: Any) -> tuple[Array, Array, Moved]:
         """Return P and the crosshead's drag in N, and the motion; disturbed: as for `gas_force`."""
-        motion = moved(self.mechanism, phi, self.formula)
+        motion = Moved(self.mechanism, phi, self.formula)
         push = self.gas_force(phi, **disturbed) if self._ends else np.zeros_like(phi)
         push = push - self._inertia * motion.curvature + self._along
         if not self._f:
@@ -139,7 +144,7 @@ class TextbookCylinder:
 
     def gas_power(self, phi: Array, **disturbed: Any) -> Array:
         """Return the gas force times dx/dφ in J per radian."""
-        return self.gas_force(phi, **disturbed) * moved(self.mechanism, phi, self.formula).slope
+        return self.gas_force(phi, **disturbed) * Moved(self.mechanism, phi, self.formula).slope
 
 
 class TextbookMachine:
@@ -160,39 +165,11 @@ class TextbookMachine:
         return total
 
 
-def _steady_friction(cylinder: Cylinder) -> float:
-    rings = cylinder.friction.rings if cylinder.friction else None
-    constant = float((cylinder.friction.constant if cylinder.friction else None) or 0.0)
-    if rings is None:
-        return constant
-    return (
-        constant + rings.count * math.pi * cylinder.pistons[0].bore * rings.height * rings.pressure * rings.coefficient
-    )
-
-
-_Line = Callable[[Array], Array]
-
-
-def _ends(piston: Any, ambient: float) -> list[tuple[float, float, list[_Line]]]:
-    indicator = piston.indicator
-    found = []
-    for card, rod, sign in (
-        (indicator.head_end, piston.head_end_rod, 1),
-        (indicator.crank_end, piston.crank_end_rod, -1),
-    ):
-        if card is not None:
-            area = math.pi / 4 * (piston.bore**2 - rod**2)
-            found.append((area, float(sign), [_line(card, line, ambient, indicator.absolute) for line in card.lines]))
-    return found
-
-
-def _line(card: Any, line: Any, ambient: float, absolute: bool) -> _Line:
+def _line(end: End, line: Any) -> Callable[[Array], Array]:
     """Return the gauge pressure over the stroke fraction as np.interp has it, in logarithms for polytropic cards."""
-    order = 1 if line.start == 0 else -1
+    order, card, lift = 1 if line.start == 0 else -1, end.card, end.lift
     fractions, pressures = np.array(line.fractions)[::order], np.array(line.pressures)[::order]
-    base = ambient if absolute else 0.0
     if card.interpolate == "linear":
-        return lambda z: np.interp(z, fractions, pressures - base)
-    lift = 0.0 if absolute else ambient
+        return lambda z: np.interp(z, fractions, pressures - end.base)
     volumes, logs = np.log(fractions + card.clearance), np.log(pressures + lift)
-    return lambda z: np.exp(np.interp(np.log(z + card.clearance), volumes, logs)) - lift - base
+    return lambda z: np.exp(np.interp(np.log(z + card.clearance), volumes, logs)) - lift - end.base

@@ -14,6 +14,11 @@ class Patience(NamedTuple):
     repeats: int = 20
     seconds: float = 0.5
 
+    @classmethod
+    def of(cls, quick: bool) -> "Patience":
+        """Return that of a run, which is less for a quick one."""
+        return cls(5, 0.1) if quick else cls()
+
 
 class Timed(NamedTuple):
     """What a method answered, with the median and the least of its times in seconds."""

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -45,11 +46,14 @@ class Row(NamedTuple):
 
 
 class Question(NamedTuple):
-    """A quantity: its symbol, the reference (n,), and its methods for a machine, kurbel's own first."""
+    """A quantity: its symbol, the reference, one or (n,), and its methods for a machine, kurbel's own first.
+
+    methods: takes a machine, and whether the run is quick.
+    """
 
     quantity: str
-    reference: Callable[[], Sequence[Decimal]]
-    methods: Callable[[Machine], Iterator[Method]]
+    reference: Callable[[], Any]
+    methods: Callable[[Machine, bool], Iterator[Method]]
 
 
 class Lacking(NamedTuple):
@@ -59,74 +63,50 @@ class Lacking(NamedTuple):
     why: str
 
 
-def questions(scene: Scene, quick: bool) -> tuple[list[Question], list[Lacking]]:
-    """Return the quantities of a scene that can be examined, and those that cannot."""
+def questions(scene: Scene) -> Iterator[Question | Lacking]:
+    """Yield the quantities of a scene that can be examined, and those that cannot."""
     machine = scene.machine
-    asked: list[Question] = []
-    lacking: list[Lacking] = []
     if machine.cylinders:
         first = machine.cylinders[0]
         if why := why_no_motion(first):
-            lacking.append(Lacking("x, c, b", why))
+            yield Lacking("x, c, b", why)
         elif scene.moving:
-            asked += _motions(scene, quick)
-        _of_forces(machine, quick, asked, lacking)
-    _of_machine(machine, quick, asked, lacking)
-    return asked, lacking
+            motion, angles = CrankMotion.of(first.mechanism), scene.angles
+            for name in rivals.MOTIONS:
+                truth = partial(references.motion_at, motion, angles, rivals.MOTIONS[name])
+                yield Question(name, truth, partial(rivals.motion_methods, name, angles))
+        yield from _of_forces(machine, first)
+    yield from _of_machine(machine)
 
 
-def _motions(scene: Scene, quick: bool) -> Iterator[Question]:
-    mechanism: Any = scene.machine.cylinders[0].mechanism
-    motion = (mechanism.crank, getattr(mechanism, "rod", None), getattr(mechanism, "offset", 0.0))
-    for order, name in enumerate(rivals.MOTIONS):
-
-        def reference(order: int = order) -> list[Decimal]:
-            with precise():
-                return [at[order] for at in references.motion_at(CrankMotion(*motion), scene.angles)]
-
-        yield Question(name, reference, _motion_methods(name, scene.angles, quick))
-
-
-def _motion_methods(name: str, angles: tuple[float, ...], quick: bool) -> Callable[[Machine], Iterator[Method]]:
-    return lambda machine: rivals.motion_methods(machine.cylinders[0], name, angles, quick)
-
-
-def _of_forces(machine: Machine, quick: bool, asked: list[Question], lacking: list[Lacking]) -> None:
-    first = machine.cylinders[0]
-    found = list(_forces_in(machine, first))
-    if found and (why := why_not(machine, first)):
-        lacking.append(Lacking("work, T, friction work", why))
-        return
-    for quantity, reference, methods in found:
-        ask = _once(lambda: CylinderOracle(machine, first), reference)
-        asked.append(Question(quantity, ask, _cylinder_methods(methods, quick)))
-
-
-_Reference = Callable[[CylinderOracle], Any]
-_Methods = Callable[[Machine, Cylinder, bool], Iterator[Method]]
-
-
-def _forces_in(machine: Machine, cylinder: Cylinder) -> Iterator[tuple[str, _Reference, _Methods]]:
-    """Yield symbol, reference and methods of what the forces of a cylinder give."""
+def _of_forces(machine: Machine, cylinder: Cylinder) -> Iterator[Question | Lacking]:
+    """Yield what the forces of a cylinder give."""
     has_gas = any(piston.indicator for piston in cylinder.pistons)
-    if has_gas:
-        yield "A_i", references.work, rivals.work_methods
     if not has_gas and (cylinder.masses is None or machine.speed is None):
         return
-    if cylinder.mechanism.slides:
-        yield "T_max, T_min", references.tangential_extremes, rivals.extreme_methods
-    if cylinder.friction and cylinder.friction.crosshead and cylinder.mechanism.has_rod:
-        yield "A_f", references.friction_work, rivals.friction_methods
+    rubs = cylinder.friction and cylinder.friction.crosshead and cylinder.mechanism.has_rod
+    asked: tuple[tuple[Any, ...], ...] = (
+        (has_gas, "A_i", references.work, rivals.work_methods),
+        (cylinder.mechanism.slides, "T_max, T_min", references.tangential_extremes, rivals.extreme_methods),
+        (rubs, "A_f", references.friction_work, rivals.friction_methods),
+    )
+    found = [each for there, *each in asked if there]
+    if found and (why := why_not(machine, cylinder)):
+        yield Lacking("work, T, friction work", why)
+        return
+    for quantity, reference, methods in found:
+        yield Question(quantity, _asked(reference, machine, cylinder), methods)
 
 
-def _cylinder_methods(methods: _Methods, quick: bool) -> Callable[[Machine], Iterator[Method]]:
-    return lambda machine: methods(machine, machine.cylinders[0], quick)
+def _asked(reference: Callable[[CylinderOracle], Any], machine: Machine, cylinder: Cylinder) -> Callable[[], Any]:
+    return lambda: reference(CylinderOracle(machine, cylinder))
 
 
-def _of_machine(machine: Machine, quick: bool, asked: list[Question], lacking: list[Lacking]) -> None:
+def _of_machine(machine: Machine) -> Iterator[Question | Lacking]:
+    """Yield what the turning effort of all cylinders gives."""
     if not any(piston.indicator for cylinder in machine.cylinders for piston in cylinder.pistons):
         if machine.effort is not None:
-            lacking.append(Lacking("ΔE, ω", "no independent calculation of a given turning effort"))
+            yield Lacking("ΔE, ω", "no independent calculation of a given turning effort")
         return
     why = next((why for cylinder in machine.cylinders if (why := why_not(machine, cylinder))), "")
     if machine.load and machine.load.diagram:
@@ -134,38 +114,26 @@ def _of_machine(machine: Machine, quick: bool, asked: list[Question], lacking: l
     if machine.efficiency != 1:
         why = why or "no independent calculation with an efficiency"
     if why:
-        lacking.append(Lacking("ΔE, ω", why))
+        yield Lacking("ΔE, ω", why)
         return
-    asked.append(
-        Question("ΔE", _once(lambda: machine, references.excess_energy), lambda m: rivals.excess_methods(m, quick))
-    )
-    if why := why_no_speed(machine):
-        if machine.flywheel is not None:
-            lacking.append(Lacking("ω", why))
-        return
-    asked.append(
-        Question("ω", _once(lambda: SpeedOracle(machine), SpeedOracle.omega), lambda m: rivals.speed_methods(m, quick))
-    )
+    yield Question("ΔE", lambda: references.excess_energy(machine), rivals.excess_methods)
+    if not (why := why_no_speed(machine)):
+        yield Question("ω", lambda: SpeedOracle(machine).omega(), rivals.speed_methods)
+    elif machine.flywheel is not None:
+        yield Lacking("ω", why)
 
 
-def _once(make: Callable[[], Any], ask: Callable[[Any], Any]) -> Callable[[], Sequence[Decimal]]:
-    def reference() -> Sequence[Decimal]:
-        with precise():
-            answer = ask(make())
-        return answer if isinstance(answer, (list, tuple)) else (answer,)
-
-    return reference
-
-
-def rows(question: Question, machine: Machine, patience: Patience) -> Iterator[Row]:
+def rows(question: Question, machine: Machine, quick: bool) -> Iterator[Row]:
     """Yield the rows of one quantity, kurbel's own method first. Raises NoReference, KurbelError."""
-    reference = question.reference()
+    with precise():
+        truth = question.reference()
+    reference: Sequence[Decimal] = truth if isinstance(truth, (list, tuple)) else (truth,)
     if all(abs(truth) <= _ZERO for truth in reference):
         raise NoReference("it is zero, and no error is relative to that")
     own_median = 0.0
-    for method in question.methods(machine):
+    for method in question.methods(machine, quick):
         with np.errstate(all="ignore"):
-            answer, median, least = timed(method.run, patience)
+            answer, median, least = timed(method.run, Patience.of(quick))
         own_median = median if method.name == OWN else own_median
         values, state, used = _unpacked(answer, method)
         if method.name == OWN and used is None:
@@ -187,7 +155,7 @@ def _unpacked(answer: Any, method: Method) -> tuple[Sequence[float] | None, str,
 def _evaluations(question: Question, machine: Machine) -> int:
     """Run kurbel's own method once more, on mechanisms that count."""
     counting, counters = rivals.counted(machine)
-    next(question.methods(counting)).run()
+    next(question.methods(counting, True)).run()
     return sum(counter.angles for counter in counters)
 
 
@@ -213,12 +181,12 @@ def errors(values: Sequence[float], reference: Sequence[Decimal]) -> tuple[float
 
 def examined(scene: Scene, quick: bool) -> tuple[list[Row], list[Lacking]]:
     """Return all rows of a scene, and what could not be examined."""
-    patience = Patience(5, 0.1) if quick else Patience()
-    asked, lacking = questions(scene, quick)
+    asked = list(questions(scene))
+    lacking = [one for one in asked if isinstance(one, Lacking)]
     found: list[Row] = []
-    for question in asked:
+    for question in (one for one in asked if isinstance(one, Question)):
         try:
-            found += rows(question, scene.machine, patience)
+            found += rows(question, scene.machine, quick)
         except (NoReference, KurbelError) as error:
             lacking.append(Lacking(question.quantity, str(error)))
     return found, lacking

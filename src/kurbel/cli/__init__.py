@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from kurbel import __version__
-from kurbel.cli.exit_status import DONE, INTERNAL, INTERRUPTED, WRONG, exit_statuses
 from kurbel.errors import KurbelError, MachineFileError
 
 if TYPE_CHECKING:
@@ -50,6 +49,34 @@ SUMMARIES = {
 COMMANDS = tuple(SUMMARIES)
 
 _DEBUG = "KURBEL_DEBUG"
+
+DONE, BROKEN, WRONG, NO_SOLUTION, INTERNAL, INTERRUPTED = 0, 1, 2, 3, 70, 130
+
+_MEANINGS = {
+    DONE: "done",
+    BROKEN: "a limit is broken (check) or a case failed (accuracy --extremes)",
+    WRONG: "wrong usage or input, or the output cannot be written",
+    NO_SOLUTION: "no solution: the machine stalls, locks itself or is in resonance",
+    INTERNAL: "a fault in kurbel",
+    INTERRUPTED: "interrupted",
+}
+
+
+_OF_SOME = {
+    BROKEN: ("kurbel", "check", "accuracy"),
+    NO_SOLUTION: (
+        *("kurbel", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
+        *("plot", "check", "accuracy"),
+    ),
+}
+"""Statuses that only some commands return."""
+
+
+def exit_statuses(command: str) -> str:
+    """Return the last sentence of the help of a command, or of `kurbel` itself."""
+    return "Exit status: " + "; ".join(
+        f"{status} {meaning}" for status, meaning in _MEANINGS.items() if command in _OF_SOME.get(status, (command,))
+    )
 
 
 class _Context(click.Context):

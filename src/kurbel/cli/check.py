@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kurbel.cli.exit_status import BROKEN, DONE
+from kurbel.cli import BROKEN, DONE
 from kurbel.cli.output_options import format_of, loaded, machine_file, output_option, width_option
 
 if TYPE_CHECKING:

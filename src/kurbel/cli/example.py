@@ -25,12 +25,12 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks | kurbel forces -
     """
     from kurbel.render.listing import write_entries
-    from kurbel.render.output import write_text
+    from kurbel.render.output import write_out
 
     if name is None:
         write_entries([(each, _described(each)) for each in shipped_names()], file_name)
     else:
-        write_text((_read(_known(name)),), file_name)
+        write_out((_read(_known(name)),), file_name, "utf-8")
 
 
 def _folder() -> str:

@@ -38,7 +38,7 @@ def report(
     """
     from kurbel.machine_file.given import given
     from kurbel.render import Look
-    from kurbel.render.output import refuse_overwriting, write_text
+    from kurbel.render.output import refuse_overwriting, write_out
     from kurbel.render.report_page import report_page
     from kurbel.report.side_by_side import side_by_side
     from kurbel.report.whole import whole_report
@@ -60,7 +60,7 @@ def report(
         document = side_by_side(cases, keys, system, progress)
     progress("writing")
     look = Look("html", comma=decimal == "comma", digits=digits)
-    write_text(report_page(document, look, _today()), file_name)
+    write_out(report_page(document, look, _today()), file_name, "utf-8")
 
 
 def _today() -> str:

@@ -20,8 +20,8 @@ def schema(answers: bool, file_name: str | None) -> None:
 
     from kurbel.machine_file.schema import json_schema
     from kurbel.render.answer_schema import answer_schema
-    from kurbel.render.output import write_text
+    from kurbel.render.output import write_out
 
     # escapes instead of Greek: valid in whatever encoding a shell redirects to
     text = json.dumps(answer_schema() if answers else json_schema(), indent=2, allow_nan=False) + "\n"
-    write_text((text,), file_name)
+    write_out((text,), file_name, "utf-8")

@@ -149,8 +149,7 @@ class _Asked(SimpleNamespace):
 
     def _out(self, found: "Sweep", rows: range) -> "SweepOutput":
         from kurbel.designs.chosen import summary_heads
-        from kurbel.render.sweep_output import SweepOutput
-        from kurbel.render.sweep_rows import Titles
+        from kurbel.render.sweep_output import SweepOutput, Titles
 
         titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.limited)
         if self.summary:

@@ -7,101 +7,15 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
 
+from kurbel.declared.kinds import KINDS
 from kurbel.declared.units import unit_factor
 
-SI = {
-    "length": "m",
-    "area": "m^2",
-    "mass": "kg",
-    "force": "N",
-    "pressure": "Pa",
-    "stress": "Pa",
-    "time": "s",
-    "angle": "deg",
-    "speed": "1/s",
-    "frequency": "Hz",
-    "angular_velocity": "rad/s",
-    "angular_acceleration": "rad/s^2",
-    "velocity": "m/s",
-    "acceleration": "m/s^2",
-    "torque": "N m",
-    "energy": "J",
-    "power": "W",
-    "inertia": "kg m^2",
-    "unbalance": "kg m",
-    "gd2": "kg m^2",
-    "stiffness": "N m/rad",
-    "damping": "N m s/rad",
-    "pressure_velocity": "W/m^2",
-    "volume": "m^3",
-    "volume_rise": "m^3/deg",
-    "pressure_rise": "Pa/deg",
-    "density": "kg/m^3",
-    "spring": "m/Pa",
-    "ratio": "",
+SYSTEMS: dict[str, dict[str, Any]] = {
+    system: {name: getattr(kind, system) or kind.si for name, kind in KINDS.items()}
+    for system in ("si", "metric", "technical", "imperial")
 }
-TECHNICAL = SI | {
-    "length": "mm",
-    "area": "cm^2",
-    "force": "kgf",
-    "pressure": "at",
-    "stress": "kgf/cm^2",
-    "speed": "rpm",
-    "torque": "kgf m",
-    "energy": "kgf m",
-    "power": "PS",
-    "gd2": "kgf m^2",
-    "pressure_velocity": "kgf m/s/cm^2",
-    "volume": "dm^3",
-    "volume_rise": "cm^3/deg",
-    "pressure_rise": "at/deg",
-    "spring": "mm/at",
-}
-_METRIC: dict[str, Any] = {
-    **SI,
-    "length": ("mm", "m"),
-    "area": "cm^2",
-    "mass": ("kg", "t"),
-    "force": ("N", "kN", "MN"),
-    "pressure": ("mbar", "bar"),
-    "stress": "N/mm^2",
-    "speed": "rpm",
-    "torque": ("N m", "kN m"),
-    "energy": ("J", "kJ", "MJ"),
-    "power": ("W", "kW", "MW"),
-    "pressure_velocity": "N/mm^2 m/s",
-    "volume": ("cm^3", "m^3"),
-    "volume_rise": "cm^3/deg",
-    "pressure_rise": ("mbar/deg", "bar/deg"),
-    "spring": "mm/bar",
-}
-_IMPERIAL: dict[str, Any] = {
-    **SI,
-    "length": "in",
-    "area": "in^2",
-    "mass": "lb",
-    "force": "lbf",
-    "pressure": "psi",
-    "stress": "psi",
-    "speed": "rpm",
-    "velocity": "ft/s",
-    "acceleration": "ft/s^2",
-    "torque": "lbf ft",
-    "energy": "lbf ft",
-    "power": "hp",
-    "inertia": "lb ft^2",
-    "unbalance": "lb in",
-    "gd2": "lb ft^2",
-    "stiffness": "lbf ft/rad",
-    "damping": "lbf ft s/rad",
-    "pressure_velocity": "psi ft/s",
-    "volume": "in^3",
-    "volume_rise": "in^3/deg",
-    "pressure_rise": "psi/deg",
-    "spring": "in/psi",
-}
-SYSTEMS: dict[str, dict[str, Any]] = {"si": SI, "metric": _METRIC, "technical": TECHNICAL, "imperial": _IMPERIAL}
 """Unit system -> kind -> the unit in which results are shown, or several, of which the size decides."""
+SI: dict[str, str] = SYSTEMS["si"]
 _TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3, "m^3": 1.0, "bar/deg": 1e3}
 """Base value from which a larger unit is taken, where that is not one of the unit itself."""
 

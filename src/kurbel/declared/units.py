@@ -12,6 +12,7 @@ import re
 from collections.abc import Callable
 from functools import cache
 
+from kurbel.declared.kinds import KINDS
 from kurbel.declared.numerals import NUMBER, parse_ratio, plain
 from kurbel.errors import UnitError
 
@@ -310,7 +311,7 @@ def _fitting_unit(value: float, kind: str) -> str:
     for fitting, least in _FITTING.get(kind, ()):
         if abs(value) >= least:
             return fitting
-    return _unit_example(kind)
+    return unit_example(kind)
 
 
 _FITTING = {
@@ -323,27 +324,14 @@ _FITTING = {
 """Kind -> units with the bare numbers from which on they are likely, the largest first."""
 
 
-def _unit_example(kind: str) -> str:
-    return {
-        "length": "mm",
-        "pressure": "bar",
-        "stress": "N/mm2",
-        "force": "N",
-        "speed": "rpm",
-        "torque": "N m",
-        "gd2": "kgf m2",
-        "spring": "mm/at",
-        "inertia": "kg m2",
-        "volume": "cm3",
-        "pressure_rise": "bar/deg",
-        "unbalance": "kg m",
-    }.get(kind, next(iter(_units_of(kind))))
-
-
 def example(kind: str) -> str:
     """Return a value of this kind as a person would write it, for messages and for the schema."""
-    numbers = {"length": "450", "pressure": "5.4", "stress": "60", "speed": "50", "angle": "90", "mass": "120"}
-    return f"{numbers.get(kind, '10')} {_unit_example(kind)}"
+    return KINDS[kind].written or f"10 {_normal(KINDS[kind].si)}"
+
+
+def unit_example(kind: str) -> str:
+    """Return its unit."""
+    return example(kind).partition(" ")[2]
 
 
 def kinds() -> tuple[str, ...]:

@@ -26,6 +26,7 @@ from kurbel.declared.forms import (
     Record,
     Text,
     Uncertainties,
+    not_negative,
 )
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, RuleError, refuse
@@ -119,11 +120,8 @@ class Machine(Described):
     KEYS: ClassVar[Keys] = {
         "kurbel": Key(Count(least=FORMAT, most=FORMAT), "Number of the file format", absent="1"),
         "name": Key(Text(), "Name of the machine", absent="the file name"),
-        "speed": Key(
-            Physical("speed", least=0),
-            "Speed of rotation",
-            "n",
-            absent="no velocities, accelerations or inertia in physical units",
+        "speed": not_negative(
+            "speed", "Speed of rotation", "n", absent="no velocities, accelerations or inertia in physical units"
         ),
         "cycle": Key(Choice(tuple(CYCLES)), "Working cycle: 360° or 720°", absent="two-stroke"),
         "rotation": Key(
@@ -140,16 +138,11 @@ class Machine(Described):
             "η",
             absent="1",
         ),
-        "ambient": Key(Physical("pressure", least=0), "Absolute pressure round the machine", absent="1.01325 bar"),
-        "brake_power": Key(
-            Physical("power", least=0),
-            "Power measured at the shaft; a warning tells when less is indicated",
-            "N_e",
-            absent="not compared",
+        "ambient": not_negative("pressure", "Absolute pressure round the machine", absent="1.01325 bar"),
+        "brake_power": not_negative(
+            "power", "Power measured at the shaft; a warning tells when less is indicated", "N_e", absent="not compared"
         ),
-        "brake_torque": Key(
-            Physical("torque", least=0), "The same as a torque", "M_e", instead="brake_power", needs="speed"
-        ),
+        "brake_torque": not_negative("torque", "The same as a torque", "M_e", instead="brake_power", needs="speed"),
         "cylinder": Key(Inline(Record("kurbel.machine:Cylinder"), unless="cylinders"), "The keys of the only cylinder"),
         "cylinders": Key(
             OneOf(
@@ -176,9 +169,7 @@ class Machine(Described):
             absent="from the cylinders",
         ),
         "coupling": Key(
-            Record("kurbel.machine.turning:Coupling"),
-            "Elastic coupling to a driven moment of inertia",
-            absent="rigid",
+            Record("kurbel.machine.turning:Coupling"), "Elastic coupling to a driven moment of inertia", absent="rigid"
         ),
         "crankshaft": Key(
             Record("kurbel.machine.crankshaft:Crankshaft"),

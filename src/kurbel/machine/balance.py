@@ -5,22 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from kurbel.declared.forms import Choice, Count, Listing, Number, Physical
+from kurbel.declared.forms import Choice, Count, Listing, Number, Physical, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, refuse
 
 _WEIGHT_KEYS: Keys = {
-    "product": Key(
-        Physical("unbalance", least=0),
+    "product": not_negative(
+        "unbalance",
         "Its mass times the radius of its centre of gravity; or give both",
         "u",
         required=True,
         example="0.12 kg m",
     ),
-    "mass": Key(Physical("mass", least=0), "Mass of the counterweight", "m_g", instead="product", needs="radius"),
-    "radius": Key(
-        Physical("length", above=0), "From the axis of the shaft to its centre of gravity", "r_g", needs="mass"
-    ),
+    "mass": not_negative("mass", "Mass of the counterweight", "m_g", instead="product", needs="radius"),
+    "radius": positive("length", "From the axis of the shaft to its centre of gravity", "r_g", needs="mass"),
     "axial_position": Key(Physical("length"), "Its place along the shaft", "z", absent="that of its cylinder"),
 }
 
@@ -50,7 +48,7 @@ class Counterweight(Described):
             "Its direction from the throw of its cylinder, or of crank 1, in the sense of rotation",
             "α",
             absent="180 deg, opposite the throw",
-        ),
+        )
     }
 
     @classmethod
@@ -145,21 +143,17 @@ class Locomotive(Described):
     hammer_limit: float | None = None
 
     KEYS: ClassVar[Keys] = {
-        "wheel_distance": Key(
-            Physical("length", above=0), "Between the counterweights of the left and of the right wheel", required=True
+        "wheel_distance": positive(
+            "length", "Between the counterweights of the left and of the right wheel", required=True
         ),
-        "wheel_diameter": Key(
-            Physical("length", above=0), "Diameter of the driven wheels", "D", absent="speed of the shaft alone"
-        ),
-        "wheel_load": Key(
-            Physical("force", above=0),
+        "wheel_diameter": positive("length", "Diameter of the driven wheels", "D", absent="speed of the shaft alone"),
+        "wheel_load": positive(
+            "force",
             "Load of one driven wheel on its rail, at rest",
             "Q",
             absent="not told at which speed a wheel lifts",
         ),
-        "hammer_limit": Key(
-            Physical("force", above=0),
-            "Largest allowed hammer blow of a wheel",
-            absent="not told which share may be balanced",
+        "hammer_limit": positive(
+            "force", "Largest allowed hammer blow of a wheel", absent="not told which share may be balanced"
         ),
     }

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from kurbel.declared.forms import Physical, Truth
+from kurbel.declared.forms import Physical, Truth, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
@@ -16,7 +16,7 @@ _ROUNDED = 1.05
 
 
 def _length(text: str, symbol: str, required: bool = True, absent: str = "") -> Key:
-    return Key(Physical("length", above=0), text, symbol, required, absent)
+    return positive("length", text, symbol, required=required, absent=absent)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +53,8 @@ class Crankshaft(Described):
         "pin_length": _length("Length of the crank pin", "l_z"),
         "journal_diameter": _length("Diameter of the journals", "d_j", False, "journals not examined"),
         "journal_length": _length("Length of a journal", "l_j", False, "no journal pressure"),
-        "flywheel_mass": Key(
-            Physical("mass", least=0), "Mass of the flywheel", "m_s", absent="no flywheel", needs="flywheel_position"
+        "flywheel_mass": not_negative(
+            "mass", "Mass of the flywheel", "m_s", absent="no flywheel", needs="flywheel_position"
         ),
         "flywheel_position": Key(
             Physical("length"),
@@ -62,12 +62,8 @@ class Crankshaft(Described):
             absent="no flywheel",
             needs="flywheel_mass",
         ),
-        "allowable_bending": Key(
-            Physical("stress", above=0), "Allowable stress in bending", "k_b", absent="no safety figures"
-        ),
-        "allowable_torsion": Key(
-            Physical("stress", above=0), "Allowable stress in torsion", "k_d", absent="no safety figures"
-        ),
+        "allowable_bending": positive("stress", "Allowable stress in bending", "k_b", absent="no safety figures"),
+        "allowable_torsion": positive("stress", "Allowable stress in torsion", "k_d", absent="no safety figures"),
         "overhung": Key(
             Truth(), "Whether the pin stands outside of bearing A, at the end of the shaft", absent="false"
         ),

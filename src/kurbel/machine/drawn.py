@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from kurbel.declared.forms import Physical
-from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.forms import positive
+from kurbel.declared.keys import Described, Keys
 from kurbel.declared.units import Factor
 from kurbel.machine.rectangle import Rectangle
 
@@ -19,10 +19,8 @@ class Drawn(Described):
     spring: float
 
     KEYS: ClassVar[Keys] = {
-        "length": Key(Physical("length", above=0), "Length of the card on the paper", "l", required=True),
-        "spring": Key(
-            Physical("spring", above=0), "Scale of the spring: height on the paper over pressure", required=True
-        ),
+        "length": positive("length", "Length of the card on the paper", "l", required=True),
+        "spring": positive("spring", "Scale of the spring: height on the paper over pressure", required=True),
     }
 
     @property

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from kurbel.declared.bounds import MOST_ITEMS
-from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record
+from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, Path, refuse
 from kurbel.machine.cylinder import Cylinder
@@ -32,10 +32,8 @@ class EqualCylinders(Described):
             "Order in which they fire, at equal intervals over the cycle",
             absent="that of the machine; where every bank has one cylinder, all stand on one crank pin",
         ),
-        "spacing": Key(
-            Physical("length", above=0),
-            "From one cylinder of a bank to the next along the shaft",
-            absent="free moments left out",
+        "spacing": positive(
+            "length", "From one cylinder of a bank to the next along the shaft", absent="free moments left out"
         ),
         "bank_angles": Key(
             Listing(Physical("angle", least=-360, most=360)),

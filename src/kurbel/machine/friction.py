@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from kurbel.declared.forms import Count, Number, Physical, Record
+from kurbel.declared.forms import Count, Number, Record, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys, check
 from kurbel.errors import Fault, refuse
 
@@ -25,8 +25,8 @@ class Rings(Described):
 
     KEYS: ClassVar[Keys] = {
         "count": Key(Count(least=1), "Number of rings", required=True),
-        "height": Key(Physical("length", above=0), "Height of one ring along the bore", "h", required=True),
-        "pressure": Key(Physical("pressure", least=0), "Pressure of the ring on the wall", "p_r", required=True),
+        "height": positive("length", "Height of one ring along the bore", "h", required=True),
+        "pressure": not_negative("pressure", "Pressure of the ring on the wall", "p_r", required=True),
         "coefficient": Key(Number(least=0), "Coefficient of friction", "f", required=True),
     }
 
@@ -39,8 +39,8 @@ class Guide(Described):
     width: float
 
     KEYS: ClassVar[Keys] = {
-        "length": Key(Physical("length", above=0), "Length of the shoe along the stroke", required=True),
-        "width": Key(Physical("length", above=0), "Width of the shoe", required=True),
+        "length": positive("length", "Length of the shoe along the stroke", required=True),
+        "width": positive("length", "Width of the shoe", required=True),
     }
 
 
@@ -53,7 +53,7 @@ _PINS = {
 
 
 def _diameter(of: str, text: str, symbol: str, absent: str = "") -> Key:
-    return Key(Physical("length", above=0), text, symbol, absent=absent, needs=of)
+    return positive("length", text, symbol, absent=absent, needs=of)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ class Friction(Described):
     KEYS: ClassVar[Keys] = {
         "crosshead": Key(Number(least=0), "Coefficient of friction of the crosshead on its guide", "f"),
         "rings": Key(Record("kurbel.machine.friction:Rings"), "Piston rings"),
-        "constant": Key(Physical("force", least=0), "Force against the motion, the same over the stroke", "F_0"),
+        "constant": not_negative("force", "Force against the motion, the same over the stroke", "F_0"),
         "guide": Key(Record("kurbel.machine.friction:Guide"), "Shoe of the crosshead", needs="crosshead"),
         "crank_pin": Key(Number(least=0), "Coefficient of friction of the connecting rod on the crank pin", "f_Z"),
         "crank_pin_diameter": _diameter("crank_pin", "Diameter of the crank pin", "d_z", "that of `crankshaft`"),

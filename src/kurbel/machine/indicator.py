@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from kurbel.declared.bounds import Point, size_faults
-from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName
+from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName, not_negative
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor
@@ -76,14 +76,9 @@ class Card(Described):
             "atmospheric line",
             instead="unit",
         ),
-        "area": Key(
-            Physical("area", least=0), "Area by planimeter, instead of the lines of a drawn card", needs="drawn"
-        ),
-        "mean_height": Key(
-            Physical("length", least=0),
-            "Mean height by planimeter, instead of the lines of a drawn card",
-            instead="area",
-            needs="drawn",
+        "area": not_negative("area", "Area by planimeter, instead of the lines of a drawn card", needs="drawn"),
+        "mean_height": not_negative(
+            "length", "Mean height by planimeter, instead of the lines of a drawn card", instead="area", needs="drawn"
         ),
         "expansion": Key(_POINTS, "Line while the burnt or admitted gas expands"),
         "compression": Key(_POINTS, "Line while the chamber is compressed or empties"),

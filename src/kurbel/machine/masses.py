@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from kurbel.declared.forms import Listing, Number, OneOf, Physical, Record
+from kurbel.declared.forms import Listing, Number, OneOf, Physical, Record, not_negative
 from kurbel.declared.keys import Described, Form, Key, Keys, check
 from kurbel.errors import Fault, refuse
 
@@ -31,20 +31,13 @@ class ConnectingRod(Described):
     inertia: float | None = None
 
     KEYS: ClassVar[Keys] = {
-        "mass": Key(Physical("mass", least=0), "Mass of the rod", required=True),
+        "mass": not_negative("mass", "Mass of the rod", required=True),
         "share": Key(Number(least=0, most=1), "Reciprocating share of the mass", absent="1/2"),
-        "center_of_gravity": Key(
-            Physical("length", least=0),
-            "Distance of its centre of gravity from the crosshead pin",
-            "a",
-            instead="share",
-            needs="inertia",
+        "center_of_gravity": not_negative(
+            "length", "Distance of its centre of gravity from the crosshead pin", "a", instead="share", needs="inertia"
         ),
-        "inertia": Key(
-            Physical("inertia", least=0),
-            "Moment of inertia about the centre of gravity",
-            "I_r",
-            needs="center_of_gravity",
+        "inertia": not_negative(
+            "inertia", "Moment of inertia about the centre of gravity", "I_r", needs="center_of_gravity"
         ),
     }
 
@@ -96,10 +89,8 @@ class Masses(Described):
     undivided: bool = False
 
     KEYS: ClassVar[Keys] = {
-        "reciprocating": Key(
-            Physical("mass", least=0),
-            "All that goes to and fro, with its share of the connecting rod; instead of the parts",
-            "m",
+        "reciprocating": not_negative(
+            "mass", "All that goes to and fro, with its share of the connecting rod; instead of the parts", "m"
         ),
         "piston": _part("Piston, or a list of pistons"),
         "piston_rod": _part("Piston rod"),
@@ -110,11 +101,8 @@ class Masses(Described):
             "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
             instead="reciprocating",
         ),
-        "rotating": Key(
-            Physical("mass", least=0),
-            "Unbalanced mass of the crank, as one at its pin, without the connecting rod",
-            "m_rot",
-            absent="0",
+        "rotating": not_negative(
+            "mass", "Unbalanced mass of the crank, as one at its pin, without the connecting rod", "m_rot", absent="0"
         ),
     }
 

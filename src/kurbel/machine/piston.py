@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from kurbel.declared.forms import Physical, Record, Text
+from kurbel.declared.forms import Record, Text, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, refuse
@@ -27,9 +27,9 @@ class Piston(Described):
 
     KEYS: ClassVar[Keys] = {
         "name": Key(Text(), "Name of the piston", absent="piston"),
-        "bore": Key(Physical("length", above=0), "Diameter of the cylinder", "d", required=True),
-        "head_end_rod": Key(Physical("length", least=0), "Diameter of the rod through the head end", absent="0"),
-        "crank_end_rod": Key(Physical("length", least=0), "Diameter of the rod through the crank end", absent="0"),
+        "bore": positive("length", "Diameter of the cylinder", "d", required=True),
+        "head_end_rod": not_negative("length", "Diameter of the rod through the head end", absent="0"),
+        "crank_end_rod": not_negative("length", "Diameter of the rod through the crank end", absent="0"),
         "indicator": Key(
             Record("kurbel.machine.indicator:Indicator"),
             "Pressures on the two sides",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from kurbel.declared.forms import Physical
-from kurbel.declared.keys import Described, Key, Keys, check
+from kurbel.declared.forms import not_negative
+from kurbel.declared.keys import Described, Keys, check
 from kurbel.errors import Fault, refuse
 
 
@@ -18,8 +18,8 @@ class RamForce(Described):
     back: float = 0.0
 
     KEYS: ClassVar[Keys] = {
-        "work": Key(Physical("force", least=0), "Force against the motion on the working stroke", "P_a", absent="0"),
-        "return": Key(Physical("force", least=0), "Force against the motion on the return stroke", "P_r", absent="0"),
+        "work": not_negative("force", "Force against the motion on the working stroke", "P_a", absent="0"),
+        "return": not_negative("force", "Force against the motion on the return stroke", "P_r", absent="0"),
     }
 
     def __post_init__(self) -> None:
@@ -38,6 +38,6 @@ class Moment(RamForce):
     """A moment in N m on a member that swings or turns, opposing its motion; what turns has no return stroke."""
 
     KEYS: ClassVar[Keys] = {
-        "work": Key(Physical("torque", least=0), "Moment against the motion on the working stroke", "M_a", absent="0"),
-        "return": Key(Physical("torque", least=0), "Moment against the motion on the return stroke", "M_r", absent="0"),
+        "work": not_negative("torque", "Moment against the motion on the working stroke", "M_a", absent="0"),
+        "return": not_negative("torque", "Moment against the motion on the return stroke", "M_r", absent="0"),
     }

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
-from kurbel.declared.forms import Listing, Number, OneOf, Physical, Text, Truth
+from kurbel.declared.forms import Listing, Number, OneOf, Text, Truth, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
@@ -42,8 +42,8 @@ class ShaftPart(Described):
 
     KEYS: ClassVar[Keys] = {
         "name": Key(Text(), "What the table calls it", absent="the cylinder, or mass 1, mass 2, …"),
-        "inertia": Key(
-            Physical("inertia", above=0),
+        "inertia": positive(
+            "inertia",
             "Moment of inertia of a mass; beside a cylinder, of what turns there besides its moving parts",
             "J",
         ),
@@ -53,24 +53,18 @@ class ShaftPart(Described):
             "of their reduced inertia over the turn",
         ),
         "load": Key(
-            Truth(),
-            "Whether this mass takes the load",
-            absent="the last; the first if cranks stand at the last",
+            Truth(), "Whether this mass takes the load", absent="the last; the first if cranks stand at the last"
         ),
-        "stiffness": Key(Physical("stiffness", above=0), "Stiffness of a piece; or give `diameter` and `length`", "k"),
-        "diameter": Key(
-            Physical("length", above=0), "Diameter of a piece; beside a stiffness it serves the stress alone", "d"
-        ),
-        "length": Key(Physical("length", above=0), "Length of a piece", "l", instead="stiffness", needs="diameter"),
-        "bore": Key(Physical("length", least=0), "Bore of a hollow piece", "d_i", absent="0", needs="diameter"),
-        "shear_modulus": Key(
-            Physical("stress", above=0), "Shear modulus of a piece", "G", absent="82 GPa, steel", needs="length"
-        ),
+        "stiffness": positive("stiffness", "Stiffness of a piece; or give `diameter` and `length`", "k"),
+        "diameter": positive("length", "Diameter of a piece; beside a stiffness it serves the stress alone", "d"),
+        "length": positive("length", "Length of a piece", "l", instead="stiffness", needs="diameter"),
+        "bore": not_negative("length", "Bore of a hollow piece", "d_i", absent="0", needs="diameter"),
+        "shear_modulus": positive("stress", "Shear modulus of a piece", "G", absent="82 GPa, steel", needs="length"),
         "loss_factor": Key(
             Number(least=0, most=2), "Loss factor of a piece, energy lost over 2π times that stored", "η", absent="0"
         ),
-        "damping": Key(
-            Physical("damping", least=0),
+        "damping": not_negative(
+            "damping",
             "Torque per speed of vibration: of a mass against uniform rotation, of a piece per speed of twist",
             "c, d",
             absent="0",

@@ -83,75 +83,48 @@ def _of_load(parts: Sequence[Part]) -> Iterator[Fault]:
 def line_of(parts: Sequence[Part], cylinders: Sequence[str] = ()) -> ShaftLine:
     """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError."""
     refuse(*_of_cylinders(parts, cylinders), *_of_order(parts), *_of_load(parts))
-    return _Builder(parts).line()
+    kinds = [_kind(part) for part in parts]
+    masses: list[ShaftMass] = []
+    pieces: list[ShaftPiece] = []
+    loads = []
+    for index, (kind, part, ratio) in enumerate(zip(kinds, parts, _ratios(parts))):
+        if kind == "piece":
+            in_series = kinds[index - 1] == "piece"
+            pieces.append(_in_series(pieces.pop(), _piece(part, ratio)) if in_series else _piece(part, ratio))
+        elif kind == "mass":
+            mass, geared = _mass(part, ratio, len(masses) + 1), kinds[:index][-2:] == ["mass", "gear"]
+            masses.append(_as_one(masses.pop(), mass) if geared else mass)
+            loads += [len(masses) - 1] if isinstance(part, ShaftPart) and part.load else []
+    ground = "before" if kinds[0] == GROUND else "after" if kinds[-1] == GROUND else ""
+    # what drives or is driven stands at an end, and is no crank
+    usual = 0 if masses[-1].cylinders and not masses[0].cylinders else len(masses) - 1
+    return ShaftLine(tuple(masses), tuple(pieces), ground, (*loads, usual)[0])
 
 
-class _Builder:
-    """Reads the list along the shaft. The gear's ratio is 1 on the side of the cranks."""
+def _ratios(parts: Sequence[Part]) -> list[float]:
+    """Return the speeds of the items over that of the cranks."""
+    gears = [(index, part.gear) for index, part in enumerate(parts) if isinstance(part, ShaftPart) and part.gear]
+    for place, gear in gears:
+        if any(isinstance(part, ShaftPart) and part.cylinder for part in parts[place:]):
+            return [1.0 if index > place else 1 / gear for index in range(len(parts))]
+        return [gear if index > place else 1.0 for index in range(len(parts))]
+    return [1.0] * len(parts)
 
-    def __init__(self, parts: Sequence[Part]) -> None:
-        self._parts = parts
-        kinds = [_kind(part) for part in parts]
-        self._gear = kinds.index("gear") if "gear" in kinds else len(parts)
-        self.grounds = [kind == GROUND for kind in kinds]
 
-    def _ratio(self, index: int) -> float:
-        """Return the speed of an item over that of the cranks."""
-        if self._gear == len(self._parts):
-            return 1.0
-        gear = self._parts[self._gear]
-        assert isinstance(gear, ShaftPart)
-        assert gear.gear is not None
-        behind = any(isinstance(part, ShaftPart) and part.cylinder for part in self._parts[self._gear :])
-        if behind:
-            return 1.0 if index > self._gear else 1 / gear.gear
-        return gear.gear if index > self._gear else 1.0
+def _mass(part: Part, ratio: float, number: int) -> ShaftMass:
+    square = ratio**2
+    if isinstance(part, str):
+        return ShaftMass(FLYWHEEL, flywheel=square, ratio=ratio)
+    cylinders = part.cylinder or ()
+    name = part.name or " + ".join(cylinders) or f"mass {number}"
+    return ShaftMass(name, square * (part.inertia or 0.0), cylinders, 0.0, square * (part.damping or 0.0), ratio)
 
-    def line(self) -> ShaftLine:
-        masses: list[ShaftMass] = []
-        pieces: list[ShaftPiece] = []
-        load: int | None = None
-        open_ = False  # whether pieces stand behind the last mass
-        for index, part in enumerate(self._parts):
-            kind = _kind(part)
-            if kind == "piece":
-                piece = self._piece(index)
-                if open_:
-                    pieces[-1] = _in_series(pieces[-1], piece)
-                else:
-                    pieces.append(piece)
-                open_ = True
-            elif kind == "mass":
-                mass = self._mass(index, len(masses) + 1)
-                geared = index > 1 and self._gear == index - 1 and not open_
-                if geared:
-                    masses[-1] = _as_one(masses[-1], mass)
-                else:
-                    masses.append(mass)
-                open_ = False
-                if isinstance(part, ShaftPart) and part.load:
-                    load = len(masses) - 1
-        ground = "before" if self.grounds[0] else "after" if self.grounds[-1] else ""
-        if load is None:  # what drives or is driven stands at an end, and is no crank
-            load = 0 if masses[-1].cylinders and not masses[0].cylinders else len(masses) - 1
-        return ShaftLine(tuple(masses), tuple(pieces), ground, load)
 
-    def _mass(self, index: int, number: int) -> ShaftMass:
-        part, ratio = self._parts[index], self._ratio(index)
-        if isinstance(part, str):
-            return ShaftMass(FLYWHEEL, flywheel=ratio**2, ratio=ratio)
-        cylinders = part.cylinder or ()
-        name = part.name or " + ".join(cylinders) or f"mass {number}"
-        square = ratio**2
-        return ShaftMass(name, square * (part.inertia or 0.0), cylinders, 0.0, square * (part.damping or 0.0), ratio)
-
-    def _piece(self, index: int) -> ShaftPiece:
-        part, ratio = self._parts[index], self._ratio(index)
-        assert isinstance(part, ShaftPart)
-        sections = () if part.diameter is None else (Section(part.diameter, part.bore or 0.0),)
-        square = ratio**2
-        damping, loss = square * (part.damping or 0.0), part.loss_factor or 0.0
-        return ShaftPiece(square * part.twist_stiffness, damping, loss, sections, ratio)
+def _piece(part: Part, ratio: float) -> ShaftPiece:
+    assert isinstance(part, ShaftPart)
+    sections = () if part.diameter is None else (Section(part.diameter, part.bore or 0.0),)
+    damping, loss = ratio**2 * (part.damping or 0.0), part.loss_factor or 0.0
+    return ShaftPiece(ratio**2 * part.twist_stiffness, damping, loss, sections, ratio)
 
 
 def _as_one(mass: ShaftMass, other: ShaftMass) -> ShaftMass:

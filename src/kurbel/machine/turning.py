@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.bounds import Point, size_faults
-from kurbel.declared.forms import Number, Physical, Points, Record, UnitName
+from kurbel.declared.forms import Number, Points, Record, UnitName, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, refuse
@@ -34,16 +34,12 @@ class Rim(Described):
     allowable_tension: float | None = None
 
     KEYS: ClassVar[Keys] = {
-        "mean_diameter": Key(Physical("length", above=0), "Mean diameter of the rim", "D", required=True),
-        "density": Key(
-            Physical("density", above=0),
-            "Density of its material",
-            "ρ",
-            absent="7250 kg/m³, cast iron",
-            also=("material",),
+        "mean_diameter": positive("length", "Mean diameter of the rim", "D", required=True),
+        "density": positive(
+            "density", "Density of its material", "ρ", absent="7250 kg/m³, cast iron", also=("material",)
         ),
-        "allowable_tension": Key(
-            Physical("stress", above=0), "Tension that the rim may bear; a warning tells when it has more", "k_z"
+        "allowable_tension": positive(
+            "stress", "Tension that the rim may bear; a warning tells when it has more", "k_z"
         ),
     }
 
@@ -72,21 +68,21 @@ class Flywheel(Described):
     rim: Rim | None = None
 
     KEYS: ClassVar[Keys] = {
-        "inertia": Key(Physical("inertia", least=0), "Moment of inertia; or give `gd2`", "J"),
-        "gd2": Key(
-            Physical("gd2", least=0),
+        "inertia": not_negative("inertia", "Moment of inertia; or give `gd2`", "J"),
+        "gd2": not_negative(
+            "gd2",
             "Old form of the moment of inertia: 4gJ as a weight times an area, or 4J as a mass times an area",
             "GD²",
             instead="inertia",
         ),
-        "mass": Key(
-            Physical("mass", least=0),
+        "mass": not_negative(
+            "mass",
             "Mass, with the radius of gyration another form of the moment of inertia m k²",
             "m",
             instead="inertia",
             needs="radius_of_gyration",
         ),
-        "radius_of_gyration": Key(Physical("length", above=0), "Radius of gyration", "k", instead="gd2", needs="mass"),
+        "radius_of_gyration": positive("length", "Radius of gyration", "k", instead="gd2", needs="mass"),
         "fluctuation": Key(
             Number(above=0, below=2), "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean", "δ"
         ),
@@ -216,7 +212,7 @@ class Coupling(Described):
     damping: float = 0.0
 
     KEYS: ClassVar[Keys] = {
-        "stiffness": Key(Physical("stiffness", above=0), "Torque per angle of twist", "k", required=True),
-        "damping": Key(Physical("damping", least=0), "Torque per speed of twist", "d", absent="0"),
-        "inertia": Key(Physical("inertia", above=0), "Moment of inertia of what is driven", "J_2", required=True),
+        "stiffness": positive("stiffness", "Torque per angle of twist", "k", required=True),
+        "damping": not_negative("damping", "Torque per speed of twist", "d", absent="0"),
+        "inertia": positive("inertia", "Moment of inertia of what is driven", "J_2", required=True),
     }

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from kurbel.declared.forms import FilePath, Physical
+from kurbel.declared.forms import FilePath, not_negative
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine_file.samples import Layout, samples_of
@@ -40,8 +40,8 @@ class Motored(Described):
         "motored": Key(
             FilePath(), "File of a motored trace, laid out as that of the trace", required=True, example="motored.csv"
         ),
-        "loss_angle": Key(
-            Physical("angle", least=0),
+        "loss_angle": not_negative(
+            "angle",
             "Angle by which heat loss and leakage put its peak before the dead centre",
             required=True,
             example="0.7 deg",

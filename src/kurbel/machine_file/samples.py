@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from kurbel.declared.forms import Choice, Count, Physical
+from kurbel.declared.forms import Choice, Count, Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.errors import Fault, RuleError, refuse
 
@@ -26,13 +26,9 @@ def layout_keys(what: str) -> Keys:
         "angle_unit": Key(
             Choice(("deg", "rad", "s", "ms")), "What the angle column counts: an angle, or time", absent="deg"
         ),
-        "recorded_speed": Key(
-            Physical("speed", above=0), "Constant speed at which times were recorded", needs="angle_unit"
-        ),
-        "angle_step": Key(
-            Physical("angle", above=0),
-            "Crank angle from one row to the next, instead of a column of angles",
-            instead="angle_column",
+        "recorded_speed": positive("speed", "Constant speed at which times were recorded", needs="angle_unit"),
+        "angle_step": positive(
+            "angle", "Crank angle from one row to the next, instead of a column of angles", instead="angle_column"
         ),
         f"{what}_column": Key(Count(), f"Column of the {what}s, counted from 1", absent="2"),
         "skip_rows": Key(Count(least=0), "Number of lines above the first figures", absent="0"),

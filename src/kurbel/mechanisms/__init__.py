@@ -100,6 +100,19 @@ class Mechanism(Described):
     """What the pin of the connecting rod or coupler that is not on the crank is called."""
     known_across: ClassVar[bool] = False
     """Whether, without a connecting rod, nothing but its weight pushes the output across the stroke line onto N."""
+    # what follows may also hang on the lengths of one: then a property takes its place
+    slides: ClassVar[Any] = True
+    """Whether the output moves to and fro on a line."""
+    turns: ClassVar[Any] = False
+    """Whether the output turns on and on, so that it has no return stroke."""
+    has_dead_centres: ClassVar[Any] = True
+    """Whether there are dead centres; otherwise `dead_centres` only part a turn into halves."""
+    quick_return: ClassVar[Any] = False
+    """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
+    works_outward: ClassVar[Any] = True
+    """Whether the outstroke is the working stroke; otherwise the return stroke is."""
+    start: ClassVar[Any] = 0.0
+    """The coordinate at the inner dead centre."""
     crank: float
     offset: float = 0.0
     """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
@@ -112,34 +125,9 @@ class Mechanism(Described):
             raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
 
     @property
-    def slides(self) -> bool:
-        """Whether the output moves to and fro on a line."""
-        return True
-
-    @property
-    def turns(self) -> bool:
-        """Whether the output turns on and on, so that it has no return stroke."""
-        return False
-
-    @property
-    def has_dead_centres(self) -> bool:
-        """Whether there are dead centres; otherwise `dead_centres` only part a turn into halves."""
-        return True
-
-    @property
-    def quick_return(self) -> bool:
-        """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
-        return False
-
-    @property
     def stroke(self) -> float:
         """Stroke in m; of what only swings, its swing in radians."""
         raise AssertionError
-
-    @property
-    def start(self) -> float:
-        """The coordinate at the inner dead centre."""
-        return 0.0
 
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return q at the crank angle, in m (or rad), of the shape of the angle."""
@@ -195,11 +183,6 @@ class Mechanism(Described):
     def phi_return(self) -> float:
         """Crank rotation of the return stroke in degrees."""
         return 360.0 - self.phi_work
-
-    @property
-    def works_outward(self) -> bool:
-        """Whether the outstroke is the working stroke; otherwise the return stroke is."""
-        return True
 
     @property
     def time_ratio(self) -> float:
@@ -287,9 +270,9 @@ def _lists(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...]) -> Lists
     return Lists.of(dict.fromkeys(offer.quantity for offer in offers), dict.fromkeys(key_values))
 
 
-def check_lengths(**lengths: float) -> None:
-    """Raise RuleError for every length that is not positive and finite."""
-    wrong = [name for name, value in lengths.items() if not 0 < value < float("inf")]
+def check_lengths(**lengths: float | None) -> None:
+    """Raise RuleError for every length that is not positive and finite; None is one that is not given."""
+    wrong = [name for name, value in lengths.items() if value is not None and not 0 < value < float("inf")]
     refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
 
 

@@ -5,24 +5,19 @@ from __future__ import annotations
 from typing import Any
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Physical
-from kurbel.declared.keys import Key, Keys, check
+from kurbel.declared.forms import positive
+from kurbel.declared.keys import Keys, check
 from kurbel.declared.quantity import Quantity
-from kurbel.errors import Fault, RuleError
-from kurbel.mechanisms import KeyOffer, Offer, own_force, own_motion
+from kurbel.mechanisms import KeyOffer, Offer, check_lengths, own_force, own_motion
 from kurbel.numerics.arithmetic import where
 from kurbel.numerics.extreme import Extreme
 
 PIN_KEYS: Keys = {
-    "pin_diameter": Key(
-        Physical("length", above=0),
-        "Diameter of the crank pin; needs `pin_length`",
-        "d_z",
-        absent="no pin pressure",
-        needs="pin_length",
+    "pin_diameter": positive(
+        "length", "Diameter of the crank pin; needs `pin_length`", "d_z", absent="no pin pressure", needs="pin_length"
     ),
-    "pin_length": Key(
-        Physical("length", above=0),
+    "pin_length": positive(
+        "length",
         "Length of the crank pin in its block; needs `pin_diameter`",
         "l_z",
         absent="same",
@@ -41,12 +36,8 @@ def projected_area(diameter: float | None, length: float | None) -> float | None
     Raises RuleError where only one of both is given, or one is not positive and finite.
     """
     check(PIN_KEYS, {"pin_diameter": diameter, "pin_length": length})
-    if diameter is None or length is None:
-        return None
-    for name, value in (("pin_diameter", diameter), ("pin_length", length)):
-        if not 0 < value < float("inf"):
-            raise RuleError(Fault((name,), "must be a positive, finite length"))
-    return diameter * length
+    check_lengths(pin_diameter=diameter, pin_length=length)
+    return None if diameter is None or length is None else diameter * length
 
 
 _SPEED = "Speed at which the block on the crank pin slides along its slot"

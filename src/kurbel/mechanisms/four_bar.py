@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Physical
-from kurbel.declared.keys import Key, Keys
+from kurbel.declared.forms import positive
+from kurbel.declared.keys import Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
@@ -17,7 +17,7 @@ from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, tu
 from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.four_bar_loop import Loop
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
-from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
+from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing, turning_offers
 from kurbel.numerics.arithmetic import bearing
 from kurbel.numerics.extreme import Extreme
 
@@ -34,21 +34,11 @@ def _coupler_column(end: str, symbol: str, kind: str, text: str) -> Quantity:
     return turning_column(f"theta_coupler{end}", symbol, plain, kind, f"{text} of the coupler", "theta_ddot")
 
 
-COUPLER_OFFERS = (
-    Offer(
-        _coupler_column("", "θ_K", "angle", "Angle, from the line crank pivot → rocker pivot,"),
-        lambda one, angle: one.coupler_at(angle).degrees,
-    ),
-    Offer(
-        _coupler_column("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
-        lambda one, angle: one.coupler_at(angle).slope,
-        ("omega",),
-    ),
-    Offer(
-        _coupler_column("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
-        lambda one, angle: one.coupler_at(angle).curvature,
-        ("omega", "omega"),
-    ),
+COUPLER_OFFERS = turning_offers(
+    "coupler_at",
+    _coupler_column("", "θ_K", "angle", "Angle, from the line crank pivot → rocker pivot,"),
+    _coupler_column("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
+    _coupler_column("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
 )
 
 
@@ -77,10 +67,10 @@ class FourBar(Mechanism):
     )
     far_pin: ClassVar[str] = "rocker_pin"
     KEYS: ClassVar[Keys] = {
-        "crank": Key(Physical("length", above=0), "Crank radius", "a", required=True),
-        "coupler": Key(Physical("length", above=0), "Length of the coupler", "b", required=True),
-        "rocker": Key(Physical("length", above=0), "Length of the rocker", "c", required=True),
-        "frame": Key(Physical("length", above=0), "Distance of the rocker's pivot from the shaft", "d", required=True),
+        "crank": positive("length", "Crank radius", "a", required=True),
+        "coupler": positive("length", "Length of the coupler", "b", required=True),
+        "rocker": positive("length", "Length of the rocker", "c", required=True),
+        "frame": positive("length", "Distance of the rocker's pivot from the shaft", "d", required=True),
     }
 
     def __post_init__(self) -> None:

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.declared.forms import Physical
-from kurbel.declared.keys import Key, Keys, check
+from kurbel.declared.forms import not_negative, positive
+from kurbel.declared.keys import Keys, check
 from kurbel.declared.quantity import Quantity
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_motion
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
@@ -71,9 +71,9 @@ class ParallelCrank(Mechanism):
         KeyOffer(_INERTIA, lambda one, forces: _squared(forces.omega, one.coupler_mass, one.crank)),
     )
     KEYS: ClassVar[Keys] = {
-        "crank": Key(Physical("length", above=0), "Radius of both cranks", "R", required=True),
-        "frame": Key(Physical("length", above=0), "Distance of the shafts; the coupler is as long", "d", required=True),
-        "coupler_mass": Key(Physical("mass", least=0), "Mass of the coupler", "m", absent="no inertia of the coupler"),
+        "crank": positive("length", "Radius of both cranks", "R", required=True),
+        "frame": positive("length", "Distance of the shafts; the coupler is as long", "d", required=True),
+        "coupler_mass": not_negative("mass", "Mass of the coupler", "m", absent="no inertia of the coupler"),
     }
 
     def __post_init__(self) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.declared.forms import Physical
-from kurbel.declared.keys import Key, Keys
+from kurbel.declared.forms import positive
+from kurbel.declared.keys import Keys
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_force
 from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
@@ -36,8 +36,8 @@ class ScotchYoke(Mechanism):
     known_across: ClassVar[bool] = True
     KEYS: ClassVar[Keys] = {
         **CRANK_KEYS,
-        "guide_length": Key(
-            Physical("length", above=0),
+        "guide_length": positive(
+            "length",
             "Distance along the stroke of the two guides that keep the yoke from tilting",
             "l_g",
             absent="no force on the guides",
@@ -83,9 +83,7 @@ class ScotchYoke(Mechanism):
         return Sketch(joints, links, (SHAFT,), blocks, (guide,), "rod", (-1.0, 0.0), (0.0, -1.0))
 
     def __post_init__(self) -> None:
-        check_lengths(crank=self.crank)
-        if self.guide_length is not None:
-            check_lengths(guide_length=self.guide_length)
+        check_lengths(crank=self.crank, guide_length=self.guide_length)
         projected_area(self.pin_diameter, self.pin_length)
 
     @property

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Number, Physical
+from kurbel.declared.forms import Number, Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 _INFINITE = (("infinite", math.inf),)
 CRANK_KEYS: Keys = {
-    "crank": Key(Physical("length", above=0), "Crank radius; or give `stroke`", "R", required=True, example="400 mm"),
-    "stroke": Key(Physical("length", above=0), "Stroke; or give `crank`", "s", instead="crank"),
+    "crank": positive("length", "Crank radius; or give `stroke`", "R", required=True, example="400 mm"),
+    "stroke": positive("length", "Stroke; or give `crank`", "s", instead="crank"),
 }
 """The size of the crank, shared by the mechanisms that can be given by their stroke."""
 

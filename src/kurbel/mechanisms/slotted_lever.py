@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Physical
+from kurbel.declared.forms import Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
@@ -53,14 +53,9 @@ class SlottedLever(Mechanism):
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (*SWING_VALUES, pin_pressure())
     quick_return: ClassVar[bool] = True
     KEYS: ClassVar[Keys] = {
-        "crank": Key(Physical("length", above=0), "Crank radius", "r", required=True),
-        "frame": Key(Physical("length", above=0), "Distance of the lever's pivot from the shaft", "e", required=True),
-        "lever": Key(
-            Physical("length", above=0),
-            "Length of the lever, pivot to end",
-            "R_l",
-            absent="angles and times only: no ram",
-        ),
+        "crank": positive("length", "Crank radius", "r", required=True),
+        "frame": positive("length", "Distance of the lever's pivot from the shaft", "e", required=True),
+        "lever": positive("length", "Length of the lever, pivot to end", "R_l", absent="angles and times only: no ram"),
         "link": Key(
             Physical("length", above=0, words=(("infinite", math.inf),)),
             "Length of the connecting link from the lever's end to the ram",
@@ -77,7 +72,7 @@ class SlottedLever(Mechanism):
     }
 
     def __post_init__(self) -> None:
-        check_lengths(crank=self.crank, frame=self.frame, **({"lever": self._end} if self.slides else {}))
+        check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
         if not (self.slides or self._forked):
             raise RuleError(Fault(("link",), "has no lever's end to hang on; give 'lever' with it"))
         projected_area(self.pin_diameter, self.pin_length)

@@ -26,18 +26,21 @@ def _column(id: str, symbol: str, kind: str, text: str, called: str = "") -> Qua
     return Quantity(id, symbol, kind, text, id, _BOTH, searched, called, unless="slides", after="b")
 
 
-SWING_OFFERS = (
-    Offer(_column("theta", "θ", "angle", f"Angle {_OF}"), lambda one, angle: one.swing_at(angle).degrees),
-    Offer(
-        _column("theta_dot", "θ̇", "angular_velocity", f"Angular velocity {_OF}", "angular velocity of the swing"),
-        lambda one, angle: one.swing_at(angle).slope,
-        ("omega",),
-    ),
-    Offer(
-        _column("theta_ddot", "θ̈", "angular_acceleration", f"Angular acceleration {_OF}", "angular acceleration"),
-        lambda one, angle: one.swing_at(angle).curvature,
-        ("omega", "omega"),
-    ),
+def turning_offers(method: str, angle: Quantity, velocity: Quantity, acceleration: Quantity) -> tuple[Offer, ...]:
+    """Return how a member turns, by the name of the method of its mechanism that tells its angle and derivatives."""
+
+    def factor(name: str) -> Callable[[Any, Any], Any]:
+        return lambda one, at: getattr(getattr(one, method)(at), name)
+
+    named = {"degrees": angle, "slope": velocity, "curvature": acceleration}
+    return tuple(Offer(one, factor(name), ("omega",) * order) for order, (name, one) in enumerate(named.items()))
+
+
+SWING_OFFERS = turning_offers(
+    "swing_at",
+    _column("theta", "θ", "angle", f"Angle {_OF}"),
+    _column("theta_dot", "θ̇", "angular_velocity", f"Angular velocity {_OF}", "angular velocity of the swing"),
+    _column("theta_ddot", "θ̈", "angular_acceleration", f"Angular acceleration {_OF}", "angular acceleration"),
 )
 
 

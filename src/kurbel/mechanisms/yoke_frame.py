@@ -9,10 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.declared.forms import Physical
-from kurbel.declared.keys import Key, Keys
-from kurbel.errors import Fault, RuleError
-from kurbel.mechanisms import Offer, own_force
+from kurbel.declared.forms import positive
+from kurbel.declared.keys import Keys
+from kurbel.mechanisms import Offer, check_lengths, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 
 if TYPE_CHECKING:
@@ -47,8 +46,8 @@ class YokeFrame(SliderCrank):
     )
     KEYS: ClassVar[Keys] = {
         **SliderCrank.KEYS,
-        "gland": Key(
-            Physical("length", above=0),
+        "gland": positive(
+            "length",
             "Distance from the stuffing box to the crosshead pin at the inner dead centre",
             "l_g",
             absent="no bending of the piston rod",
@@ -57,8 +56,7 @@ class YokeFrame(SliderCrank):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.gland is not None and not 0 < self.gland < float("inf"):
-            raise RuleError(Fault(("gland",), "must be a positive, finite length"))
+        check_lengths(gland=self.gland)
 
     def bending_arm(self, angle: CrankAngle) -> Any | None:
         """Return l_g + x in m, on which N bends the piston rod at the stuffing box; None where `gland` is not given.

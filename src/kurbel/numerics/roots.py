@@ -51,6 +51,7 @@ def _next_part(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array) ->
 _TRIALS = 20
 _CLOSE = 1e-9
 _FAR = 1000.0
+_STEEP = 30.0
 
 
 def rising_root(function: Callable[[float], float], start: float) -> float | None:
@@ -58,24 +59,27 @@ def rising_root(function: Callable[[float], float], start: float) -> float | Non
 
     It was found to be so there, or all but so at the end of a secant whose remainder, a product of both ends, is less.
     It is sought from a thousandth of the start to a thousand times it. The function rises, by about 1 over `start`; it
-    may jump, and be infinite.
+    may be infinite, and jump: where it rises so steeply between both ends that it seems to, there is no zero.
     """
     low, high, step = 0.0, math.inf, 1.0
+    f_low, f_high = -math.inf, math.inf
     x, f = before, f_before = start, function(start)
     for _ in range(_TRIALS):
         if abs(f) <= _CLOSE:
             return x
         if abs(f * f_before) <= _CLOSE and f != f_before:
             return x - f * (x - before) / (f - f_before)
-        low, high = (x, high) if f < 0 else (low, x)
+        low, f_low, high, f_high = (x, f, high, f_high) if f < 0 else (low, f_low, x, f)
         if not low or math.isinf(high):
             step *= 2.0 if x != before and abs(f) > abs(f_before) / 2 else 1.0
             following = max(x - step * start * min(f, 1.0), x / 4)
         else:
-            following = x - f * (x - before) / (f - f_before) if math.isfinite(f - f_before) else low
+            rise = f - f_before
+            following = x - f * (x - before) / rise if rise and math.isfinite(rise) else low
             if not low < following < high:
                 following = (low + high) / 2
-        if not start / _FAR < following < start * _FAR:
+        jumps = low > 0 and math.isfinite(f_high - f_low) and f_high - f_low > _STEEP * (high / low - 1)
+        if jumps or not start / _FAR < following < start * _FAR:
             break
         before, f_before = x, f
         x, f = following, function(following)

@@ -1,12 +1,15 @@
 """From a neutral report to text: the page of the book, one line per angle, CSV, JSON, Markdown, HTML and LaTeX."""
 
 from collections.abc import Iterable
+from importlib import import_module
 from typing import NamedTuple
 
 from kurbel.render.charset import Charset
 from kurbel.report.tables import Report
 
-FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
+_WRITERS = {"csv": "csv_text", "json": "json_text", "markdown": "markdown", "html": "html", "latex": "latex"}
+"""Format -> the function, in the file of its name, that makes its text of a report."""
+FORMATS = ("table", *_WRITERS)
 LAYOUTS = ("book", "rows")
 
 
@@ -38,26 +41,10 @@ def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable
 
 def pieces(report: Report, look: Look) -> Iterable[str]:
     """Return the text of the report piece by piece, each made when it is asked for: a long table is never held."""
-    if look.format == "csv":
-        from kurbel.render.csv_text import csv_text
-
-        return csv_text(report, look)
-    if look.format == "json":
-        from kurbel.render.json_text import json_text
-
-        return json_text(report, look)
-    if look.format == "markdown":
-        from kurbel.render.markdown import markdown
-
-        return markdown(report, look)
-    if look.format == "html":
-        from kurbel.render.html import html
-
-        return html(report, look)
-    if look.format == "latex":
-        from kurbel.render.latex import latex
-
-        return latex(report, look)
+    if look.format != "table":
+        name = _WRITERS[look.format]
+        text: Iterable[str] = getattr(import_module(f"kurbel.render.{name}"), name)(report, look)
+        return text
     from kurbel.render.lines import plain
     from kurbel.render.page import page
 

@@ -112,9 +112,10 @@ def grid(
     row, `good` or `bad`, where they have one.
     """
     said = f"<caption>{escape(caption)}</caption>" if caption else ""
+    below = [f"<br><small>{escape(unit)}</small>" if unit else "" for _, unit in heads]
     over = "".join(
-        f'<th scope="col"{_RIGHT if k in numbers else ""}>{escape(symbol)}{f"<br>{_small(unit)}" if unit else ""}</th>'
-        for k, (symbol, unit) in enumerate(heads)
+        f'<th scope="col"{_RIGHT if k in numbers else ""}>{escape(symbol)}{unit}</th>'
+        for k, ((symbol, _), unit) in enumerate(zip(heads, below))
     )
     label = escape(caption or "values over the crank angle", quote=True)
     yield f'<div class="wide" tabindex="0" role="region" aria-label="{label}"><table>{said}\n'
@@ -126,10 +127,6 @@ def grid(
 
 
 _RIGHT = ' class="r"'
-
-
-def _small(unit: str) -> str:
-    return f"<small>{escape(unit)}</small>"
 
 
 def _cells(row: Sequence[str], of_row: int, numbers: Collection[int]) -> Iterator[str]:

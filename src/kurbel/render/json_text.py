@@ -60,17 +60,15 @@ def _report(report: Report, digits: int | None) -> dict[str, Any]:
     if report.head:
         content["head"] = list(report.head)
     if report.parts:
-        of_part = _ratio if report.group == "ratios" else _cylinder
-        content[report.group] = [of_part(part, digits) for part in report.parts]
+        ratios = report.group == "ratios"
+        content[report.group] = [
+            _ratio(part, digits) if ratios else {"name": part.name, **_results(part, digits)} for part in report.parts
+        ]
     if report.whole is not None:
         content |= {f"machine_{key}": value for key, value in _results(report.whole, digits).items()}
     if report.notes:
         content["notes"] = list(report.notes)
     return content
-
-
-def _cylinder(part: Part, digits: int | None) -> dict[str, Any]:
-    return {"name": part.name, **_results(part, digits)}
 
 
 def _ratio(part: Part, digits: int | None) -> dict[str, Any]:

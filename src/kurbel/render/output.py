@@ -35,15 +35,12 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
         return
     encoding = "utf-8" if look.format in _SAYING_UTF_8 else stdout_charset().encoding
     look = look._replace(encoding=encoding, width=look.width or stdout_width())
-    if look.format == "table" and write_coloured(_page(report, look), look):
-        return
+    if look.format == "table":
+        from kurbel.render.page import page
+
+        if write_coloured(page(report, look), look):
+            return
     write_stdout(pieces(report, look), encoding)
-
-
-def _page(report: Report, look: Look) -> Iterator[Line]:
-    from kurbel.render.page import page
-
-    return page(report, look)
 
 
 def write_coloured(page: Iterable[Line], look: Look) -> bool:
@@ -83,12 +80,15 @@ def stdout_look() -> Look:
     return Look(encoding=stdout_charset().encoding, width=stdout_width())
 
 
-def write_out(texts: Iterable[str], file_name: str | None) -> None:
-    """Write to a file as UTF-8, or to standard output in the encoding of that; raises UsageError as both do."""
+def write_out(texts: Iterable[str], file_name: str | None, encoding: str | None = None) -> None:
+    """Write to a file as UTF-8, or to standard output, in its own encoding if none is given; UsageError as both.
+
+    What is to be piped on as a file is UTF-8 whatever the encoding of standard output.
+    """
     if file_name is not None and file_name != "-":
         write_file(file_name, texts)
     else:
-        write_stdout(texts)
+        write_stdout(texts, encoding)
 
 
 def write_stdout(texts: Iterable[str], encoding: str | None = None) -> None:
@@ -116,14 +116,6 @@ def silence(stream: Any) -> None:
     """Let what is still buffered go nowhere: Python would complain about it at its end, and change the exit status."""
     with suppress(OSError, ValueError, AttributeError):  # there may be no real file behind it
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-
-
-def write_text(texts: Iterable[str], file_name: str | None = None) -> None:
-    """Write UTF-8 text unchanged to a file, or to standard output whatever its encoding: a file that is piped on."""
-    if file_name is not None and file_name != "-":
-        write_file(file_name, texts)
-    else:
-        write_stdout(texts, "utf-8")
 
 
 def write_file(file_name: str, texts: Iterable[str]) -> None:

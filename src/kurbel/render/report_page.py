@@ -81,19 +81,19 @@ def _figure(picture: Picture, look: Look) -> str:
 
 
 def _grid(given: Grid, look: Look) -> str:
+    charset = look.charset
     parts = grid(
-        [(look.charset.text(head), "") for head in given.heads],
-        [[_cell(text, k in given.units, look) for k, text in enumerate(row)] for row in given.rows],
-        look.charset.text(given.title),
+        [(charset.text(head), "") for head in given.heads],
+        [
+            [(charset.unit if k in given.units else charset.text)(text) for k, text in enumerate(row)]
+            for row in given.rows
+        ],
+        charset.text(given.title),
         1,
         numbers=given.numbers,
         verdicts=given.verdicts,
     )
     return "".join(parts)
-
-
-def _cell(text: str, unit: bool, look: Look) -> str:
-    return look.charset.unit(text) if unit else look.charset.text(text)
 
 
 def _text(text: str, look: Look) -> str:

@@ -31,7 +31,8 @@ _STYLES = {
 def write_lines(lines: Iterable[Line], look: Look) -> bool:
     """Write the lines in colour and return True, or nothing and False where a table is wider than the terminal."""
     lines = list(lines)
-    if look.width is not None and any(_is_table_line(line) and _width(line) > look.width for line in lines):
+    tables = (line for line in lines if any(piece.role in ("rule", "head") for piece in line))
+    if look.width is not None and any(sum(width(piece.text) for piece in line) > look.width for line in tables):
         return False
     # a width, and a height with it, or rich believes a COLUMNS=0 of the environment and prints nothing
     console = Console(width=look.width, height=25, highlight=False, markup=False, emoji=False, soft_wrap=True)
@@ -44,11 +45,3 @@ def coloured(lines: Iterable[Line]) -> Iterator[Text]:
     """Yield the lines with their colours, as Text objects: a string would lose its brackets as markup."""
     for pieces in lines:
         yield Text.assemble(*((piece.text, _STYLES[piece.role]) for piece in pieces))
-
-
-def _is_table_line(line: Line) -> bool:
-    return any(piece.role in ("rule", "head") for piece in line)
-
-
-def _width(line: Line) -> int:
-    return sum(width(piece.text) for piece in line)

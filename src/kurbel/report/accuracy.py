@@ -13,8 +13,7 @@ from kurbel.accuracy.scenes import Loads, Scene, built_in
 from kurbel.accuracy.timing import Patience
 from kurbel.accuracy.trials import Lacking, Row, dominating, examined
 from kurbel.machine import Machine
-from kurbel.report.commands import report_of
-from kurbel.report.frame import Frame
+from kurbel.report.frame import Frame, report_of
 from kurbel.report.provenance import provenance
 from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report, Value
 from kurbel.solver.case import Case
@@ -64,7 +63,7 @@ def _measured(scene: Scene, quick: bool, uncertain: Sequence[Difference]) -> Mea
         tuple(lacking),
         tuple(model_errors(machine)),
         (*data_errors(machine), *uncertain),
-        tuple(savings(machine, everything, Patience(5, 0.1) if quick else Patience())) if worth else (),
+        tuple(savings(machine, everything, Patience.of(quick))) if worth else (),
     )
 
 
@@ -103,47 +102,30 @@ def _edge(found: Sequence[Measured]) -> Iterator[str]:
         yield "No method listed is both more exact and faster than kurbel's own, beyond noise (20 % of time, 16 u)."
 
 
+_TABLES = (
+    (
+        *(NUMERICAL, "numerical error", "rows", ("quantity", "method", "points", "state")),
+        ("evaluations", "error", "ulp", "median", "least", "ratio"),
+    ),
+    ("model_error", "error of the model", "model", ("quantity", "cause"), ("error",)),
+    ("data_error", "error of the data", "data", ("quantity", "cause"), ("error",)),
+    ("leaving_out", "what leaving out saves", "savings", ("machine",), ("stages", "median", "least", "ratio")),
+)
+"""Id and title of a table, what of a scene it tells, and the fields of that which are its names and its columns."""
+
+
 def _tables(one: Measured) -> Iterator[PlaceTable]:
-    if one.rows:
-        names = tuple((row.quantity, row.method, row.points, row.state) for row in one.rows)
-        heads = ("quantity", "method", "points", "state")
-        yield PlaceTable(NUMERICAL, f"{one.name}: numerical error", heads, names, _row_columns(one.rows), True)
-    for id, title, differences in (
-        ("model_error", "error of the model", one.model),
-        ("data_error", "error of the data", one.data),
-    ):
-        if differences:
-            causes = tuple((each.quantity, each.cause) for each in differences)
-            column = _column("error", "error", "", [each.error for each in differences])
-            yield PlaceTable(id, f"{one.name}: {title}", ("quantity", "cause"), causes, (column,), True)
-    if one.savings:
-        whats = tuple((saving.what,) for saving in one.savings)
-        title = f"{one.name}: what leaving out saves"
-        yield PlaceTable("leaving_out", title, ("machine",), whats, _saving_columns(one.savings), True)
+    for id, title, told, heads, columns in _TABLES:
+        if found := getattr(one, told):
+            names = tuple(tuple(getattr(each, head) for head in heads) for each in found)
+            shown = tuple(_column(name, [getattr(each, name) for each in found]) for name in columns)
+            yield PlaceTable(id, f"{one.name}: {title}", heads, names, shown, True)
 
 
-def _column(id: str, symbol: str, unit: str, values: Sequence[Value]) -> Column:
-    return Column(id, symbol, symbol, unit, tuple(values), alone=2)
-
-
-def _row_columns(rows: Sequence[Row]) -> tuple[Column, ...]:
-    return (
-        _column("evaluations", "evaluations", "", [row.evaluations for row in rows]),
-        _column("error", "error", "", [row.error for row in rows]),
-        _column("ulp", "ulp", "", [row.ulp for row in rows]),
-        _column("median", "median", "ms", [row.median * 1e3 for row in rows]),
-        _column("least", "least", "ms", [row.least * 1e3 for row in rows]),
-        _column("ratio", "ratio", "", [row.ratio for row in rows]),
-    )
-
-
-def _saving_columns(found: Sequence[Saving]) -> tuple[Column, ...]:
-    return (
-        _column("stages", "stages", "", [saving.stages for saving in found]),
-        _column("median", "median", "ms", [saving.median * 1e3 for saving in found]),
-        _column("least", "least", "ms", [saving.least * 1e3 for saving in found]),
-        _column("ratio", "ratio", "", [saving.ratio for saving in found]),
-    )
+def _column(id: str, values: Sequence[Value]) -> Column:
+    if id in ("median", "least"):  # times in s
+        return Column(id, id, id, "ms", tuple(value and value * 1e3 for value in values), alone=2)
+    return Column(id, id, id, "", tuple(values), alone=2)
 
 
 def environment() -> str:
@@ -185,8 +167,8 @@ def extremes_report(loads: Loads, cases: Sequence[Probe] | None = None) -> tuple
         (v.case.name, v.case.asked, v.expected, v.observed, "passed" if v.passed else "FAILED") for v in verdicts
     )
     columns = (
-        _column("ulp", "ulp", "", [verdict.ulp for verdict in verdicts]),
-        _column("allowed", "allowed", "", [None if v.ulp is None else v.case.ulp for v in verdicts]),
+        _column("ulp", [verdict.ulp for verdict in verdicts]),
+        _column("allowed", [None if v.ulp is None else v.case.ulp for v in verdicts]),
     )
     heads = ("case", "asked", "expected", "observed", "verdict")
     table = PlaceTable("extremes", f"{passed} of {len(verdicts)} cases passed", heads, names, columns, True)

@@ -18,8 +18,8 @@ from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
 from kurbel.solver.balance.circles import Circles
 from kurbel.solver.balance.free import Free
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
-from kurbel.solver.balance.weights import Weight
 from kurbel.solver.case import Case
+from kurbel.solver.shaft.weights import Weight
 
 _Entry = tuple[Quantity, "list[float | None]"]
 _DIGITS = 4
@@ -54,7 +54,7 @@ def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
 
 
 def _left_out(balance: MachineBalance, compare: bool) -> Iterable[LeftOut]:
-    moving = {throw.drive.name for throw in balance.throws}
+    moving = {throw.name for throw in balance.throws}
     for cylinder in balance.machine.cylinders:
         if cylinder.name not in moving:
             yield LeftOut(f"inertia of {cylinder.name}", "no masses given")
@@ -67,7 +67,7 @@ def _left_out(balance: MachineBalance, compare: bool) -> Iterable[LeftOut]:
 
 
 def _without_place(balance: MachineBalance) -> Iterable[str]:
-    yield from (throw.drive.name for throw in balance.throws if throw.place is None)
+    yield from (throw.name for throw in balance.throws if throw.place is None)
     if any(one.place is None for one in balance.loose_counterweights):
         yield "counterweights of the machine"
     if any(one.axial_position is None for one in balance.machine.balance_shafts):

@@ -83,13 +83,10 @@ def _crank_entries(machine: Machine) -> Iterable[Entry]:
     """Yield for each of several cylinders when it follows the first, and where that puts its crank pin."""
     banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
     for cylinder in machine.cylinders[: len(machine.cylinders) if len(machine.cylinders) > 1 else 0]:
-        pin = f", stroke line at {cylinder.bank_angle:g} deg: crank pin {_behind(cylinder):g} deg behind the first"
+        # the dead centre of a crank stands at its bank
+        behind = (cylinder.crank_position - cylinder.bank_angle) % 360.0
+        pin = f", stroke line at {cylinder.bank_angle:g} deg: crank pin {behind:g} deg behind the first"
         yield Entry(cylinder.name, f"{cylinder.crank_position:g} deg after the first{pin if banked else ''}")
-
-
-def _behind(cylinder: Cylinder) -> float:
-    """Return by which angle in degrees a crank pin follows that of cylinder 1: its dead centre stands at the bank."""
-    return (cylinder.crank_position - cylinder.bank_angle) % 360.0
 
 
 def _notes(found: Sequence[Note], cylinder: str | None, path: Path = ()) -> Iterable[Entry]:

@@ -180,7 +180,7 @@ def commands_for(machine: Machine, name: str) -> tuple[str, ...]:
 
 def _values(case: "Case", command: str, name: str) -> Iterator[Found]:
     from kurbel.numerics.extreme import Extreme
-    from kurbel.report.commands import subjects_of
+    from kurbel.report.frame import subjects_of
 
     for subject in subjects_of(case, command):
         quantity = subject.lists.key_values(command).get(name)

@@ -112,23 +112,13 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
         from kurbel.report.left_out import left_out
 
         yield from left_out(case.machine, cylinder)
-        yield from _no_loss(forces)
-        yield from _no_piston_rod(forces)
+        if forces.friction_work is not None and not forces.work_driving:
+            yield LeftOut("friction loss as a share", "no piston drives")
+        masses = cylinder.masses
+        if not forces.rod_load.no_compressor and masses and masses.crosshead is None:
+            yield LeftOut("load on the piston rod", "no mass of the crosshead given")
         if forces.reversals_in_noise:
             why = "are within the noise of the trace and no Druckwechsel"
             yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
 
     return Subject(cylinder.name, forces.answering, at, forces.lists, left, warnings, source=forces)
-
-
-def _no_loss(forces: CylinderForces) -> tuple[LeftOut, ...]:
-    if forces.friction_work is None or forces.work_driving:
-        return ()
-    return (LeftOut("friction loss as a share", "no piston drives"),)
-
-
-def _no_piston_rod(forces: CylinderForces) -> tuple[LeftOut, ...]:
-    masses = forces.drive.cylinder.masses
-    if forces.rod_load.no_compressor or masses is None or masses.crosshead is not None:
-        return ()
-    return (LeftOut("load on the piston rod", "no mass of the crosshead given"),)

@@ -1,7 +1,8 @@
 """The frame of every report on a machine: from the results of a command and its declared quantities to tables."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,8 +15,11 @@ from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_value
-from kurbel.report.tables import Column, KeyValue, Later, LeftOut, Part, PlaceTable, Report
+from kurbel.report.tables import Column, Later, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.figures import answered
+
+if TYPE_CHECKING:
+    from kurbel.solver.case import Case
 
 
 class Subject(NamedTuple):
@@ -118,7 +122,7 @@ class Frame(NamedTuple):
         return Part(
             subject.name,
             columns,
-            self.later(lambda: self._key_values(subject)),
+            self.later(lambda: (shown_key_value(*one, self.system) for one in subject.key_values(self.command))),
             self.later(subject.left_out),
             self.later(subject.warnings),
             subject.place_tables,
@@ -152,10 +156,6 @@ class Frame(NamedTuple):
     def _adds(self, column: Quantity) -> bool:
         return column.id == self.over or (self.compare and column.id.endswith("_book"))
 
-    def _key_values(self, subject: Subject) -> Iterator[KeyValue]:
-        for quantity, value in subject.key_values(self.command):
-            yield shown_key_value(quantity, value, self.system)
-
     def _nothing_compared(self, parts: Sequence[Part]) -> Iterator[str]:
         compared = any(column.id.endswith("_book") for part in parts for column in part.columns)
         # the balance tells itself what it leaves out
@@ -185,3 +185,22 @@ class Frame(NamedTuple):
                 )
             if there:
                 raise UsageError(f"--columns: '{name}' is left out for this machine, which has {', '.join(there)}")
+
+
+# what every command has in its own file, by its word
+
+
+def report_of(case: "Case", frame: Frame) -> Report:
+    """Return the report of the command that the frame is of."""
+    report: Report = getattr(_room(frame.command), f"{frame.command}_report")(case, frame)
+    return report
+
+
+def subjects_of(case: "Case", command: str) -> Iterable[Subject]:
+    """Return what a command speaks of, with the key values that it has."""
+    subjects: Iterable[Subject] = _room(command).subjects(case)
+    return subjects
+
+
+def _room(command: str) -> Any:
+    return import_module(f"kurbel.report.{command}")

@@ -66,7 +66,7 @@ def places_at(path: str) -> list[Place]:
     places = every_place()
     if not path.strip(". "):
         raise UsageError("no key is named; 'kurbel keys' without one lists them all")
-    steps = [step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()]
+    steps = _steps(path)
     if len(steps) > 1 and steps[0] == "cylinders":
         inner = steps[2:] if steps[1] == "each" else steps[1:]
         steps = inner if inner and ".".join(inner) in places else steps
@@ -76,6 +76,17 @@ def places_at(path: str) -> list[Place]:
     ends = [name for name in places if name.rpartition(".")[2] == steps[-1]]
     hint = f"; it stands at {', '.join(ends)}" if ends else did_you_mean(path, tuple(places))
     raise UsageError(f"no key '{shown(path)}'{hint}; 'kurbel keys' lists them")
+
+
+def meaning(path: str, places: dict[str, list[Place]]) -> str:
+    """Return what the key at the end of a path as the file has it means; '' of one that is not known."""
+    steps = _steps(path)
+    found = next((places[end] for k in range(len(steps)) if (end := ".".join(steps[k:])) in places), None)
+    return found[0].key.text.replace("`", "") if found else ""
+
+
+def _steps(path: str) -> list[str]:
+    return [step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()]
 
 
 def _of_record(record: Record, path: str, beside: str = "") -> Iterator[Place]:

@@ -11,7 +11,8 @@ from kurbel.report.tables import LeftOut
 def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     """Return all that forces and motion of a cylinder can consist of, with the reason why it is left out, or ""."""
     motion = _motion_stages(machine, cylinder)
-    acting = _sliding_forces(machine, cylinder) if cylinder.mechanism.slides else _moment(cylinder)
+    turning = {"moment at the output": "" if cylinder.moment else "no moment given"}
+    acting = _sliding_forces(machine, cylinder) if cylinder.mechanism.slides else turning
     has_force = not all(why for what, why in acting.items() if what != "friction")
     if not has_force:
         idle = {"friction": "no force acts"} if cylinder.friction else {}
@@ -45,10 +46,6 @@ def _rod_areas(cylinder: Cylinder) -> Iterable[str]:
     for number, piston in enumerate(cylinder.pistons):
         if piston.indicator and piston.indicator.crank_end is not None and not piston.crank_end_rod:
             yield f"piston rod of {piston.name}" if number else "piston rod"
-
-
-def _moment(cylinder: Cylinder) -> dict[str, str]:
-    return {"moment at the output": "" if cylinder.moment else "no moment given"}
 
 
 def _of_mechanism(cylinder: Cylinder) -> dict[str, str]:

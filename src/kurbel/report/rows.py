@@ -40,14 +40,11 @@ def over_stroke(step: float, end: float) -> "Callable[[Subject], Sequence[float]
         out = np.asarray(mechanism.crank_angles_at(way, True))
         back = np.asarray(mechanism.crank_angles_at(way[::-1], False))
         turn = np.concatenate((out, back[1:]))
-        return np.concatenate([turn[first:] + start for start, first in _turns(end)]).tolist()  # type: ignore[no-any-return]
+        # what ends a turn begins the next one
+        every = [turn[start > 0 :] + start for start in np.arange(0.0, end, 360.0).tolist()]
+        return np.concatenate(every).tolist()  # type: ignore[no-any-return]
 
     return angles
-
-
-def _turns(end: float) -> list[tuple[float, int]]:
-    """Start of each turn in degrees, and how many of its angles the turn before has told."""
-    return [(start, int(start > 0)) for start in np.arange(0.0, end, 360.0).tolist()]
 
 
 class Place(NamedTuple):

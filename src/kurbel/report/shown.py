@@ -22,8 +22,6 @@ _EVERYWHERE = np.arange(0.0, 720.0, 7.5)
 _ROUNDING = 1e-12
 """Values no larger than this beside the largest of their curve are the rounding of a zero."""
 
-_COUNTS = ("order", "mode", "distance")
-
 
 def shown_columns(
     phi: Quantity,
@@ -83,13 +81,13 @@ def _filled(values: Sequence[float | None], given: list[float]) -> tuple[float |
 
 def counted(columns: Iterable[Column]) -> tuple[Column, ...]:
     """Return columns with orders and numbers of modes written as such, 1.5, but 1 and 2; a distance in thousandths."""
-    return tuple(one._replace(decimals=_decimals(one)) if one.id in _COUNTS else one for one in columns)
 
+    def decimals(column: Column) -> int | None:
+        if column.id in ("order", "mode"):
+            return int(any(value and value % 1 for value in column.values))
+        return 3 if column.id == "distance" else column.decimals
 
-def _decimals(column: Column) -> int:
-    if column.id == "distance":
-        return 3
-    return 1 if any(value and value % 1 for value in column.values) else 0
+    return tuple(one._replace(decimals=decimals(one)) for one in columns)
 
 
 def shown_key_value(quantity: Quantity, value: Any, system: str) -> KeyValue:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from itertools import zip_longest
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -12,16 +13,15 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import Extreme
-from kurbel.report.commands import subjects_of
 from kurbel.report.document import Document, Grid, Pair, Section
-from kurbel.report.frame import Subject
-from kurbel.report.pictures import PICTURES, Wish, pictures
-from kurbel.report.pictures.picture import Picture
+from kurbel.report.frame import Subject, subjects_of
+from kurbel.report.pictures import PICTURES, Wish, pictures_if_any
 from kurbel.report.provenance import provenance
 from kurbel.report.whole import COMMANDS, Command, Given, Progress
 from kurbel.solver.case import Case
 
 _NONE = "–"
+Item = TypeVar("Item")
 
 
 def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, progress: Progress) -> Document:
@@ -51,7 +51,7 @@ def _given(given: Sequence[Given], first: str, second: str) -> Iterator[Grid | s
 
 def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterator[Grid | Pair]:
     """Yield the key values of both machines, cylinder beside cylinder, and then the pictures."""
-    both = [_subjects(case, command.word) for case in cases]
+    both = [_had(partial(subjects_of, case, command.word)) for case in cases]
     first, second = _names(cases)
     for left, right in zip_longest(*both):
         rows = tuple(_rows(left, right, command.word, system))
@@ -61,20 +61,14 @@ def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterato
             yield Grid(title, heads, rows, (1, 2, 4), (3,))
     for declared in PICTURES:
         if declared.command == command.word:
-            drawn = [_pictures(case, declared.id, system) for case in cases]
+            drawn = [_had(partial(pictures_if_any, case, declared, Wish(system))) for case in cases]
             yield from (Pair(left, right) for left, right in zip_longest(*drawn))
 
 
-def _subjects(case: Case, command: str) -> list[Subject]:
+def _had(found: Callable[[], Iterable[Item]]) -> list[Item]:
+    """Return what is found of a machine, nothing where it has none of that."""
     try:
-        return list(subjects_of(case, command))
-    except KurbelError:
-        return []
-
-
-def _pictures(case: Case, id: str, system: str) -> list[Picture]:
-    try:
-        return list(pictures(case, (id,), Wish(system)))
+        return list(found())
     except KurbelError:
         return []
 

@@ -65,6 +65,8 @@ def _as_far_as_solved(found: Callable[[], Iterable[str]], command: str) -> tuple
 
 _BEYOND = 1e308
 """Floquet multiplier that is as large as a float can be."""
+_SLOWLY = 0.01
+"""Growth of a disturbance in a cycle below which it is told as a share, since "1 times" says nothing."""
 _LINEAR = 0.1
 """δ up to which the cranks stand near enough where uniform rotation would have them."""
 _CLOSED = 1e-9
@@ -128,8 +130,9 @@ def _of_turning(turning: MachineTurning) -> Iterable[str]:
         yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
     yield from _wish_warnings(turning)
     if turning.multiplier is not None and turning.multiplier > 1:
-        least = "at least " if turning.multiplier > _BEYOND else ""
-        yield f"unstable: a disturbance of the speed grows {least}{turning.multiplier:.4g} times in every cycle"
+        more, least = turning.multiplier - 1, "at least " if turning.multiplier > _BEYOND else ""
+        grows = f"by {more:.2g} of itself" if more < _SLOWLY else f"{least}{turning.multiplier:.4g} times"
+        yield f"unstable: a disturbance of the speed grows {grows} in every cycle"
     if turning.load_ignored:
         yield "the mean torque is zero, so that a load in proportion to it does not hold the speed; it is left out"
     yield from _coupling_warnings(turning)

@@ -10,11 +10,10 @@ from kurbel.machine.alike import gathered, work_alike
 from kurbel.report.alike import together
 from kurbel.report.angles import stepped
 from kurbel.report.check import Checked, checked
-from kurbel.report.commands import report_of
 from kurbel.report.document import Document, Grid, Item, Section
-from kurbel.report.frame import Frame
-from kurbel.report.keys import every_place
-from kurbel.report.pictures import PICTURES, Wish, pictures
+from kurbel.report.frame import Frame, report_of
+from kurbel.report.keys import every_place, meaning
+from kurbel.report.pictures import PICTURES, Wish, pictures_if_any
 from kurbel.report.provenance import provenance
 from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.case import Case
@@ -62,11 +61,7 @@ def whole_report(case: Case, given: Given, system: str, step: float, progress: P
 
 def _input(case: Case, given: Given, found: Checked) -> Section:
     places = every_place()
-    rows = []
-    for path, value in given:
-        steps = [step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()]
-        meant = next((places[".".join(steps[k:])][0] for k in range(len(steps)) if ".".join(steps[k:]) in places), None)
-        rows.append((path, value, meant.key.text.replace("`", "") if meant else ""))
+    rows = [(path, value, meaning(path, places)) for path, value in given]
     items: list[Item] = [Grid("Given", ("Key", "Value", "Meaning"), tuple(rows))] if rows else []
     for part in found.sections:
         if part.title not in ("Limits", "Expected"):
@@ -100,11 +95,9 @@ def _pictures_of(case: Case, command: str, wish: Wish) -> Iterator[Item]:
     for one in PICTURES:
         if one.command == command:
             try:
-                yield from pictures(case, (one.id,), wish)
+                yield from pictures_if_any(case, one, wish)  # what another would show is told among what is left out
             except NoSolutionError as error:
                 yield f"{one.title}: {error}"
-            except UsageError:
-                continue  # what it would show is told among what is left out
 
 
 def _verdicts(found: Checked) -> Section | None:

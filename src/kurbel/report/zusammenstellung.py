@@ -44,15 +44,11 @@ def _guide(angle: CrankAngle, rod: _Rod) -> float:
     return float(rod.lam * angle.sin / formulas.cos_rod_angle(angle.sin, angle.cos, rod.rho))
 
 
-def _psi(angle: CrankAngle, rod: _Rod) -> float:
-    return math.degrees(math.atan(_guide(angle, rod)))
-
-
 _EXACT: dict[str, Factor] = {
     "acceleration_factor": lambda a, rod: formulas.acceleration_factor(a.sin, a.cos, rod.lam, rod.rho),
     "velocity_factor": lambda a, rod: formulas.velocity_factor(a.sin, a.cos, rod.lam, rod.rho),
     "displacement_factor": lambda a, rod: formulas.displacement_factor(a.sin, a.cos, rod.lam, rod.rho),
-    "psi": _psi,
+    "psi": lambda a, rod: math.degrees(math.atan(_guide(a, rod))),
     "rod_force_factor": lambda a, rod: 1 / formulas.cos_rod_angle(a.sin, a.cos, rod.rho),
     "guide_force_factor": _guide,
     "radial_force_factor": lambda a, rod: formulas.radial_factor(a.sin, a.cos, rod.lam, rod.rho),

@@ -1,6 +1,6 @@
 """Results by name: key values by id or printed symbol, and all columns at once."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -31,6 +31,22 @@ class Shown:
 
     def _repr_html_(self) -> str | None:
         return Shown.as_html(self) if Shown.as_html else None
+
+
+class Columns:
+    """Columns at crank angles φ (n,) in degrees: attributes by their ids, in SI, each (n,), computed when asked for.
+
+    formulas: what computes each column; None comes of one that the machine does not have.
+    """
+
+    def __init__(self, phi: Array, formulas: Mapping[str, Callable[[], Any]]) -> None:
+        self.phi, self.formulas = phi, formulas
+
+    def __getattr__(self, id: str) -> Any:
+        if id == "formulas" or id not in self.formulas:
+            raise AttributeError(f"no column is called {id}")
+        self.__dict__[id] = self.formulas[id]()
+        return self.__dict__[id]
 
 
 class Results(Shown):
@@ -78,7 +94,7 @@ class Results(Shown):
         names: ids or printed symbols. Raises UsageError for angles that are no numbers and for what is no column here.
         """
         angles = np.atleast_1d(crank_angles(degrees))
-        state: Any = self.at(angles)
+        state = self.at(angles)
         known = self.lists.columns(self.command)
         ids = [_only(name, known, "column") for name in names] if names else list(known)
         found = {id: getattr(state, id, None) for id in ids if id != "phi"}
@@ -87,6 +103,18 @@ class Results(Shown):
                 raise UsageError(f"this machine has no {id}: {known[id].text}")
         return {"phi": angles, **{id: np.asarray(one, float) for id, one in found.items() if one is not None}}
 
+    def at(self, degrees: Any, within: Array | None = None) -> Any:
+        """Return every column at crank angles (n,) in degrees; of the whole machine those of crank 1.
+
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        """
+        angles = crank_angles(degrees)
+        return self._columns(angles, angles if within is None else within)
+
+    def _columns(self, phi: Array, within: Array) -> Columns:
+        """Return the columns at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
+        return Columns(phi, {})
+
     @property
     def _of(self) -> str:
         """What the results are of."""
@@ -94,6 +122,16 @@ class Results(Shown):
 
     def __repr__(self) -> str:
         return f"<kurbel {self.command} of {self._of}: ['id'], key_values(), columns(degrees)>"
+
+
+def passed_on(part: str, name: str, text: str) -> Any:
+    """Return a key value that a part of the results has under this name; None where there is no such part."""
+
+    def answer(results: Any) -> Any:
+        one = getattr(results, part)
+        return None if one is None else getattr(one, name)
+
+    return property(answer, doc=text)
 
 
 def crank_angles(degrees: Any) -> Array:

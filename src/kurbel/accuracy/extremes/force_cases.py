@@ -6,12 +6,9 @@ from decimal import Decimal
 
 from kurbel.accuracy.decimals import pi
 from kurbel.accuracy.extremes import Absent, Oracle, Probe, Refusal
+from kurbel.accuracy.scenes import STEAM
 
 _TRAIN = "speed: 60 rpm, crank: 400 mm, rod: 2000 mm, bore: 450 mm"
-_STEAM = (
-    "{unit: at, expansion: [[0, 9.5], [0.35, 9.5], [0.5, 6.7], [0.7, 4.7], [0.95, 3.3], [1, 2.2]], "
-    "compression: [[1, 1.2], [0.25, 1.2], [0.1, 2.4], [0.02, 6.5], [0, 9.5]]}"
-)
 _JUMPS = (
     "{unit: bar, expansion: [[0, 9], [0.5, 9], [0.5, 2], [1, 2]], compression: [[1, 1], [0.2, 1], [0.2, 8], [0, 8]]}"
 )
@@ -71,37 +68,31 @@ def _masses(mass: str) -> str:
     return f", masses: {{piston: {mass}}}"
 
 
-_F = ", friction: {crosshead: 0.06}"
+def _rubs(coefficient: str) -> str:
+    return f", friction: {{crosshead: {coefficient}}}"
+
+
+def _nearly(pressure: str) -> str:
+    return _flat("[[0, 7], [0.3, 10], [1, 10]]", f"[[1, 10], [0.3, {pressure}], [0, 7]]")
+
+
+_EVEN = _flat("[[0, 5], [1, 5]]", "[[1, 5], [0, 5]]")
+_DRIVING = _flat("[[0, 5], [1, 5]]", "[[1, 0], [0, 0]]")
+_AT_REST = _TRAIN.replace("60 rpm", "0 rpm")
+_SHORT_ROD, _ENDLESS = (_TRAIN.replace("rod: 2000 mm", rod) for rod in ("rod_ratio: 1.01", "rod: infinite"))
 CASES = [
-    Probe("steam card", _double(_STEAM), "forces work", Oracle(), 2),
-    Probe("steam card", _double(_STEAM), "forces T_max", Oracle()),
+    Probe("steam card", _double(STEAM), "forces work", Oracle(), 2),
+    Probe("steam card", _double(STEAM), "forces T_max", Oracle()),
     Probe("vertical jumps", _double(_JUMPS), "forces work", Oracle(), 2),
     Probe("vertical jumps", _double(_JUMPS, _masses("200 kg")), "forces T_max", Oracle()),
     Probe("vertical jumps", _double(_JUMPS, _masses("200 kg")), "forces T_min", Oracle()),
     Probe("polytropic card", _double(_POLYTROPIC), "forces work", Oracle(), 8),
     Probe("polytropic card", _double(_POLYTROPIC), "forces T_max", Oracle()),
-    Probe("card without area", _single(_flat("[[0, 5], [1, 5]]", "[[1, 5], [0, 5]]")), "forces work", 0),
-    Probe("card without area", _single(_flat("[[0, 5], [1, 5]]", "[[1, 5], [0, 5]]")), "forces W", 0),
-    Probe(
-        "no loss as a share of no work",
-        _single(_flat("[[0, 5], [1, 5]]", "[[1, 5], [0, 5]]"), _F),
-        "forces loss_crosshead",
-        Absent(),
-    ),
-    Probe(
-        "card that cancels but for 1e-12",
-        _single(_flat("[[0, 7], [0.3, 10], [1, 10]]", "[[1, 10], [0.3, 10.00000000001], [0, 7]]")),
-        "forces work",
-        Oracle(60),
-        2,
-    ),
-    Probe(
-        "card that cancels but for 1e-15",
-        _single(_flat("[[0, 7], [0.3, 10], [1, 10]]", "[[1, 10], [0.3, 10.000000000000002], [0, 7]]")),
-        "forces work",
-        Oracle(60),
-        2,
-    ),
+    Probe("card without area", _single(_EVEN), "forces work", 0),
+    Probe("card without area", _single(_EVEN), "forces W", 0),
+    Probe("no loss as a share of no work", _single(_EVEN, _rubs("0.06")), "forces loss_crosshead", Absent()),
+    Probe("card that cancels but for 1e-12", _single(_nearly("10.00000000001")), "forces work", Oracle(60), 2),
+    Probe("card that cancels but for 1e-15", _single(_nearly("10.000000000000002")), "forces work", Oracle(60), 2),
     Probe("driven: negative area", _single(_flat("[[0, 1], [1, 1]]", "[[1, 1], [0, 7]]")), "forces work", Oracle(), 2),
     Probe("1e5 noisy samples", noisy_trace, "forces work", _work_of_wave, 64),
     Probe("1e10 bar", _single(_flat("[[0, 1e10], [1, 1e10]]", "[[1, 0], [0, 0]]")), "forces work", Oracle(), 4),
@@ -111,33 +102,16 @@ CASES = [
     Probe("mass 1e-12 kg", f"{{{_TRAIN}{_masses('1e-12 kg')}}}", "forces T_max", Oracle()),
     Probe("mass 1e18 kg", f"{{{_TRAIN}{_masses('1e18 kg')}}}", "forces T_max", Oracle()),
     Probe("mass 1e308 kg", f"{{{_TRAIN}{_masses('1e308 kg')}}}", "forces T_max", Refusal("too large")),
-    Probe("no masses", _double(_STEAM), "forces P_inertia_max", Absent()),
-    Probe("power at rest", _double(_STEAM, train=_TRAIN.replace("60 rpm", "0 rpm")), "forces power", Absent()),
-    Probe("work at rest", _double(_STEAM, train=_TRAIN.replace("60 rpm", "0 rpm")), "forces work", Oracle(), 2),
-    Probe("friction 0", _double(_STEAM, ", friction: {crosshead: 0}"), "forces friction_work", 0),
-    Probe("friction 1e-15", _double(_STEAM, ", friction: {crosshead: 1e-15}"), "forces friction_work", Oracle(), 16),
-    Probe("friction 0.06", _double(_STEAM, _F), "forces friction_work", Oracle(), 16),
-    Probe(
-        "friction, L/R = 1.01",
-        _double(_STEAM, _F, _TRAIN.replace("rod: 2000 mm", "rod_ratio: 1.01")),
-        "forces friction_work",
-        Oracle(60),
-        256,
-    ),
-    Probe(
-        "driving, friction 10",
-        _single(_flat("[[0, 5], [1, 5]]", "[[1, 0], [0, 0]]"), ", friction: {crosshead: 10}"),
-        "forces friction_work",
-        Oracle(),
-        64,
-    ),
+    Probe("no masses", _double(STEAM), "forces P_inertia_max", Absent()),
+    Probe("power at rest", _double(STEAM, train=_AT_REST), "forces power", Absent()),
+    Probe("work at rest", _double(STEAM, train=_AT_REST), "forces work", Oracle(), 2),
+    Probe("friction 0", _double(STEAM, _rubs("0")), "forces friction_work", 0),
+    Probe("friction 1e-15", _double(STEAM, _rubs("1e-15")), "forces friction_work", Oracle(), 16),
+    Probe("friction 0.06", _double(STEAM, _rubs("0.06")), "forces friction_work", Oracle(), 16),
+    Probe("friction, L/R = 1.01", _double(STEAM, _rubs("0.06"), _SHORT_ROD), "forces friction_work", Oracle(60), 256),
+    Probe("driving, friction 10", _single(_DRIVING, _rubs("10")), "forces friction_work", Oracle(), 64),
     Probe("driven, just before it locks", _driven("1.4143", "1"), "forces friction_work", Oracle(60), 1e6),
     Probe("driven, locked", _driven("1.4142", "1"), "forces friction_work", Refusal("locks itself", 3)),
     Probe("driven, locked by f = 20", _driven("5", "20"), "forces N_max", Refusal("locks itself", 3)),
-    Probe(
-        "infinite rod has no side force",
-        _double(_STEAM, train=_TRAIN.replace("2000 mm", "infinite")),
-        "forces N_max",
-        0,
-    ),
+    Probe("infinite rod has no side force", _double(STEAM, train=_ENDLESS), "forces N_max", 0),
 ]

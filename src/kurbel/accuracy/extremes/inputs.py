@@ -23,16 +23,14 @@ CASES = [
     Probe("no number", "{crank: .nan, rod_ratio: 5}", "motion x@30", Refusal("expected a number with its unit")),
     Probe("infinite crank", "{crank: infinite, rod_ratio: 5}", "motion x@30", Refusal("expected a number")),
     Probe("key twice", "crank: 400 mm\ncrank: 500 mm\nrod_ratio: 5", "motion x@30", Refusal("twice")),
-    Probe(
-        "line that turns back", _expansion("[[0, 5], [0.6, 5], [0.4, 4], [1, 2]]"), "forces work", Refusal("turns back")
+    *(
+        Probe(name, _expansion(points), "forces work", Refusal(text))
+        for name, points, text in (
+            ("line that turns back", "[[0, 5], [0.6, 5], [0.4, 4], [1, 2]]", "turns back"),
+            ("three points in a jump", "[[0, 5], [0.5, 5], [0.5, 4], [0.5, 3], [1, 2]]", "three points"),
+            ("outside the stroke", "[[0, 5], [1.1, 2]]", "no fraction of the stroke"),
+            ("open card", "[[0.1, 5], [1, 2]]", "must reach from fraction 0 to 1"),
+            ("one point", "[[0, 5]]", ""),
+        )
     ),
-    Probe(
-        "three points in a jump",
-        _expansion("[[0, 5], [0.5, 5], [0.5, 4], [0.5, 3], [1, 2]]"),
-        "forces work",
-        Refusal("three points"),
-    ),
-    Probe("outside the stroke", _expansion("[[0, 5], [1.1, 2]]"), "forces work", Refusal("no fraction of the stroke")),
-    Probe("open card", _expansion("[[0.1, 5], [1, 2]]"), "forces work", Refusal("must reach from fraction 0 to 1")),
-    Probe("one point", _expansion("[[0, 5]]"), "forces work", Refusal("")),
 ]

@@ -102,7 +102,8 @@ def _of_motion(machine: Machine, cylinder: CylinderOracle, name: str, at: str) -
         return cylinder.motion.stroke
     if name == "c_max":
         return references.largest_slope(cylinder.motion) * factor
-    return references.motion_at(cylinder.motion, [float(at)])[0][_MOTION[name]] * factor
+    asked = ("coordinate", "slope", "curvature")[_MOTION[name]]
+    return references.motion_at(cylinder.motion, [float(at)], asked)[0] * factor
 
 
 def _of_forces(cylinder: CylinderOracle, name: str) -> Decimal:

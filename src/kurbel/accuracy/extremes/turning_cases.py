@@ -6,18 +6,18 @@ from decimal import Decimal
 
 from kurbel.accuracy.decimals import pi
 from kurbel.accuracy.extremes import Absent, Oracle, Probe, Refusal
-from kurbel.accuracy.extremes.force_cases import _STEAM
+from kurbel.accuracy.scenes import STEAM
 
 _TRAIN = "crank: 400 mm, rod: 2000 mm, bore: 450 mm"
 
 
-def _engine(more: str, masses: str = "200 kg", rpm: str = "50") -> str:
+def _engine(more: str, masses: str = "200 kg") -> str:
     heavy = f"masses: {{piston: {masses}}}, " if masses else ""
-    return f"{{speed: {rpm} rpm, {_TRAIN}, indicator: {{head_end: {_STEAM}, crank_end: mirrored}}, {heavy}{more}}}"
+    return f"{{speed: 50 rpm, {_TRAIN}, indicator: {{head_end: {STEAM}, crank_end: mirrored}}, {heavy}{more}}}"
 
 
-def _flywheel(inertia: str, load: str) -> str:
-    return f"flywheel: {{inertia: {inertia}}}, load: {load}"
+def _loaded(inertia: str, load: str, masses: str = "") -> str:
+    return _engine(f"flywheel: {{inertia: {inertia} kg m2}}, load: {load}", masses)
 
 
 def _given(points: str, more: str = "") -> str:
@@ -35,11 +35,14 @@ def _delta_of_block() -> Decimal:
 
 
 def _twins(position: int) -> str:
-    cylinder = f"{_TRAIN}, indicator: {{head_end: {_STEAM}, crank_end: mirrored}}"
+    cylinder = f"{_TRAIN}, indicator: {{head_end: {STEAM}, crank_end: mirrored}}"
     other = f"{cylinder}, crank_position: {position} deg"
     return f"{{speed: 50 rpm, cylinders: [{{name: a, {cylinder}}}, {{name: b, {other}}}]}}"
 
 
+_FAN = "{power_law: 2}"
+_FALLING = "load that falls as 1/ω, ∮ dφ/ω as at the nominal speed"
+_STOPS = Refusal("the machine stops near", 3)
 CASES = [
     Probe("no flywheel", _engine("inclination: 0 deg"), "flywheel dE", Oracle()),
     Probe("no flywheel", _engine("inclination: 0 deg"), "flywheel delta", Absent()),
@@ -49,44 +52,20 @@ CASES = [
     Probe("effort in a block", _given(_BLOCK), "flywheel dE", lambda: 100 * pi(), 4),
     Probe("J = 1e15 kg m²", _given(_BLOCK, _WHEEL), "flywheel delta", _delta_of_block, 16),
     *(
-        Probe(f"slip {slip}", _engine(_flywheel("900 kg m2", f"{{slip: {slip}}}")), f"flywheel {asked}", Oracle(), 16)
+        Probe(f"slip {slip}", _loaded("900", f"{{slip: {slip}}}", "200 kg"), f"flywheel {asked}", Oracle(), 16)
         for slip in ("0.1", "1e-3", "1e-6", "1e-9")
         for asked in ("omega@60", "omega@270")
     ),
     *(
-        Probe(f"fan, J = {inertia}", _engine(_flywheel(inertia, "{power_law: 2}")), "flywheel omega@60", Oracle(), 24)
-        for inertia in ("1e3 kg m2", "1e6 kg m2", "1e12 kg m2")
+        Probe(f"fan, J = {inertia} kg m2", _loaded(inertia, _FAN, "200 kg"), "flywheel omega@60", Oracle(), 24)
+        for inertia in ("1e3", "1e6", "1e12")
     ),
-    Probe("power law 30", _engine(_flywheel("900 kg m2", "{power_law: 30}")), "flywheel omega@60", Oracle(), 16),
-    Probe(
-        "J varying tenfold", _engine(_flywheel("4 kg m2", "{slip: 0.05}"), "300 kg"), "flywheel omega@90", Oracle(), 24
-    ),
-    Probe(
-        "hardly a flywheel, slip 1e-6",
-        _engine(_flywheel("1 kg m2", "{slip: 1e-6}"), ""),
-        "flywheel omega@60",
-        Oracle(),
-        16,
-    ),
-    Probe(
-        "flywheel of no inertia",
-        _engine(_flywheel("0 kg m2", "constant"), ""),
-        "flywheel delta",
-        Refusal("any inertia"),
-    ),
-    Probe(
-        "stalls under a constant load",
-        _engine(_flywheel("30 kg m2", "constant"), ""),
-        "flywheel delta",
-        Refusal("the machine stops near", 3),
-    ),
-    Probe(
-        "load that falls as 1/ω, ∮ dφ/ω as at the nominal speed",
-        _engine(_flywheel("300 kg m2", "{power_law: -1}"), ""),
-        "flywheel omega_mean",
-        lambda: 100 * pi() / 60,
-        16,
-    ),
+    Probe("power law 30", _loaded("900", "{power_law: 30}", "200 kg"), "flywheel omega@60", Oracle(), 16),
+    Probe("J varying tenfold", _loaded("4", "{slip: 0.05}", "300 kg"), "flywheel omega@90", Oracle(), 24),
+    Probe("hardly a flywheel, slip 1e-6", _loaded("1", "{slip: 1e-6}"), "flywheel omega@60", Oracle(), 16),
+    Probe("flywheel of no inertia", _loaded("0", "constant"), "flywheel delta", Refusal("any inertia")),
+    Probe("stalls under a constant load", _loaded("30", "constant"), "flywheel delta", _STOPS),
+    Probe(_FALLING, _loaded("300", "{power_law: -1}"), "flywheel omega_mean", lambda: 100 * pi() / 60, 16),
     Probe("no speed, no speed line", _given(_BLOCK, _WHEEL).replace("speed: 60 rpm, ", ""), "flywheel delta", Absent()),
     Probe("nothing turns the shaft", f"{{speed: 50 rpm, {_TRAIN}}}", "flywheel dE", Refusal("no force acts")),
 ]

@@ -8,7 +8,18 @@ from kurbel.declared.forms.figures import Expectations, Limits
 from kurbel.declared.forms.firing_order import FiringOrder
 from kurbel.declared.forms.points import Points
 from kurbel.declared.forms.records import Inline, Record, Variant
-from kurbel.declared.forms.scalars import Choice, Count, FilePath, Number, Physical, Text, Truth, UnitName
+from kurbel.declared.forms.scalars import (
+    Choice,
+    Count,
+    FilePath,
+    Number,
+    Physical,
+    Text,
+    Truth,
+    UnitName,
+    not_negative,
+    positive,
+)
 from kurbel.declared.forms.structures import Keyed, Listing, OneOf
 from kurbel.declared.forms.uncertainties import Uncertainties
 
@@ -34,4 +45,6 @@ __all__ = [
     "Uncertainties",
     "UnitName",
     "Variant",
+    "not_negative",
+    "positive",
 ]

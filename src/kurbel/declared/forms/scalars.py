@@ -9,12 +9,13 @@ from functools import cache
 from operator import ge, gt, le, lt
 from typing import Any, NoReturn
 
-from kurbel.declared.bounds import SIZES, out_of_size, range_of
-from kurbel.declared.keys import Form, Schema
+from kurbel.declared.bounds import out_of_size, range_of
+from kurbel.declared.keys import Form, Key, Schema
+from kurbel.declared.kinds import KINDS
 from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio, plain
 from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import example, parse_quantity, unit_factor, unit_names
+from kurbel.declared.units import example, parse_quantity, unit_example, unit_factor, unit_names
 from kurbel.errors import Fault, Path, RuleError, UnitError
 from kurbel.near_words import did_you_mean
 
@@ -149,6 +150,16 @@ class Physical(_Bounded):
         return self._schema(reference(name))
 
 
+def positive(kind: str, text: str, symbol: str = "", **more: Any) -> Key:
+    """Declare a key under which a value of this kind above 0 stands; more: see `Key`."""
+    return Key(Physical(kind, above=0), text, symbol, **more)
+
+
+def not_negative(kind: str, text: str, symbol: str = "", **more: Any) -> Key:
+    """Declare a key under which 0, or a value above it, stands."""
+    return Key(Physical(kind, least=0), text, symbol, **more)
+
+
 class Number(_Bounded):
     """A bare number, a quotient such as `1/80` or `75 %` (a ratio, a fraction, a coefficient); becomes a float."""
 
@@ -162,7 +173,7 @@ class Number(_Bounded):
         return "5" if (self.above or 0) >= 1 else "0.1"
 
     def schema(self, definitions: Schema) -> Schema:
-        largest = SIZES["ratio"][1]
+        largest = KINDS["ratio"].largest
         bounds = {
             "exclusiveMinimum": self.above,
             "minimum": -largest if self.least is None else self.least,
@@ -314,7 +325,7 @@ class UnitName(Scalar):
         return f"a unit of {self.unit_of}, such as '{self.example()}'"
 
     def example(self) -> str:
-        return example(self.unit_of).split(" ", 1)[1]
+        return unit_example(self.unit_of)
 
     def schema(self, definitions: Schema) -> Schema:
         return {"type": "string", "pattern": f"^\\s*{_units(self.unit_of)}\\s*$"}

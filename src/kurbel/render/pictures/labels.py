@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, NamedTuple
 from kurbel.render import Look
 from kurbel.render.charset import width
 from kurbel.render.numbers import angle, single
+from kurbel.render.pictures.scale import tick_text
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-    from kurbel.report.pictures.picture import Figure, Shade, Words
+    from kurbel.report.pictures.picture import Axis, Figure, Shade, Words
 
 CHARACTER, LINE = 5.8, 11.0
 """Width and height of a character of a label, in points."""
@@ -84,6 +85,15 @@ def symbol(words: "Words", look: Look) -> str:
 def signed(number: str, look: Look) -> str:
     """Return a number with a minus sign, where there is one, in place of a hyphen."""
     return f"−{number[1:]}" if number.startswith("-") and look.charset.has("−") else number
+
+
+def tick_texts(axis: "Axis", values: list[float], look: Look) -> list[str]:
+    """Return what stands at the ticks of an axis."""
+    if axis.names:
+        return [axis.names[int(value)] for value in values]
+    if axis.log:
+        return [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
+    return [signed(tick_text(value, values, look.comma), look) for value in values]
 
 
 def axis_text(words: "Words", unit: str, look: Look) -> str:

@@ -11,8 +11,8 @@ from kurbel.render.charset import right
 from kurbel.render.charset import width as cells
 from kurbel.render.lines import BLANK, Line, line
 from kurbel.render.pictures.canvas import Canvas
-from kurbel.render.pictures.labels import axis_text, figure_text, shade_texts, signed, symbol
-from kurbel.render.pictures.scale import Scale, scale_of, taller, tick_text, ticks
+from kurbel.render.pictures.labels import axis_text, figure_text, shade_texts, symbol, tick_texts
+from kurbel.render.pictures.scale import Scale, scale_of, taller, ticks
 from kurbel.render.pictures.style import looks_of
 from kurbel.render.prose import folded
 
@@ -41,7 +41,7 @@ def _panel(panel: Panel, look: Look, width: int, rows: int) -> Iterator[Line]:
     if panel.equal:
         y = taller(y, 2 * _LEAST_ROWS / width * (x.high - x.low))
     up = [] if panel.plain else ticks(y, panel.y, rows // 2)
-    texts = [panel.y.names[int(v)] if panel.y.names else _tick(v, up, panel.y.log, look) for v in up]
+    texts = tick_texts(panel.y, up, look)
     side = max(map(cells, texts), default=-1) + 1
     braille = look.charset.has("⣿")
     if panel.equal:
@@ -63,10 +63,6 @@ def _panel(panel: Panel, look: Look, width: int, rows: int) -> Iterator[Line]:
 def _rows_of_equal(x: Scale, y: Scale, columns: int) -> int:
     """Return the rows in which both axes have one scale, a character being twice as high as wide."""
     return max(_LEAST_ROWS, min(30, round(columns / 2 * abs((y.high - y.low) / (x.high - x.low)))))
-
-
-def _tick(value: float, values: list[float], log: bool, look: Look) -> str:
-    return f"{value:.0e}" if log else signed(tick_text(value, values, look.comma), look)
 
 
 def _head(panel: Panel, look: Look) -> str:
@@ -175,7 +171,7 @@ def _below(panel: Panel, scale: Scale, canvas: Canvas, side: int, look: Look) ->
     """Yield the axis below a panel, its ticks, and what runs along it."""
     dots = canvas.fine[0]
     values = ticks(scale, panel.x, max(2, canvas.columns // 10))
-    texts = [panel.x.names[int(v)] if panel.x.names else _tick(v, values, panel.x.log, look) for v in values]
+    texts = tick_texts(panel.x, values, look)
     rule = [look.charset.rule] * canvas.columns
     under = [" "] * canvas.columns
     end = 0

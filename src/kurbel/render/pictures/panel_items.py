@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kurbel.render.charset import width as cells
-from kurbel.render.pictures.labels import CHARACTER, Box, Taken, axis_text, figure_text, shade_texts, signed, symbol
-from kurbel.render.pictures.scale import Scale, tick_text, ticks
+from kurbel.render.pictures.labels import CHARACTER, Box, Taken, axis_text, figure_text, shade_texts, symbol, tick_texts
+from kurbel.render.pictures.scale import Scale, ticks
 from kurbel.render.pictures.scene import Dots, Item, Line, Places, Text, thinned
 from kurbel.render.pictures.style import SHAPES, looks_of
 
@@ -63,19 +63,11 @@ def _grid(panel: Panel, scales: Scales, look: Look) -> Iterator[Item]:
     lines += [((x.start, y.place(v)), (x.end, y.place(v))) for v in up]
     yield Line(tuple(lines), "g")
     yield Line((((x.start, y.end), (x.start, y.start), (x.end, y.start)),), "x")
-    for value in across:
-        text = panel.x.names[int(value)] if panel.x.names else _at_tick(value, across, panel.x.log, look)
+    for value, text in zip(across, tick_texts(panel.x, across, look)):
         yield Text(x.place(value), y.start + 14, text, "t", "middle")
-    for value in up:
-        text = panel.y.names[int(value)] if panel.y.names else _at_tick(value, up, panel.y.log, look)
+    for value, text in zip(up, tick_texts(panel.y, up, look)):
         yield Text(x.start - 6, y.place(value) + 3.5, text, "t", "end")
     yield Text(x.end, y.start + 26, axis_text(panel.x.name, panel.x.unit, look), "t", "end")
-
-
-def _at_tick(value: float, values: list[float], log: bool, look: Look) -> str:
-    if log:
-        return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e")
-    return signed(tick_text(value, values, look.comma), look)
 
 
 def _shade(shade: Shade, scales: Scales) -> Iterator[Item]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from kurbel.render.pictures.scene import Dots, Item, Line, Scene, Text
+from kurbel.render.pictures.scene import Dots, Item, Line, Text
 from kurbel.render.pictures.style import FAINT, GAIN, GRID, INK, LOOKS, LOSS, PAPER
 
 if TYPE_CHECKING:
@@ -44,15 +44,11 @@ def save(pictures: list[Picture], look: Look, path: str, kind: str) -> None:
         axes.set_axis_off()
         top = 0.0
         for one in scenes:
-            _draw(axes, one, top)
+            for order, item in enumerate(one.items):
+                _ITEMS[type(item)](axes, item, top, order)
             top += one.height
         nameless = {"CreationDate": None} if kind == "pdf" else {"Software": None}
         figure.savefig(path, format=kind, dpi=_DPI, metadata=nameless)
-
-
-def _draw(axes: Any, scene: Scene, top: float) -> None:
-    for order, item in enumerate(scene.items):
-        _ITEMS[type(item)](axes, item, top, order)
 
 
 def _text(axes: Any, item: Text, top: float, order: int) -> None:

@@ -102,7 +102,7 @@ PICTURES = (
         "Turning effort of the whole machine and the resistance, its lobes numbered with their work; below the excess "
         "work and the speed (R Abb. 1064 to 1067).",
         "flywheel",
-        "effort:effort",
+        "whole_machine:effort",
     ),
     Declared(
         "throw-stress",
@@ -124,14 +124,14 @@ PICTURES = (
         "Drehkraft nach Ordnungen",
         "Amplitudes of the turning effort by order, periods per turn of the shaft.",
         "harmonics",
-        "orders:torque_orders",
+        "whole_machine:torque_orders",
     ),
     Declared(
         "modes",
         "Eigenschwingungen der Welle",
         "How far the masses of the shaft line turn in its first natural vibrations.",
         "torsion",
-        "orders:shaft_modes",
+        "whole_machine:shaft_modes",
     ),
     Declared(
         "free-vectors",
@@ -152,7 +152,7 @@ PICTURES = (
         "Ordnungen der freien Kräfte und Momente",
         "The circles of each order, with the rotation and against it.",
         "balance",
-        "orders:free_orders",
+        "whole_machine:free_orders",
     ),
     Declared(
         "motion",
@@ -222,6 +222,13 @@ def pictures_of(case: "Case", wish: Wish) -> tuple[Declared, ...]:
                 has = True
             found += [one] if has else []
     return tuple(found)
+
+
+def pictures_if_any(case: "Case", declared: Declared, wish: Wish) -> list[Picture]:
+    """Return one picture of a machine, as often as it has it, or none; raises NoSolutionError as `pictures` does."""
+    with np.errstate(all="ignore"), suppress(UsageError):
+        return list(_pictures(case, declared, wish))
+    return []
 
 
 def _first(case: "Case", wish: Wish) -> list[Picture]:

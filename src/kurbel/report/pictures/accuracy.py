@@ -68,14 +68,14 @@ def _panel(
     span: tuple[float, float],
 ) -> Panel:
     curves = [
-        Curve(Words(method, method), tuple(map(_piece, scenes)), "dots", methods.index(method))
+        Curve(
+            Words(method, method),
+            tuple(Piece(*np.array(answers).T) for answers in scenes),
+            "dots",
+            methods.index(method),
+        )
         for method, scenes in found.items()
     ]
     rounding = Curve(Words("", ""), (Piece(np.array([_ROUNDING, _ROUNDING]), np.array(span)),), "faint")
     x = Axis(Words("error", "error"), "", True, _LEAST, 1.0, falling=True)
     return Panel(x, Axis(Words("time", "time"), "ms", True, *span), (rounding, *curves), title=quantity)
-
-
-def _piece(answers: list[tuple[float, float]]) -> Piece:
-    errors, times = np.array(answers).T
-    return Piece(errors, times)

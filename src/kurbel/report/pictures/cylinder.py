@@ -181,10 +181,14 @@ def polar_effort(source: Source) -> Iterator[Panel]:
     force = convert(samples.values[1], "force", unit)
     size = float(np.abs(force).max()) or 1.0
     base = max(0.6 * size, size * 0.25 - float(force.min()))
-    rings = [_ring(base, Words("T = 0", "T = 0"))]
+    around = np.linspace(0.0, 360.0, 121)
+    rings = [_faint(Words("T = 0", "T = 0"), around, base)]
     if mean := getattr(source.results, "W", None):
-        rings.append(_ring(base + float(convert(mean, "force", unit)), Words("W", "W")))
-    spokes = [_spoke(angle, base, (base + size) * 1.04) for angle in range(0, 360, 90)]
+        rings.append(_faint(Words("W", "W"), around, base + float(convert(mean, "force", unit))))
+    spokes = [
+        _faint(Words(f"φ = {angle:g}°", f"phi = {angle:g}"), angle, np.array([base, (base + size) * 1.04]))
+        for angle in range(0, 360, 90)
+    ]
     curves = (Curve(source.words("T"), pieces(samples, *_polar(samples.degrees, base + force))), *rings, *spokes)
     marks = tuple(_placed(one, base) for one in source.marks("T", unit))
     axis = Axis(Words("", ""), unit)
@@ -196,14 +200,9 @@ def _polar(degrees: Any, radius: Any) -> tuple[Any, Any]:
     return radius * angle.cos, radius * angle.sin
 
 
-def _ring(radius: float, name: Words) -> Curve:
-    x, y = _polar(np.linspace(0.0, 360.0, 121), radius)
-    return Curve(name, (Piece(x, y),), kind="faint")
-
-
-def _spoke(degrees: float, inner: float, outer: float) -> Curve:
-    x, y = _polar(degrees, np.array([inner, outer]))
-    return Curve(Words(f"φ = {degrees:g}°", f"phi = {degrees:g}"), (Piece(x, y),), kind="faint")
+def _faint(name: Words, degrees: Any, radius: Any) -> Curve:
+    """Return a ring or a spoke."""
+    return Curve(name, (Piece(*_polar(degrees, radius)),), kind="faint")
 
 
 def _placed(mark: Mark, base: float) -> Mark:

@@ -11,7 +11,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.unit_systems import convert
 from kurbel.mechanisms.sketch import PIN, Point, Sketch
 from kurbel.report.pictures.picture import Arrow, Axis, Curve, Frame, Panel, Piece, Words
-from kurbel.report.pictures.source import PHI, Source, words
+from kurbel.report.pictures.source import PHI, Source
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -45,77 +45,62 @@ def _chief_angle(source: Source) -> float:
 
 def _drawn(source: Source, degrees: Array) -> list[Panel]:
     """Return a panel for each crank angle (n,), all to one scale."""
-    drive = source.results.drive
-    sketch = drive.mechanism.sketch(CrankAngle.of(degrees))
+    mechanism = source.results.drive.mechanism
+    sketch = mechanism.sketch(CrankAngle.of(degrees))
     unit = source.unit("length", *(np.abs(part) for point in sketch.joints.values() for part in point))
-    forces, longest = _forces(source, degrees, sketch)
+    crank = float(convert(mechanism.crank, "length", unit))
+    joints = {name: convert(_along(point, degrees), "length", unit) for name, point in sketch.joints.items()}
+    guides = [[convert(_along(end, degrees), "length", unit) for end in guide] for guide in sketch.guides]
+    arrows = list(_arrows(source, degrees, sketch, unit))
     axis = Axis(Words("", ""), unit)
     panels = []
     for k, angle in enumerate(degrees.tolist()):
-        curves = tuple(_members(_at(sketch, k, unit), drive.mechanism.crank, unit))
-        arrows = tuple(_arrow(force, k, longest, drive.mechanism.crank, unit) for force in forces)
-        panels.append(Panel(axis, axis, curves, arrows=arrows, equal=True, plain=True, title=f"φ = {angle:.4g}°"))
+        here = {name: places[k] for name, places in joints.items()}
+        lines = (_curve("guide", [end[k] for end in guide]) for guide in guides)
+        curves = (_path(here["shaft"], crank), *lines, *_members(sketch, here, 0.09 * crank))
+        panel = Panel(axis, axis, curves, arrows=tuple(one[k] for one in arrows), equal=True, plain=True)
+        panels.append(panel._replace(title=f"φ = {angle:.4g}°"))
     return panels
 
 
-def _at(sketch: Sketch, k: int, unit: str) -> Sketch:
-    """Return the sketch at the k-th of its angles, its lengths as shown."""
-    joints = {name: _shown(point, k, unit) for name, point in sketch.joints.items()}
-    guides = tuple((_shown(start, k, unit), _shown(end, k, unit)) for start, end in sketch.guides)
-    return sketch._replace(joints=joints, guides=guides)
+def _along(point: Point, degrees: Array) -> Array:
+    """Return both parts of a point or a direction as (n, 2); each is (n,) or a number."""
+    return np.stack([np.broadcast_to(np.asarray(part, dtype=float), degrees.shape) for part in point], axis=1)
 
 
-def _shown(point: Point, k: int, unit: str) -> tuple[float, float]:
-    x, y = (float(convert(np.ravel(part)[k if np.size(part) > 1 else 0], "length", unit)) for part in point)
-    return x, y
-
-
-def _members(sketch: Sketch, crank: float, unit: str) -> Iterator[Curve]:
-    size = 0.09 * float(convert(crank, "length", unit))
-    path = _circle(sketch.joints["shaft"], float(convert(crank, "length", unit)))
-    yield _curve("faint", path)
-    for start, end in sketch.guides:
-        yield _curve("guide", (start, end))
+def _members(sketch: Sketch, joints: dict[str, Array], size: float) -> Iterator[Curve]:
     for link in sketch.links:
-        yield _curve("member", [sketch.joints[name] for name in link])
+        yield _curve("member", [joints[name] for name in link])
     for joint, (first, last) in sketch.blocks:
-        yield _curve("block", _box(sketch.joints[joint], sketch.joints[first], sketch.joints[last], size))
+        yield _curve("block", _box(joints[joint], joints[last] - joints[first], size))
     if sketch.output and sketch.toward:
-        along = (sketch.joints[sketch.output][0] + sketch.toward[0], sketch.joints[sketch.output][1] + sketch.toward[1])
-        yield _curve("block", _box(sketch.joints[sketch.output], sketch.joints[sketch.output], along, size))
-    yield _curve("joint", [point for name, point in sketch.joints.items() if name not in sketch.fixed])
-    yield _curve("fixed", [sketch.joints[name] for name in sketch.fixed])
+        end = joints[sketch.output] + np.array(sketch.toward)
+        yield _curve("block", _box(joints[sketch.output], end - joints[sketch.output], size))
+    yield _curve("joint", [point for name, point in joints.items() if name not in sketch.fixed])
+    yield _curve("fixed", [joints[name] for name in sketch.fixed])
 
 
-def _curve(kind: str, points: Sequence[tuple[float, float]]) -> Curve:
+def _curve(kind: str, points: Sequence[Array]) -> Curve:
     x, y = np.array(points, dtype=float).T
     return Curve(Words("", ""), (Piece(x, y),), kind)
 
 
-def _circle(centre: tuple[float, float], radius: float) -> list[tuple[float, float]]:
+def _path(shaft: Array, crank: float) -> Curve:
     around = CrankAngle.of(np.linspace(0.0, 360.0, 73))
-    return [(centre[0] + radius * c, centre[1] + radius * s) for c, s in zip(around.cos.tolist(), around.sin.tolist())]
+    return _curve("faint", [*(shaft + crank * np.column_stack((around.cos, around.sin)))])
 
 
-def _box(
-    middle: tuple[float, float], start: tuple[float, float], end: tuple[float, float], size: float
-) -> list[tuple[float, float]]:
-    """Return a block round a point, along a line."""
-    x, y = end[0] - start[0], end[1] - start[1]
-    length = float(np.hypot(x, y))
-    x, y = 2 * size * x / length, 2 * size * y / length
-    corners = ((1, 0.5), (1, -0.5), (-1, -0.5), (-1, 0.5), (1, 0.5))
-    return [(middle[0] + a * x - b * y, middle[1] + a * y + b * x) for a, b in corners]
+def _box(middle: Array, way: Array, size: float) -> list[Array]:
+    """Return a block round a point, along a way (2,)."""
+    along = 2 * size * way / float(np.hypot(*way))
+    across = np.array([-along[1], along[0]])
+    return [middle + a * along + b * across for a, b in ((1, 0.5), (1, -0.5), (-1, -0.5), (-1, 0.5), (1, 0.5))]
 
 
-Force = tuple[Words, Any, Any, Any, Any]
-"""Its name, where it acts (x, y), and its parts along both axes, in N; each (n,) or a number."""
-
-
-def _forces(source: Source, degrees: Array, sketch: Sketch) -> tuple[list[Force], float]:
-    """Return the forces at crank angles (n,), and the size of the largest over the cycle."""
+def _arrows(source: Source, degrees: Array, sketch: Sketch, unit: str) -> Iterator[list[Arrow]]:
+    """Yield of every force its arrows at crank angles (n,), the largest over the cycle as long as any can be."""
     angle = CrankAngle.of(degrees)
-    directions = {
+    directions: dict[str, tuple[str, Any]] = {
         "P": (sketch.output, sketch.toward),
         "N": (sketch.output, sketch.across),
         "T": (PIN, (-angle.sin, angle.cos)),
@@ -123,21 +108,12 @@ def _forces(source: Source, degrees: Array, sketch: Sketch) -> tuple[list[Force]
     }
     ids = source.having(id for id, (_, direction) in directions.items() if direction is not None)
     if not ids:
-        return [], 1.0
+        return
     largest = float(np.abs(source.samples((PHI, *ids)).values[1:]).max()) or 1.0
-    values = source.values(ids, degrees, degrees)
-    found = []
-    for id, force in zip(ids, values):
+    scale = _LONGEST * source.results.drive.mechanism.crank / largest
+    for id, force in zip(ids, source.values(ids, degrees, degrees)):
         at, direction = directions[id]
-        assert direction is not None
-        found.append((words(source.quantity(id)), *sketch.joints[at], force * direction[0], force * direction[1]))
-    return found, largest
-
-
-def _arrow(force: Force, k: int, longest: float, crank: float, unit: str) -> Arrow:
-    name, *parts = force
-    x, y, along, across = (float(np.ravel(part)[k if np.size(part) > 1 else 0]) for part in parts)
-    scale = _LONGEST * crank / longest
-    tail, head = (x, y), (x + scale * along, y + scale * across)
-    tail_x, tail_y, head_x, head_y = (float(convert(one, "length", unit)) for one in (*tail, *head))
-    return Arrow((tail_x, tail_y), (head_x, head_y), name)
+        tails = _along(sketch.joints[at], degrees)
+        heads = tails + scale * (force[:, None] * _along(direction, degrees))
+        ends = (convert(one, "length", unit).tolist() for one in (tails, heads))
+        yield [Arrow((*tail,), (*head,), source.words(id)) for tail, head in zip(*ends)]

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kurbel.numerics.extreme import Extreme
-from kurbel.solver.balance.weights import Weight, levered
+from kurbel.solver.shaft.weights import Weight, levered
 
 if TYPE_CHECKING:
     from kurbel.machine.balance import Locomotive
@@ -53,7 +53,7 @@ class LocomotiveBalance:
     @cached_property
     def unbalanced(self) -> tuple[complex, complex]:
         """What turns in each wheel in kg m, counterweights and rotating masses together."""
-        rotating = [(one.drive.name, one.weight(one.rotating)) for one in self._balance.throws]
+        rotating = [(one.name, one.weight(one.rotating)) for one in self._balance.throws]
         return self._in_wheels((*rotating, *(("counterweights", one) for one in self._balance.counterweights)))
 
     @property
@@ -82,6 +82,6 @@ class LocomotiveBalance:
         """Largest share of the reciprocating masses of which the counterweights keep the limit of the hammer blow."""
         if self._given.hammer_limit is None or self._square is None:
             return None
-        whole = self._in_wheels((one.drive.name, one.weight(one.drive.mass)) for one in self._balance.throws)
+        whole = self._in_wheels((one.name, one.weight(one.mass)) for one in self._balance.throws)
         blow = max(map(abs, whole)) * self._square
         return min(1.0, self._given.hammer_limit / blow) if blow else 1.0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,21 +16,35 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.search import Extremes
 from kurbel.solver.balance.best import Least, in_planes, least, shafts
 from kurbel.solver.balance.circles import Circles
-from kurbel.solver.balance.columns import BalanceColumns
 from kurbel.solver.balance.free import Free
 from kurbel.solver.balance.products import Products, of_throws
 from kurbel.solver.balance.rolling import rolling_moment, swirls
-from kurbel.solver.balance.weights import Throw, Weight, counterweights_of, shafts_of
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Results, crank_angles
+from kurbel.solver.figures import Columns, Results, passed_on
+from kurbel.solver.shaft.weights import OwnThrow, Weight, counterweights_of, middle_of, shafts_of, wheels_of
 from kurbel.solver.turning.torques import Sum
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
+    from kurbel.arrays import Array, ComplexArray
     from kurbel.solver.balance.locomotive import LocomotiveBalance
 
 _REAL = 1e-12
 """Beside its size, what a counterweight opposite the throw may point aside by rounding."""
+
+
+_VECTORS: dict[str, tuple[str, str, Callable[[Any], Any]]] = {
+    "F_x": ("free", "force", np.real),
+    "F_y": ("free", "force", np.imag),
+    "F_free": ("free", "force", np.abs),
+    "M_x": ("free", "moment", np.real),
+    "M_y": ("free", "moment", np.imag),
+    "M_free": ("free", "moment", np.abs),
+    "F_x_book": ("book", "force", np.real),
+    "F_y_book": ("book", "force", np.imag),
+    "M_x_book": ("book", "moment", np.real),
+    "M_y_book": ("book", "moment", np.imag),
+}
+"""Column -> the part of the free force in N or moment in N m that it is, of the true one (`free`) or of the book."""
 
 
 class MachineBalance(Results):
@@ -46,12 +60,13 @@ class MachineBalance(Results):
         self.machine = machine
         self._cylinders = cylinders
         first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
-        self.throws = tuple(Throw(one.drive, first) for one in cylinders if one.drive.cylinder.masses)
-        if not any(one.drive.mass or one.rotating for one in self.throws):
+        own = (OwnThrow(number, one, first) for number, one in enumerate(machine.cylinders) if one.masses)
+        self.throws = tuple(own)
+        if not any(one.mass or one.rotating for one in self.throws):
             raise UsageError(f"{machine.name}: nothing moves that could be balanced; give 'masses' to its cylinders")
         for throw in self.throws:
-            if throw.drive.mechanism.quick_return:
-                raise UsageError(f"{throw.drive.name}: the masses of what drives a ram back quickly are not known")
+            if throw.mechanism.quick_return:
+                raise UsageError(f"{throw.name}: the masses of what drives a ram back quickly are not known")
         self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
 
     @property
@@ -59,12 +74,20 @@ class MachineBalance(Results):
         """What answers key values, the first that knows one."""
         return (self, *((self.locomotive,) if self.locomotive else ()))
 
-    def at(self, degrees: Any, within: Array | None = None) -> BalanceColumns:
-        """Return every column at crank angles (n,) of crank 1 in degrees.
+    def _columns(self, phi: Array, within: Array) -> Columns:
+        @cache
+        def vector(of: str, name: str) -> ComplexArray | None:
+            circles: Circles | None = getattr(getattr(self, of), name, None)
+            return None if circles is None or self.omega is None else circles.at(phi) * (self.omega * self.omega)
 
-        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
-        """
-        return BalanceColumns(self, crank_angles(degrees), within)
+        def part(of: str, name: str, taken: Callable[[ComplexArray], Array]) -> Array | None:
+            found = vector(of, name)
+            return None if found is None else taken(found)
+
+        def roll() -> Array | None:
+            return None if self.roll is None else np.asarray(self.roll.torque(phi, within).value)
+
+        return Columns(phi, {id: partial(part, *each) for id, each in _VECTORS.items()} | {"M_roll": roll})
 
     @property
     def breaks(self) -> Array:
@@ -76,18 +99,12 @@ class MachineBalance(Results):
     @cached_property
     def z_0(self) -> float | None:
         """Place in m from where moments are taken: the one given, or the middle of the outer cylinders."""
-        places = [one.axial_position for one in self.machine.cylinders if one.axial_position is not None]
-        given = self.machine.moment_reference
-        return given if given is not None or not places else (min(places) + max(places)) / 2
+        return middle_of(self.machine)
 
     @cached_property
     def wheels(self) -> tuple[float, ...]:
         """Places in m of the counterweights in the wheels of a locomotive; of another machine none."""
-        locomotive = self.machine.locomotive
-        if locomotive is None:
-            return ()
-        middle, half = self.z_0 or 0.0, locomotive.wheel_distance / 2
-        return middle - half, middle + half
+        return wheels_of(self.machine)
 
     @property
     def loose_counterweights(self) -> tuple[Weight, ...]:
@@ -97,7 +114,7 @@ class MachineBalance(Results):
     @cached_property
     def counterweights(self) -> tuple[Weight, ...]:
         """The counterweights of the machine file."""
-        return tuple(counterweights_of(self.machine, self.throws, self.wheels))
+        return tuple(counterweights_of(self.machine, self.throws))
 
     @cached_property
     def _throws_alone(self) -> Products:
@@ -163,15 +180,8 @@ class MachineBalance(Results):
 
         return Excess(self.roll).effort_extremes
 
-    @property
-    def M_roll_max(self) -> Extreme | None:
-        """Largest rolling moment on the frame in N m."""
-        return self._roll_extremes.largest if self._roll_extremes else None
-
-    @property
-    def M_roll_min(self) -> Extreme | None:
-        """Smallest rolling moment on the frame in N m."""
-        return self._roll_extremes.smallest if self._roll_extremes else None
+    M_roll_max = passed_on("_roll_extremes", "largest", "Largest rolling moment on the frame in N m.")
+    M_roll_min = passed_on("_roll_extremes", "smallest", "Smallest rolling moment on the frame in N m.")
 
     # counterweights
 
@@ -225,9 +235,9 @@ class MachineBalance(Results):
         """Share of the reciprocating mass with which a counterweight opposite the only throw is the least one's."""
         (throw, *others) = self.throws
         opposite = -self.least.weight / throw.weight(1.0).product
-        if others or not throw.drive.mass or abs(opposite.imag) > _REAL * abs(opposite):
+        if others or not throw.mass or abs(opposite.imag) > _REAL * abs(opposite):
             return None
-        return (opposite.real - throw.rotating) / throw.drive.mass
+        return (opposite.real - throw.rotating) / throw.mass
 
     @cached_property
     def planes(self) -> tuple[float, ...]:

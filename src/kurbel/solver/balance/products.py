@@ -11,7 +11,7 @@ from kurbel.errors import UsageError
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.fourier import coefficients
 from kurbel.solver.balance.circles import Circles, unit_vectors
-from kurbel.solver.balance.weights import Throw, Weight
+from kurbel.solver.shaft.weights import OwnThrow, Weight
 
 _ROUNDING = 16 * np.finfo(float).eps
 """What is left of terms that cancel, beside the sum of their sizes, is rounding."""
@@ -47,7 +47,7 @@ def _sum(terms: ComplexArray) -> ComplexArray:
     return np.where(np.abs(total) > _ROUNDING * sizes, total, 0.0)
 
 
-def of_throws(throws: Sequence[Throw], book: bool = False) -> Products | None:
+def of_throws(throws: Sequence[OwnThrow], book: bool = False) -> Products | None:
     """Return the products of the moving parts of these throws; None where the book has no formula for one of them.
 
     book: by its acceleration of first order, R 291, in place of the true one. Raises UsageError for a rod so short
@@ -56,14 +56,14 @@ def of_throws(throws: Sequence[Throw], book: bool = False) -> Products | None:
     found: dict[object, ComplexArray] = {}
     lines = []
     for throw in throws:
-        mechanism = throw.drive.mechanism
+        mechanism = throw.mechanism
         alike = (type(mechanism), *vars(mechanism).values())
         if alike not in found:
             bends = _coefficients(throw, book)
             if bends is None:
                 return None
             found[alike] = bends
-        lines.append(found[alike] * throw.drive.mass)
+        lines.append(found[alike] * throw.mass)
     orders = np.arange(1, max(2, *map(len, lines)) + 1)
     masses = np.zeros((len(lines), len(orders)), complex)
     for row, line in zip(masses, lines):
@@ -77,16 +77,16 @@ def of_throws(throws: Sequence[Throw], book: bool = False) -> Products | None:
     return products.with_weights(throw.weight(throw.rotating) for throw in throws)
 
 
-def _coefficients(throw: Throw, book: bool) -> ComplexArray | None:
+def _coefficients(throw: OwnThrow, book: bool) -> ComplexArray | None:
     """Return c_n of d²x/dφ² in m; None where the book has no formula for this mechanism."""
-    mechanism = throw.drive.mechanism
+    mechanism = throw.mechanism
     if book and _book_curvature(mechanism, CrankAngle.of(0.0)) is None:
         return None
     curvature = _book_curvature if book else type(mechanism).curvature
     found = coefficients(lambda degrees: np.asarray(curvature(mechanism, CrankAngle.of(degrees))))
     if found is None:
         raise UsageError(
-            f"{throw.drive.name}: the orders of so short a connecting rod do not settle (L/R = {1 / mechanism.lam:.9g})"
+            f"{throw.name}: the orders of so short a connecting rod do not settle (L/R = {1 / mechanism.lam:.9g})"
         )
     return found
 

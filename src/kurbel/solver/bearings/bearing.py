@@ -3,7 +3,7 @@
 import math
 from abc import abstractmethod
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +14,7 @@ from kurbel.numerics.grid import Cuts, Grid, Pieces, integral
 from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
 from kurbel.solver.bearings.directions import Plane, Unloaded, unloaded
 from kurbel.solver.cylinder.following import Following
-from kurbel.solver.figures import Results, crank_angles
+from kurbel.solver.figures import Columns, Results, passed_on
 from kurbel.solver.shaft.statics import norm
 
 FRAMES = ("throw", "engine", "rod")
@@ -27,16 +27,6 @@ class Loads(NamedTuple):
 
     frames: dict[str, Plane]
     rate: Any = 1.0
-
-
-class BearingColumns(NamedTuple):
-    """What is told over the crank angle, by the ids of the columns: N, and degrees in each frame; None without it."""
-
-    phi: Array
-    load: Array
-    load_throw: Array | None
-    load_engine: Array | None
-    load_rod: Array | None
 
 
 class Size(NamedTuple):
@@ -75,23 +65,20 @@ class Bearing(Results):
     def work_rubbing(self) -> float | None:
         """Work of its friction in J per cycle of the machine; None without a coefficient."""
 
-    def at(self, degrees: Any, within: Array | None = None) -> BearingColumns:
-        """Return the load at angles (n,) of crank 1 in degrees.
+    def _columns(self, phi: Array, within: Array) -> Columns:
+        """Return the load in N, and its direction in degrees in each frame; None without it."""
+        found = self._evaluate(phi, within)
 
-        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
-        """
-        angles = crank_angles(degrees)
-        found = self._evaluate(angles, angles if within is None else within)
-        # of the two names of one direction the positive one
-        directions = (np.where(one.value == -180, 180.0, one.value) if one else None for one in map(found.get, FRAMES))
-        return BearingColumns(angles, found["load"].value, *directions)
+        def direction(frame: str) -> Array | None:
+            # of the two names of one direction the positive one
+            return np.where(found[frame].value == -180, 180.0, found[frame].value) if frame in found else None
+
+        directions = {f"load_{frame}": partial(direction, frame) for frame in FRAMES}
+        return Columns(phi, {"load": lambda: found["load"].value, **directions})
 
     # the cycle
 
-    @property
-    def breaks(self) -> Array:
-        """The crank angles in degrees between which every quantity is smooth."""
-        return self._grid.breaks
+    breaks = passed_on("_grid", "breaks", "The crank angles in degrees between which every quantity is smooth.")
 
     def _evaluate(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return size and directions of the load, and the rate at which its surfaces rub."""
@@ -121,15 +108,8 @@ class Bearing(Results):
     def _load(self) -> Extremes:
         return extremes_of(self._curves["load"])
 
-    @property
-    def load_max(self) -> Extreme:
-        """Largest load in N."""
-        return self._load.largest
-
-    @property
-    def load_min(self) -> Extreme:
-        """Smallest load in N."""
-        return self._load.smallest
+    load_max = passed_on("_load", "largest", "Largest load in N.")
+    load_min = passed_on("_load", "smallest", "Smallest load in N.")
 
     @cached_property
     def _means(self) -> tuple[float, float]:
@@ -197,25 +177,10 @@ class Bearing(Results):
     def _of_shell(self) -> Unloaded | None:
         return self._unloaded(self.shell)
 
-    @property
-    def unloaded_arc(self) -> float | None:
-        """Degrees of the surface of pin or journal that are never loaded."""
-        return self._of_journal and self._of_journal.arc
-
-    @property
-    def unloaded_middle(self) -> float | None:
-        """Direction in degrees of the middle of its widest piece; None where all of it is loaded."""
-        return self._of_journal and self._of_journal.middle
-
-    @property
-    def unloaded_arc_shell(self) -> float | None:
-        """Degrees of the surface of the shell that are never loaded."""
-        return self._of_shell and self._of_shell.arc
-
-    @property
-    def unloaded_middle_shell(self) -> float | None:
-        """Direction in degrees of the middle of its widest piece; None where all of it is loaded."""
-        return self._of_shell and self._of_shell.middle
+    unloaded_arc = passed_on("_of_journal", "arc", "Degrees of the surface of pin or journal that are never loaded.")
+    unloaded_middle = passed_on("_of_journal", "middle", "Direction in degrees of the middle of its widest piece.")
+    unloaded_arc_shell = passed_on("_of_shell", "arc", "Degrees of the surface of the shell that are never loaded.")
+    unloaded_middle_shell = passed_on("_of_shell", "middle", "Direction in degrees of the middle of its widest piece.")
 
     # pressures and rubbing
 

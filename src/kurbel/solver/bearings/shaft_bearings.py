@@ -18,7 +18,6 @@ from kurbel.solver.bearings.directions import Plane
 from kurbel.solver.cylinder.following import Following
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.pins import on_crosshead_pin, on_pin
-from kurbel.solver.cylinder.state import State
 from kurbel.solver.shaft.line import ShaftLine, Throw, shaft_obstacle
 from kurbel.solver.shaft.statics import Vector, norm, turned
 
@@ -26,62 +25,42 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
 
 
-class _RodPin(Bearing):
-    """A pin of a connecting rod. what: key of its friction; the load is that of the rod on the pin."""
+class RodPin(Bearing):
+    """A pin of a connecting rod; the load is that of the rod on the pin.
 
-    what: str
+    pin: `crank_pin`, or `crosshead_pin`, which moves with the crosshead and so in the frame of the engine.
+    """
+
     shell = "rod"
     of_rod = True
 
-    def __init__(self, name: str, followed: Following, size: Size, speed: float | None, turns: int) -> None:
-        super().__init__(name, (followed,), size, speed)
-        self._turns = turns
+    def __init__(self, name: str, followed: Following, size: Size, pin: str) -> None:
+        machine = followed.drive.machine
+        super().__init__(name, (followed,), size, machine.speed)
+        self._pin, self._turns = pin, machine.revolutions
+        self.journal = "throw" if pin == "crank_pin" else "engine"
 
-    def _state(self, degrees: Array, within: Array) -> State:
-        return self.followed[0].jets_at(degrees, within)
+    def loads(self, degrees: Array, within: Array) -> Loads:
+        """Return the load; see `Bearing`."""
+        state = self.followed[0].jets_at(degrees, within)
+        mechanism, angle = state.drive.mechanism, state.angle
+        sin_psi, cos_psi = mechanism.rod_angle(angle) or (0.0, 1.0)
+        rate = formulas.rod_slope(angle.cos, cos_psi, mechanism.lam)
+        if self._pin == "crank_pin":
+            throw = Plane.of_throw(on_pin(state))
+            line, own, rate = throw.turned(angle.cos, angle.sin), {"throw": throw}, 1 + rate
+        else:
+            along, across = on_crosshead_pin(state)
+            line, own = Plane(along, -across), {}
+        engine, rod = line.turned_by(state.drive.cylinder.bank_angle), line.turned(cos_psi, sin_psi)
+        return Loads({**own, "engine": engine, "rod": rod}, rate)
 
     @property
     def work_rubbing(self) -> float | None:
         """Work of its friction in J per cycle of the machine; None without a coefficient."""
         forces = self.followed[0].forces
-        work = forces.pin_works.work_of(self.what)
+        work = forces.pin_works.work_of(self._pin)
         return None if work is None else work * (self._turns // forces.drive.revolutions)
-
-
-class CrankPin(_RodPin):
-    """The crank pin under its rod."""
-
-    what, journal = "crank_pin", "throw"
-
-    def loads(self, degrees: Array, within: Array) -> Loads:
-        """Return the load; see `Bearing`."""
-        state = self._state(degrees, within)
-        mechanism, angle = state.drive.mechanism, state.angle
-        sin_psi, cos_psi = mechanism.rod_angle(angle) or (0.0, 1.0)
-        throw = Plane.of_throw(on_pin(state))
-        line = throw.turned(angle.cos, angle.sin)
-        frames = {
-            "throw": throw,
-            "engine": line.turned_by(state.drive.cylinder.bank_angle),
-            "rod": line.turned(cos_psi, sin_psi),
-        }
-        return Loads(frames, 1 + formulas.rod_slope(angle.cos, cos_psi, mechanism.lam))
-
-
-class CrossheadPin(_RodPin):
-    """The crosshead pin, which moves with the crosshead, under its rod."""
-
-    what, journal = "crosshead_pin", "engine"
-
-    def loads(self, degrees: Array, within: Array) -> Loads:
-        """Return the load; see `Bearing`."""
-        state = self._state(degrees, within)
-        mechanism, angle = state.drive.mechanism, state.angle
-        sin_psi, cos_psi = mechanism.rod_angle(angle) or (0.0, 1.0)
-        along, across = on_crosshead_pin(state)
-        line = Plane(along, -across)
-        frames = {"engine": line.turned_by(state.drive.cylinder.bank_angle), "rod": line.turned(cos_psi, sin_psi)}
-        return Loads(frames, formulas.rod_slope(angle.cos, cos_psi, mechanism.lam))
 
 
 class MainBearing(Bearing):
@@ -164,16 +143,15 @@ class ShaftBearings:
         return tuple(self._parts())
 
     def _parts(self) -> Iterator[Bearing]:
-        machine, cycle = self.machine, 360.0 * self.machine.revolutions
+        cycle = 360.0 * self.machine.revolutions
         followed = [Following(forces, cycle) for forces in self._cylinders]
         several = len(followed) > 1
         for number, one in enumerate(followed):
             if not _loads(one.forces):
                 continue
             of = f" of {one.drive.name}" if several else ""
-            given = machine.speed, machine.revolutions
-            yield CrankPin(f"crank pin{of}", one, self._pin_size(number), *given)
-            yield CrossheadPin(f"crosshead pin{of}", one, _crosshead_size(one), *given)
+            yield RodPin(f"crank pin{of}", one, self._pin_size(number), "crank_pin")
+            yield RodPin(f"crosshead pin{of}", one, _crosshead_size(one), "crosshead_pin")
         line = self.line
         for number in range(line.bearings) if line else ():
             name = f"bearing {'AB'[number] if line.bearings == 2 else number + 1}"  # type: ignore[union-attr]

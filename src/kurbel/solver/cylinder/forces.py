@@ -134,7 +134,7 @@ class CylinderForces(Searched, Results):
     @property
     def slides(self) -> bool:
         """Whether the output slides, so that its place is told by x."""
-        return self.drive.mechanism.slides
+        return bool(self.drive.mechanism.slides)
 
     @cached_property
     def P_inertia_max(self) -> Extreme | None:

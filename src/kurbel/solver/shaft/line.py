@@ -14,12 +14,12 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.units import GRAVITY
+from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
-from kurbel.solver.shaft.statics import FreeBody, Vector, weight_in_throw
+from kurbel.solver.shaft.statics import FreeBody, Vector, flywheel_weight
+from kurbel.solver.shaft.weights import OwnThrow, counterweights_of, unit_vector
 
 if TYPE_CHECKING:
-    from kurbel.machine.balance import Counterweight, SharedCounterweights
     from kurbel.machine.crankshaft import Crankshaft
 
 _ALIKE = 1e-9
@@ -58,7 +58,7 @@ class ShaftLine:
     def _supported(self, number: int, throws: Sequence[Throw], weights: Sequence[tuple[int, complex, float]]) -> Throw:
         """Return a throw with its bearings, and with what turns between them."""
         shaft, throw = self.shaft, throws[number]
-        own = [(weight * _unit(-throw.angle), place) for owner, weight, place in weights if owner == number]
+        own = [(weight * unit_vector(-throw.angle), place) for owner, weight, place in weights if owner == number]
         # the second throw of an overhung shaft stands at its other end
         mirrored = shaft.overhung and number > 0
         sign = -1.0 if mirrored else 1.0
@@ -79,15 +79,10 @@ class ShaftLine:
 
         pin: force on its pin in N; own: a cylinder on it, and its own crank angle, for the weight of the flywheel.
         """
-        body = FreeBody(self.shaft, own.mechanism.crank, pin, self._weight(throw, own, angle))
+        weight = flywheel_weight(self.machine, own, angle) if throw.flywheel else Vector(0.0, 0.0)
+        body = FreeBody(self.shaft, own.mechanism.crank, pin, weight)
         omega = 2 * math.pi * (self.machine.speed or 0.0)
         return _pulled(body.A, throw.at_A * omega * omega), _pulled(body.B, throw.at_B * omega * omega)
-
-    def _weight(self, throw: Throw, own: Cylinder, angle: CrankAngle) -> Vector:
-        lean = self.machine.lean_of(self.machine.cylinders[0])
-        if not throw.flywheel or lean is None or not self.shaft.flywheel_mass:
-            return Vector(0.0, 0.0)
-        return weight_in_throw(self.shaft.flywheel_mass * GRAVITY, angle, lean + own.bank_angle)
 
 
 def shaft_obstacle(machine: Machine) -> str:
@@ -102,6 +97,10 @@ def shaft_obstacle(machine: Machine) -> str:
     count = len(throws_of(machine.cylinders))
     if machine.crankshaft.overhung and count > 2:
         return f"{count} throws cannot all be overhung; a shaft has two ends"
+    try:
+        list(counterweights_of(machine, [OwnThrow(number, one) for number, one in enumerate(machine.cylinders)]))
+    except UsageError as error:
+        return str(error)
     return ""
 
 
@@ -127,56 +126,23 @@ def throws_of(cylinders: Sequence[Cylinder]) -> list[Throw]:
 def _turning(machine: Machine, throws: Sequence[Throw]) -> Iterator[tuple[int, complex, float]]:
     """Yield all that turns: the throw between whose bearings it is, mass times radius, and u in m from its pin.
 
-    The masses times radii in kg m are complex, along the throw of crank 1 and 90° on.
+    The masses times radii in kg m are complex, as angles of throws count. A weight stands between the bearings of the
+    throw that is nearest to its place; where that is not told, of the throw that it belongs to. What of a rod turns
+    pulls at its pin.
     """
-    own = [(number, machine.cylinders[index]) for number, throw in enumerate(throws) for index in throw.cylinders]
-    own.sort(key=lambda pair: machine.cylinders.index(pair[1]))
-    for number, one in own:
-        rotating = one.masses.rotating if one.masses else 0.0
-        yield number, rotating * one.mechanism.crank * _unit(throws[number].angle), 0.0
-    groups = [(one.counterweights, [(number, one)], throws[number].angle) for number, one in own]
-    for given, whose, angle in (*groups, (machine.counterweights, own, 0.0)):
-        for number, weight, place in _weights(given, whose, angle, throws):
-            if place is None:
-                yield number, weight, 0.0
-            else:
-                nearest = min(range(len(throws)), key=lambda index: abs(throws[index].place - place))
-                yield nearest, weight, place - throws[nearest].place
-
-
-def _weights(
-    given: "SharedCounterweights | tuple[Counterweight, ...]",
-    whose: Sequence[tuple[int, Cylinder]],
-    angle: float,
-    throws: Sequence[Throw],
-) -> Iterator[tuple[int, complex, float | None]]:
-    """Yield counterweights: the throw of each, mass times radius, complex as above, and its place; None: at its pin."""
-    if isinstance(given, tuple):
-        for one in given:
-            yield whose[0][0], one.product * _unit(angle + one.angle), one.axial_position
-        return
-    for number, own in whose:
-        if own.masses is None:
-            continue
-        length = own.mechanism.rod_length
-        balanced = own.masses.at_pin(length) + given.share * own.masses.at_crosshead(length)
-        weight = -balanced * own.mechanism.crank * _unit(throws[number].angle)
-        if not given.planes:
-            yield number, weight, None
-            continue
-        first, second = given.planes
-        share = (second - throws[number].place) / (second - first)
-        yield number, weight * share, first
-        yield number, weight * (1 - share), second
+    cranks = [OwnThrow(number, one) for number, one in enumerate(machine.cylinders)]
+    of_cylinders = {cylinder: number for number, throw in enumerate(throws) for cylinder in throw.cylinders}
+    for one in (*(crank.weight(crank.unbalanced) for crank in cranks), *counterweights_of(machine, cranks)):
+        place = one.place
+        if place is None or place == cranks[one.owner].place:
+            yield of_cylinders[one.owner], one.product, 0.0
+        else:
+            nearest = min(throws, key=lambda throw: abs(throw.place - place))
+            yield throws.index(nearest), one.product, place - nearest.place
 
 
 def _pulled(force: Vector, pull: complex) -> Vector:
     return Vector(force.D - pull.real, force.T + pull.imag)
-
-
-def _unit(degrees: float) -> complex:
-    angle = CrankAngle.of(degrees)
-    return complex(angle.cos, angle.sin)
 
 
 def _turn(degrees: float) -> float:

@@ -22,6 +22,8 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.units import GRAVITY
+from kurbel.machine import Cylinder, Machine
 from kurbel.numerics.arithmetic import where
 from kurbel.numerics.jet import Jet
 
@@ -62,6 +64,19 @@ def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Vec
         weight * (angle.sin * incline.cos + angle.cos * incline.sin),
         weight * (angle.sin * incline.sin - angle.cos * incline.cos),
     )
+
+
+def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> Vector:
+    """Return the weight of the flywheel in the frame of a cylinder's throw; nothing where its direction is not known.
+
+    angle: crank angles φ (n,) of that cylinder; what inclines is the stroke line of cylinder 1.
+    """
+    shaft, first = machine.crankshaft, machine.cylinders[0]
+    lean = machine.lean_of(first)
+    if shaft is None or lean is None or not shaft.flywheel_mass:
+        return Vector(0.0, 0.0)
+    inclination = lean + cylinder.bank_angle - first.bank_angle
+    return weight_in_throw(shaft.flywheel_mass * GRAVITY, angle, inclination)
 
 
 def turned(force: Vector, degrees: float) -> Vector:

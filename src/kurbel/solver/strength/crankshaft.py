@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,10 +19,9 @@ from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.pins import on_pin
 from kurbel.solver.cylinder.state import State
-from kurbel.solver.figures import Results
-from kurbel.solver.shaft.statics import FreeBody, Vector, equilibrium_residual, norm, weight_in_throw
-from kurbel.solver.strength.columns import StrengthColumns, strength_columns
-from kurbel.solver.strength.places import Place, Stresses, places
+from kurbel.solver.figures import Columns, Results, passed_on
+from kurbel.solver.shaft.statics import FreeBody, Vector, equilibrium_residual, flywheel_weight, norm
+from kurbel.solver.strength.places import PARTS, Place, Stresses, places
 
 
 class Strained(NamedTuple):
@@ -62,11 +61,8 @@ class CrankshaftStrength(Results):
         return self.shaft.flywheel_mass * GRAVITY
 
     def _body(self, pin: Vector, angle: CrankAngle) -> FreeBody:
-        inclination = self.machine.lean_of(self.forces.drive.cylinder)
-        turned = Vector(0.0, 0.0)
-        if self.weight is not None and inclination is not None:
-            turned = weight_in_throw(self.weight, angle, inclination)
-        return FreeBody(self.shaft, self.forces.drive.mechanism.crank, pin, turned)
+        cylinder = self.forces.drive.cylinder
+        return FreeBody(self.shaft, cylinder.mechanism.crank, pin, flywheel_weight(self.machine, cylinder, angle))
 
     @property
     def C_rod(self) -> float | None:
@@ -76,15 +72,18 @@ class CrankshaftStrength(Results):
     def _running(self, state: State) -> FreeBody:
         return self._body(on_pin(state), state.angle)
 
-    def at(self, degrees: Any, within: Array | None = None) -> StrengthColumns:
-        """Return forces on the bearings and stresses at crank angles (n,) in degrees; within: see `CylinderForces`."""
-        state = self.forces.at(degrees, within)
-        return strength_columns(state, self._running(state), self.places)
+    def _columns(self, phi: Array, within: Array) -> Columns:
+        """Return forces on pin (D, T: of the rod alone, R 302 and 303) and bearings, and the stresses of each part."""
+        state = self.forces.drive.at(phi, within)
+        body = self._running(state)
+        found = dict(zip(("D", "T", "A_D", "A_T", "B_D", "B_T"), (state.D, state.T, *body.A, *body.B)))
+        for part in PARTS:
+            own = [(place.stresses(body), place.alpha) for place in self.places if place.part == part]
+            found[f"sigma_{part}"] = _largest([one.combined(alpha) for one, alpha in own])
+            found[f"mises_{part}"] = _largest([one.von_mises() for one, _ in own])
+        return Columns(phi, {id: partial(found.get, id) for id in found})
 
-    @property
-    def breaks(self) -> Array:
-        """The crank angles in degrees between which every quantity is smooth."""
-        return self._grid.breaks
+    breaks = passed_on("_grid", "breaks", "The crank angles in degrees between which every quantity is smooth.")
 
     # the cycle
 
@@ -278,6 +277,10 @@ def _with_kinks(body: FreeBody) -> dict[str, Any]:
     ends = (body.before_pin.T - body.pin.T, body.before_pin.T + body.pin.T)
     found = (*body.pin, *body.A, body.force_beyond_pin, in_plane, twist, *ends)
     return {str(number): force for number, force in enumerate(found)}
+
+
+def _largest(values: list[Any]) -> Any:
+    return np.max(values, axis=0) if values else None
 
 
 def _sampled(found: dict[str, Any], state: State) -> dict[str, Sampled]:

@@ -13,7 +13,7 @@ from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
 from kurbel.numerics.collocation import Unsettled
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Results
+from kurbel.solver.figures import Columns, Results
 from kurbel.solver.shaft_line.chain import Chain
 from kurbel.solver.shaft_line.modes import Holzer, Modes
 from kurbel.solver.torsion.forced import Excitation, Vibration, excitation, stress
@@ -262,18 +262,7 @@ class PieceTorque:
         """Half of what the stress swings, in Pa."""
         return self._stressed(self.M_vibratory)
 
-    def at(self, degrees: Array) -> "WaveColumns":
+    def at(self, degrees: Array) -> Columns:
         """Return torque and stress at crank angles (n,) in degrees."""
-        return WaveColumns(self._vibration.over(self._piece, degrees), self._stress)
-
-
-class WaveColumns(NamedTuple):
-    """Torque in a piece in N m over the angle (n,), and by what it becomes a stress."""
-
-    M_shaft: Array
-    factor: float | None
-
-    @property
-    def tau(self) -> Array | None:
-        """Stress in Pa (n,)."""
-        return None if self.factor is None else self.M_shaft * self.factor
+        torque, factor = self._vibration.over(self._piece, degrees), self._stress
+        return Columns(degrees, {"M_shaft": lambda: torque, "tau": lambda: None if factor is None else torque * factor})

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.numerics.jet import Jet
 from kurbel.numerics.search import Sampled
+from kurbel.solver.figures import Columns
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed import SpeedLine
-from kurbel.solver.turning.torques import Sum
+from kurbel.solver.turning.torques import Sum, Torque
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -21,80 +23,48 @@ OF_SPEED = ("omega", "alpha", "M_coupling")
 """Columns that hang on the speed line."""
 
 
-class TurningColumns:
-    """The whole machine at crank angles (n,) in degrees; attributes by the ids of the columns, in SI, each (n,).
+class TurningCurves:
+    """The whole machine at crank angles (n,) in degrees, on the sides of jumps that hold `within`.
 
-    crank: radius of crank 1 in m, None without one; a column that the machine does not have is None.
+    crank: radius of crank 1 in m, None without one.
     """
 
-    def __init__(
-        self,
-        turned: MachineEffort,
-        crank: float | None,
-        speed: SpeedLine | ElasticCoupling | None,
-        phi: Array,
-        within: Array | None = None,
-    ) -> None:
-        self._turned, self._crank, self._speed = turned, crank, speed
-        self.phi = phi
-        self._within = phi if within is None else within
+    def __init__(self, turned: MachineEffort, crank: float | None, phi: Array, within: Array) -> None:
+        self._turned, self._crank, self._phi, self._within = turned, crank, phi, within
 
-    def curve(self, column: str, within: Array) -> Sampled | None:
-        """Return a column with its slope by φ, on the sides of jumps that hold `within`; None for one left out."""
-        if column in OF_SPEED:
-            return None if self._speed is None else self._speed.curves(self.phi, within).get(column)
+    def columns(self, speed: SpeedLine | ElasticCoupling | None) -> Columns:
+        """Return the columns."""
+        own = {id: partial(self._value, id) for id in ("M", "M_load", "T", "T_inertia")}
+        elastic = None if isinstance(speed, SpeedLine) else speed
+        of_speed = {
+            "omega": lambda: speed and speed.omega(self._phi),
+            "alpha": lambda: speed and speed.alpha(self._phi),
+            "M_coupling": lambda: elastic and elastic.torque(self._phi),
+        }
+        return Columns(self._phi, {**own, "E": lambda: self._turned.excess.at(self._phi), **of_speed})
+
+    def _value(self, column: str) -> Array | None:
+        found = self.curve(column)
+        return found and np.asarray(found.value)
+
+    def curve(self, column: str) -> Sampled | None:
+        """Return a column of the torques, or their work, with its slope by φ; None for one left out."""
+        if column == "M_load":
+            return Sampled.of(self._torque(self._turned.excess.load), self._phi.shape)
         if column == "E":
-            return Sampled(self.E, self._turned.excess.torque.torque(self.phi, within).slope)
-        arm = 1.0 if column == "M" else self._crank
-        torque = self._inertia if column == "T_inertia" else self._turned.effort
-        if arm is None or not torque.parts:
-            return None
-        found = torque.torque(self.phi, within)
-        return Sampled(found.value / arm, found.slope / arm)
+            return Sampled(self._turned.excess.at(self._phi), self._torque(self._turned.excess.torque).value)
+        arm, torque = 1.0 if column == "M" else self._crank, self._inertia if column == "T_inertia" else self._effort
+        return None if arm is None or torque is None else Sampled(torque.value / arm, torque.slope / arm)
 
-    @property
-    def _inertia(self) -> Sum:
-        """The torque of the inertia forces, with its share of the losses."""
-        return Sum(*((self._turned.efficiency, mass) for mass in self._turned.masses))
+    def _torque(self, torque: Torque) -> Jet:
+        return torque.torque(self._phi, self._within)
 
     @cached_property
-    def M(self) -> Array:
-        """Turning effort in N m."""
-        return np.asarray(self._turned.effort.torque(self.phi, self._within).value)
+    def _effort(self) -> Jet:
+        return self._torque(self._turned.effort)
 
-    @property
-    def M_load(self) -> Array:
-        """The resistance in N m, at the nominal speed."""
-        return np.asarray(self._turned.excess.load.torque(self.phi, self._within).value)
-
-    @property
-    def T(self) -> Array | None:
-        """The turning effort as a force in N at the radius of crank 1."""
-        return None if self._crank is None else self.M / self._crank
-
-    @property
-    def T_inertia(self) -> Array | None:
-        """The share of the inertia forces in T, in N (Tolle)."""
-        if self._crank is None or not self._turned.masses:
-            return None
-        return np.asarray(self._inertia.torque(self.phi, self._within).value / self._crank)
-
-    @property
-    def E(self) -> Array:
-        """Excess work in J since angle 0."""
-        return self._turned.excess.at(self.phi)
-
-    @property
-    def omega(self) -> Array | None:
-        """Angular velocity in rad/s."""
-        return None if self._speed is None else self._speed.omega(self.phi)
-
-    @property
-    def alpha(self) -> Array | None:
-        """Angular acceleration in rad/s², dω/dt."""
-        return None if self._speed is None else self._speed.alpha(self.phi)
-
-    @property
-    def M_coupling(self) -> Array | None:
-        """Torque in the elastic coupling in N m."""
-        return None if self._speed is None or isinstance(self._speed, SpeedLine) else self._speed.torque(self.phi)
+    @cached_property
+    def _inertia(self) -> Jet | None:
+        """The torque of the inertia forces, with its share of the losses."""
+        masses = self._turned.masses
+        return self._torque(Sum(*((self._turned.efficiency, mass) for mass in masses))) if masses else None

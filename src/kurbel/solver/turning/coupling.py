@@ -5,7 +5,7 @@ The equations are those of `kurbel.solver.shaft_line.periodic`; the load on the 
 
 import math
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -65,6 +65,17 @@ class Harmonic(NamedTuple):
     distance: float
     amplitude: float
     amplification: float
+
+
+def _end(name: str, end: str, text: str) -> Any:
+    """Return the largest or the smallest torque or speed, from what it has beside its mean."""
+
+    def extreme(coupling: Any) -> Extreme:
+        found: Extreme = getattr(coupling._extremes[name], end)
+        base = coupling.mean if name == "torque" else coupling.shaft.omega
+        return Extreme(base + found.value, found.degrees % coupling.cycle)
+
+    return property(extreme, doc=text)
 
 
 class ElasticCoupling:
@@ -205,29 +216,10 @@ class ElasticCoupling:
     def _extremes(self) -> dict[str, Extremes]:
         return extremes(self.grid, self._sampled(self.grid.degrees, self.grid.within), self._sampled)
 
-    def _shifted(self, name: str, largest: bool, base: float) -> Extreme:
-        found = self._extremes[name].largest if largest else self._extremes[name].smallest
-        return Extreme(base + found.value, found.degrees % self.cycle)
-
-    @property
-    def M_coupling_max(self) -> Extreme:
-        """Largest torque in the coupling in N m."""
-        return self._shifted("torque", True, self.mean)
-
-    @property
-    def M_coupling_min(self) -> Extreme:
-        """Smallest torque in the coupling in N m."""
-        return self._shifted("torque", False, self.mean)
-
-    @property
-    def omega_max(self) -> Extreme:
-        """Largest angular velocity of the crank shaft in rad/s."""
-        return self._shifted("omega", True, self.shaft.omega)
-
-    @property
-    def omega_min(self) -> Extreme:
-        """Smallest angular velocity of the crank shaft in rad/s."""
-        return self._shifted("omega", False, self.shaft.omega)
+    M_coupling_max = _end("torque", "largest", "Largest torque in the coupling in N m.")
+    M_coupling_min = _end("torque", "smallest", "Smallest torque in the coupling in N m.")
+    omega_max = _end("omega", "largest", "Largest angular velocity of the crank shaft in rad/s.")
+    omega_min = _end("omega", "smallest", "Smallest angular velocity of the crank shaft in rad/s.")
 
     @cached_property
     def omega_mean(self) -> float:

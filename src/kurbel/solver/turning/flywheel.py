@@ -16,8 +16,8 @@ from kurbel.numerics.roots import rising_root
 from kurbel.numerics.search import Extremes
 from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.figures import Results, crank_angles
-from kurbel.solver.turning.columns import OF_SPEED, TurningColumns
+from kurbel.solver.figures import Columns, Results, passed_on
+from kurbel.solver.turning.columns import OF_SPEED, TurningCurves
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedLine, floquet
 from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law, turning
@@ -55,12 +55,8 @@ class MachineTurning(Results):
         """What answers key values, the first that knows one."""
         return (self, *((self.elastic,) if self.elastic else ()), self.brake)
 
-    def at(self, degrees: Array, within: Array | None = None) -> TurningColumns:
-        """Return every column at crank angles (n,) of crank 1 in degrees.
-
-        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
-        """
-        return TurningColumns(self.turned, self.crank, self.speed, crank_angles(degrees), within)
+    def _columns(self, phi: Array, within: Array) -> Columns:
+        return TurningCurves(self.turned, self.crank, phi, within).columns(self.speed)
 
     @property
     def breaks(self) -> Array:
@@ -71,10 +67,13 @@ class MachineTurning(Results):
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         from kurbel.numerics.where import where
 
-        grid = self.speed.grid if column in OF_SPEED and self.speed else self.excess.grid
+        of_speed = self.speed if column in OF_SPEED else None
+        grid = of_speed.grid if of_speed else self.excess.grid
 
         def sampled(degrees: Array, within: Array) -> Any:
-            return self.at(degrees).curve(column, within)
+            if column in OF_SPEED:
+                return of_speed and of_speed.curves(degrees, within).get(column)
+            return TurningCurves(self.turned, self.crank, degrees, within).curve(column)
 
         samples = sampled(grid.degrees, grid.within)
         return None if samples is None else where(grid, samples, sampled, value)
@@ -116,30 +115,11 @@ class MachineTurning(Results):
 
     # excess work
 
-    @property
-    def phi_crossing(self) -> tuple[float, ...]:
-        """Crank angles in degrees at which T crosses W."""
-        return self.excess.crossings
-
-    @property
-    def lobes(self) -> tuple[float, ...]:
-        """Work in J of the lobes between the crossings."""
-        return self.excess.lobes
-
-    @property
-    def dE(self) -> float:
-        """ΔE in J."""
-        return self.excess.dE
-
-    @property
-    def E_max(self) -> Extreme | None:
-        """Largest excess work in J since angle 0; None where there is none."""
-        return self.excess.largest
-
-    @property
-    def E_min(self) -> Extreme | None:
-        """Smallest excess work in J since angle 0."""
-        return self.excess.smallest
+    phi_crossing = passed_on("excess", "crossings", "Crank angles in degrees at which T crosses W.")
+    lobes = passed_on("excess", "lobes", "Work in J of the lobes between the crossings.")
+    dE = passed_on("excess", "dE", "ΔE in J.")
+    E_max = passed_on("excess", "largest", "Largest excess work in J since angle 0; None where there is none.")
+    E_min = passed_on("excess", "smallest", "Smallest excess work in J since angle 0.")
 
     @property
     def energy_fluctuation(self) -> float | None:
@@ -285,25 +265,10 @@ class MachineTurning(Results):
             f"(GD2 = {show(4 * enough, 'gd2')}) on"
         )
 
-    @property
-    def delta(self) -> float | None:
-        """δ = (ω_max − ω_min)/ω_mean of the speed line."""
-        return None if self.speed is None else self.speed.delta
-
-    @property
-    def omega_max(self) -> Extreme | None:
-        """Largest angular velocity in rad/s."""
-        return None if self.speed is None else self.speed.omega_max
-
-    @property
-    def omega_min(self) -> Extreme | None:
-        """Smallest angular velocity in rad/s."""
-        return None if self.speed is None else self.speed.omega_min
-
-    @property
-    def omega_mean(self) -> float | None:
-        """Mean angular velocity over time in rad/s."""
-        return None if self.speed is None else self.speed.omega_mean
+    delta = passed_on("speed", "delta", "δ = (ω_max − ω_min)/ω_mean of the speed line.")
+    omega_max = passed_on("speed", "omega_max", "Largest angular velocity in rad/s.")
+    omega_min = passed_on("speed", "omega_min", "Smallest angular velocity in rad/s.")
+    omega_mean = passed_on("speed", "omega_mean", "Mean angular velocity over time in rad/s.")
 
     @property
     def multiplier(self) -> float | None:

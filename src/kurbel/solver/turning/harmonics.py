@@ -5,6 +5,7 @@ integrated by itself. What the inertia forces give is told apart: it goes with Ï
 """
 
 import math
+from collections.abc import Callable
 from functools import cached_property
 from typing import NamedTuple
 
@@ -52,6 +53,11 @@ class Spectrum(NamedTuple):
         """Return it with 0 for what is rounding beside torques of this size in N m."""
         return self._replace(amplitudes=np.where(np.abs(self.amplitudes) > _ROUNDING * size, self.amplitudes, 0.0))
 
+    def turned(self, degrees: float) -> "Spectrum":
+        """Return that of the torque put earlier by an angle."""
+        turn = np.exp(1j * np.radians(np.mod(self.orders * degrees, 360.0)))
+        return self._replace(amplitudes=self.amplitudes * turn)
+
     @property
     def size(self) -> float:
         """The largest of its parts in N m."""
@@ -96,35 +102,25 @@ class Orders(NamedTuple):
     @property
     def whole(self) -> Spectrum:
         """Both together."""
-        return self.gas if self.inertia is None else self.gas.plus(self.inertia)
+        return self.at_speed(1.0)
+
+    def at_speed(self, ratio: float) -> Spectrum:
+        """Return both together at a speed, over the nominal one."""
+        return self.gas if self.inertia is None else self.gas.plus(self.inertia.times(ratio**2))
 
     @property
     def size(self) -> float:
         """The largest of the parts of both in N m."""
         return max(one.size for one in self if one)
 
-    def cleared(self, size: float) -> "Orders":
-        """Return both with 0 for what is rounding beside torques of this size in N m."""
-        return Orders(*(one and one.cleared(size) for one in self))  # type: ignore[arg-type]
-
-    def at_speed(self, ratio: float) -> Spectrum:
-        """Return both together at a speed, over the nominal one."""
-        return self.gas if self.inertia is None else self.gas.plus(self.inertia.times(ratio**2))
-
-    def times(self, gas: float, inertia: float) -> "Orders":
-        """Return both, each times a factor."""
-        return Orders(self.gas.times(gas), None if self.inertia is None else self.inertia.times(inertia))
+    def each(self, change: Callable[[Spectrum], Spectrum]) -> "Orders":
+        """Return both, each changed."""
+        return Orders(change(self.gas), self.inertia and change(self.inertia))
 
     def plus(self, other: "Orders") -> "Orders":
         """Return the orders of two torques together."""
         one, two = self.inertia, other.inertia
         return Orders(self.gas.plus(other.gas), one.plus(two) if one and two else one or two)
-
-    def turned(self, degrees: float) -> "Orders":
-        """Return those of the torque put earlier by an angle."""
-        turn = np.exp(1j * np.radians(np.mod(self.gas.orders * degrees, 360.0)))
-        each = (one and one._replace(amplitudes=one.amplitudes * turn) for one in self)
-        return Orders(*each)  # type: ignore[arg-type]
 
 
 class CylinderOrders:
@@ -161,8 +157,9 @@ class MachineOrders:
         rest = effort if inertia is None else Sum((1.0, effort), (-1.0, inertia))
         of_masses = None if inertia is None else spectrum(inertia, self.orders)
         found = Orders(spectrum(rest, self.orders), of_masses)
-        found = found.cleared(found.size)
-        return CylinderOrders(forces, found, found.turned(forces.drive.cylinder.crank_position))
+        size, behind = found.size, forces.drive.cylinder.crank_position
+        found = found.each(lambda one: one.cleared(size))
+        return CylinderOrders(forces, found, found.each(lambda one: one.turned(behind)))
 
     @cached_property
     def machine(self) -> Orders:
@@ -174,7 +171,7 @@ class MachineOrders:
         for other in others:
             total = total.plus(other)
         size = math.fsum(one.size for one in each)
-        return total.cleared(size).times(self.turned.efficiency, self.turned.efficiency)
+        return total.each(lambda one: one.cleared(size).times(self.turned.efficiency))
 
     @property
     def M_mean(self) -> float:
