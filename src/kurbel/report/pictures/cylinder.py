@@ -39,8 +39,7 @@ def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
 
     def values(degrees: Array, within: Array) -> Array:
         state = source.results.at(degrees, within)
-        angle = CrankAngle.of(degrees)
-        return np.stack([state.way, *(end(state.way, angle, within) + gas.base for _, end in ends)])
+        return np.stack([state.way, *(state.pressure(end) + gas.base for _, end in ends)])
 
     samples = source.sampled(("x", *(name for name, _ in ends)), values)
     unit = source.unit("pressure", *samples.values[1:])
