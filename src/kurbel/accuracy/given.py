@@ -3,8 +3,6 @@
 No formula of motion, force or sign stands here; each calculation has its own.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from decimal import Decimal
