@@ -39,8 +39,14 @@ NOT_OF_A_BARE_MACHINE = (
         "kurbel.solver.turning.speed",
     ),
     *("kurbel.solver.turning.flywheel", "kurbel.solver.turning.coupling", "kurbel.solver.strength", "kurbel.accuracy"),
-    *("kurbel.machine.indicator", "kurbel.machine.masses", "kurbel.machine.friction", "kurbel.machine.turning"),
-    *("kurbel.machine.trace", "kurbel.machine.ideal_cards", "kurbel.machine.crankshaft"),
+    *(
+        "kurbel.machine.indicator",
+        "kurbel.machine.masses",
+        "kurbel.machine.friction",
+        "kurbel.machine.turning",
+        "kurbel.machine.flywheel",
+    ),
+    *("kurbel.machine.trace", "kurbel.machine.ideal_cards", "kurbel.machine.crankshaft", "kurbel.machine.flywheel"),
     *("kurbel.mechanisms.four_bar", "kurbel.mechanisms.slotted_lever", "kurbel.mechanisms.scotch_yoke"),
     *("scipy", "matplotlib", "rich", "decimal", "fractions", "kurbel.render.csv_text", "kurbel.render.json_text"),
 )
