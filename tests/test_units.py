@@ -240,3 +240,23 @@ def test_the_units_of_one_run_are_not_those_of_the_next() -> None:
             assert show(0.3, "length") == "0.3 m"
         assert show(0.254, "length") == "10 in"
     assert show(0.3, "length") == "300 mm"
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "hint"),
+    [
+        ("7 ft 6 in", "length", "write feet and inches in one unit, such as '90 in' for 7 ft 6 in"),
+        ("7' 6\"", "length", "write feet and inches in one unit, such as '90 in' for 7 ft 6 in"),
+        ("60 lb per inch", "spring", "a spring of 60 lb per inch is '1/60 in/psi'"),
+        ("60 psi/in", "spring", "a spring of 60 lb per inch is '1/60 in/psi'"),
+    ],
+)
+def test_what_a_restorer_writes_in_inches(text: str, kind: str, hint: str) -> None:
+    with pytest.raises(UnitError) as caught:
+        parse_quantity(text, kind)
+    assert hint in str(caught.value)
+
+
+def test_a_spring_of_60_lb_per_inch() -> None:
+    # 1 psi = 0.45359237 · 9.80665/0.0254² Pa, of which 60 make an inch
+    assert parse_quantity("1/60 in/psi", "spring") == pytest.approx(0.0254**3 / (60 * 0.45359237 * 9.80665), rel=1e-15)

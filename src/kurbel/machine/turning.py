@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.forms import Number, Points, UnitName, not_negative, positive
