@@ -15,12 +15,12 @@ from kurbel.declared.units import kinds, parse_quantity, unit_names
 from kurbel.errors import UnitError
 from kurbel.machine_file import load
 from kurbel.solver.case import Case
+from representative import law_of_each
 
 G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
 
 
-@pytest.mark.parametrize(
-    ("text", "kind", "value"),
+@law_of_each(
     [
         ("450 mm", "length", 0.45),
         ("0.1 cm", "length", 0.001),
@@ -167,14 +167,14 @@ def test_hints_of_numbers(text: str, hint: str) -> None:
     assert hint in str(caught.value)
 
 
-@pytest.mark.parametrize("kind", [kind for kind in SI if kind != "ratio"])
+@law_of_each(kind for kind in SI if kind != "ratio")
 def test_every_shown_unit_can_be_read_back(kind: str) -> None:
     for units in (system[kind] for system in SYSTEMS.values()):
         for unit in (units,) if isinstance(units, str) else units:
             assert parse_quantity(f"1 {unit}", kind) > 0
 
 
-@pytest.mark.parametrize("kind", [kind for kind in SI if kind != "ratio"])
+@law_of_each(kind for kind in SI if kind != "ratio")
 def test_every_unit_is_positive_and_finite(kind: str) -> None:
     for unit in unit_names(kind):
         assert 0 < parse_quantity(f"1 {unit}", kind) < math.inf

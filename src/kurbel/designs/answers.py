@@ -15,6 +15,7 @@ from kurbel.machine.side_by_side import Kinds, side_by_side
 from kurbel.numerics.cycles import Unlike
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.guide_load import GuideLoad
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.figures import answered
 
@@ -22,10 +23,10 @@ _ALONE = ("energy_residual",)
 """Key values whose quadrature cuts the pieces of each machine until they agree, and answers one machine at a time."""
 _FEWEST = 3
 """Machines of one kind; fewer are answered as quickly alone."""
-AT_ONCE = 1000
-"""Machines side by side: so many share the overhead of one run and take some 200 MB."""
+AT_ONCE = 200
+"""Machines side by side: enough to share the overhead of one run, few enough for the cache of a processor."""
 
-Values = Union[list[Any], str]
+Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, an Extreme, a tuple or None each; or why it answers nothing."""
 
 
@@ -41,9 +42,9 @@ def answers_of(machines: Sequence[Machine], asked: Sequence[Answer]) -> list[Val
 
 
 def _stands_beside(quantity: Quantity) -> bool:
-    """Return whether a key value is one of forces or motion themselves, whose formulas take many machines."""
+    """Return whether a key value is one of forces, guide or motion themselves, whose formulas take many machines."""
     name = quantity.asks[0] if quantity.asks else quantity.id
-    return quantity.id not in _ALONE and any(hasattr(one, name) for one in (CylinderForces, Motion))
+    return quantity.id not in _ALONE and any(hasattr(one, name) for one in (CylinderForces, GuideLoad, Motion))
 
 
 def _merged(first: Values, second: Values, of_first: Sequence[bool]) -> Values:
@@ -90,12 +91,14 @@ class _Answers:
             self._together(rows[: len(rows) // 2])
             self._together(rows[len(rows) // 2 :])
         else:
-            for row, values in zip(rows, zip(*found)):
-                self._found[row] = list(values) if all(map(_is_finite, values)) else None
+            fit = np.all([np.broadcast_to(_is_finite(value), len(rows)) for value in found], axis=0)
+            values = zip(*(_listed(value, len(rows)) for value in found))
+            for row, finite, own in zip(rows, fit.tolist(), values):
+                self._found[row] = own if finite else None
 
-    def _columns(self, rows: list[int]) -> list[list[Any]]:
+    def _columns(self, rows: list[int]) -> list[Any]:
         cylinders = {name: self._stack(rows, name) for name in self._names}
-        return [_listed(answered(cylinders[one.subject].answering, one.quantity), len(rows)) for one in self._asked]
+        return [answered(cylinders[one.subject].answering, one.quantity) for one in self._asked]
 
     def _stack(self, rows: list[int], name: str) -> CylinderForces:
         machines = [self._machines[row] for row in rows]
@@ -113,16 +116,17 @@ class _Answers:
             return f"these numbers lead beyond what can be computed with ({error})"
 
 
-def _listed(value: Any, count: int) -> list[Any]:
+def _listed(value: Any, count: int) -> Sequence[Any]:
     """Return the values of so many machines side by side, one by one."""
     if isinstance(value, Extreme):
-        return [Extreme(*pair) for pair in zip(*(_listed(part, count) for part in value))]
+        return list(map(Extreme, *(_listed(part, count) for part in value)))
     if value is None or isinstance(value, tuple):
         each = isinstance(value, tuple) and len(value) == count and all(isinstance(one, tuple) for one in value)
-        return list(value) if each else [value] * count  # type: ignore[arg-type]
+        return value if each else [value] * count  # type: ignore[return-value]
     return np.broadcast_to(np.asarray(value, dtype=float), (count,)).tolist()  # type: ignore[no-any-return]
 
 
-def _is_finite(value: Any) -> bool:
+def _is_finite(value: Any) -> Any:
+    """Return whether a value, or that of every machine, can be told."""
     number = value.value if isinstance(value, Extreme) else value
-    return number is None or isinstance(number, tuple) or abs(number) < float("inf")
+    return number is None or isinstance(number, tuple) or np.isfinite(number)

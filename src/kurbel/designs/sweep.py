@@ -138,10 +138,9 @@ class Sweep:
         machines: list[Machine | str] = [self._bound(one) for one in texts]
         whole = [one for one in machines if isinstance(one, Machine)]
         answers = iter(answers_of(whole, (*self.asked, *(answer for answer, _ in self._limits))))
-        return [
-            self._row(start + place, texts[place], one if isinstance(one, str) else next(answers))
-            for place, one in enumerate(machines)
-        ]
+        found = [one if isinstance(one, str) else next(answers) for one in machines]
+        values = iter(self._values([one for one in found if not isinstance(one, str)]))
+        return [self._row(row, own, one, values) for row, own, one in zip(range(start, stop), texts, found)]
 
     def _bound(self, texts: tuple[str, ...]) -> Machine | str:
         try:
@@ -149,30 +148,30 @@ class Sweep:
         except (Unbound, KurbelError) as error:
             return str(error)
 
-    def _row(self, row: int, texts: Sequence[str], found: list[Any] | str) -> Row:
+    def _row(
+        self, row: int, texts: Sequence[str], found: Sequence[Any] | str, values: Iterator[tuple[Any, ...]]
+    ) -> Row:
         inputs = [self._input_value(number, text) for number, text in enumerate(texts)]
         if isinstance(found, str):
-            blank = [None] * (len(self.heads) - len(inputs))
-            return Row(row + 1, (*inputs, *blank), None, "", found)
-        values = [
-            part for one, unit, value in zip(self.asked, self._units, found) for part in self._shown(one, unit, value)
-        ]
+            return Row(row + 1, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=found)
         broken = self._broken(found[len(self.asked) :])
-        return Row(row + 1, (*inputs, *values), not broken if self.limited else None, broken)
+        return Row(row + 1, (*inputs, *next(values)), not broken if self.limited else None, broken)
 
     def _input_value(self, number: int, text: str) -> Any:
         head = self.heads[number]
         value = _in_base(text, head.kind)
         return text if value is None else convert(value, head.kind, head.unit) + 0.0
 
-    def _shown(self, one: Answer, unit: str, value: Any) -> Iterator[Any]:
-        number = value.value if isinstance(value, Extreme) else value
-        if isinstance(number, tuple):
-            yield tuple(convert(part, one.quantity.kind, unit) + 0.0 for part in number)
-        else:
-            yield None if number is None else convert(number, one.quantity.kind, unit) + 0.0
+    def _values(self, found: Sequence[Sequence[Any]]) -> Iterable[tuple[Any, ...]]:
+        """Return what stands under the heads of the answers, row by row, of the answers (rows, asked) in SI."""
+        columns = zip(self.asked, self._units, zip(*found))
+        return zip(*(part for one, unit, column in columns for part in self._shown(one, unit, column)))
+
+    def _shown(self, one: Answer, unit: str, column: Sequence[Any]) -> Iterator[list[Any]]:
+        kind = one.quantity.kind
+        yield [_in_unit(value.value if isinstance(value, Extreme) else value, kind, unit) for value in column]
         if self._has_angle(one):
-            yield value.degrees if isinstance(value, Extreme) else None
+            yield [value.degrees if isinstance(value, Extreme) else None for value in column]
 
     def _broken(self, found: Sequence[Any]) -> str:
         from kurbel.report.compared import breaks
@@ -210,6 +209,12 @@ def kind_of_form(form: Any) -> str:
     if hasattr(form, "kind"):
         return form.kind if hasattr(form, "parse") else ""
     return next((kind for _, part in form.parts() if not part.parts() and (kind := kind_of_form(part))), "")
+
+
+def _in_unit(number: Any, kind: str, unit: str) -> Any:
+    if isinstance(number, tuple):
+        return tuple(convert(part, kind, unit) + 0.0 for part in number)
+    return None if number is None else convert(number, kind, unit) + 0.0
 
 
 def _size(value: Any) -> float:

@@ -41,10 +41,10 @@ class Kinds:
         return None if own is _ALONE else (*kind, own)
 
     def _kind(self, value: Any) -> Any:
-        if isinstance(value, (float, int)) and not isinstance(value, bool):
-            return _number(value)
         if value is None or isinstance(value, (str, bool)):
             return value
+        if isinstance(value, (float, int)):
+            return _number(value)
         if id(value) not in self._known:  # beside it, so that no other takes its place in memory
             self._known[id(value)] = value, self._looked_at(value)
         return self._known[id(value)][1]
@@ -64,8 +64,8 @@ class Kinds:
         return value
 
     def _together(self, values: Iterable[Any]) -> Any:
-        found = tuple(self._kind(one) for one in values)
-        return _ALONE if any(one is _ALONE for one in found) else found
+        found = tuple([self._kind(one) for one in values])
+        return _ALONE if _ALONE in found else found
 
 
 def _number(value: Any) -> str | None:
@@ -86,7 +86,7 @@ def side_by_side(pairs: Sequence[tuple[Machine, Cylinder]]) -> tuple[Machine, Cy
     stack = _Stack()
     first = machines[0]
     numbers = {name: stack.of([getattr(one, name) for one in machines]) for name in ("speed", "ambient")}
-    return record_of(first, vars(first) | numbers), stack.of(cylinders)
+    return record_of(first, numbers), stack.of(cylinders)
 
 
 class _Stack:
@@ -113,11 +113,10 @@ class _Stack:
             return tuple(self.of(parts) for parts in zip(*column))
         if isinstance(first, Indicator):
             ends = {end: self._chambers([getattr(one, end) for one in column]) for end in ("head_end", "crank_end")}
-            return record_of(first, vars(first) | ends)
+            return record_of(first, ends)
         if is_dataclass(first):
-            return record_of(
-                first, {one.name: self.of([getattr(each, one.name) for each in column]) for one in fields(first)}
-            )
+            found = {one.name: self.of([getattr(each, one.name) for each in column]) for one in fields(first)}
+            return record_of(first, {name: one for name, one in found.items() if one is not getattr(first, name)})
         return first
 
     def _chambers(self, column: Sequence[Any]) -> Any:

@@ -1,6 +1,5 @@
 """Records of many variants of a machine: what differs among them is an array over the variants, (v,)."""
 
-from dataclasses import is_dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,9 +25,8 @@ def taken(record: Any, index: Indices) -> Any:
         return record[index]
     if isinstance(record, tuple) and not hasattr(record, "_fields"):
         return tuple(taken(one, index) for one in record)
-    if not is_dataclass(record) or count_of(record) is None:
-        return record
-    return record_of(record, {name: taken(value, index) for name, value in vars(record).items()})
+    varied = _varied(record)
+    return record_of(record, {name: taken(getattr(record, name), index) for name in varied}) if varied else record
 
 
 def count_of(record: Any) -> int | None:
@@ -37,12 +35,18 @@ def count_of(record: Any) -> int | None:
         return len(record)
     if isinstance(record, Chambers):
         return None if record.which is None else len(record.which)
-    parts = record if isinstance(record, tuple) else vars(record).values() if is_dataclass(record) else ()
+    parts = record if isinstance(record, tuple) else (getattr(record, name) for name in _varied(record))
     return next((count for part in parts if (count := count_of(part)) is not None), None)
 
 
-def record_of(like: Any, values: dict[str, Any]) -> Any:
-    """Return a record like another one with these values; what was checked when theirs were born is not again."""
+def record_of(like: Any, varied: dict[str, Any]) -> Any:
+    """Return a record like another one but for these values; what was checked when theirs were born is not again."""
     made = object.__new__(type(like))
-    made.__dict__.update(values)
+    made.__dict__.update(vars(like) | varied, _varied=tuple(varied))
     return made
+
+
+def _varied(record: Any) -> tuple[str, ...]:
+    """Return which values may differ among the variants of a record: records of machines alone tell of none."""
+    varied: tuple[str, ...] = getattr(record, "__dict__", {}).get("_varied", ())
+    return varied

@@ -24,7 +24,10 @@ class Sampled(NamedTuple):
 
 
 Evaluate = Callable[["Array", "Array"], "dict[str, Sampled]"]
-"""Quantities at any (degrees, within), each (n,). Of many variants it has `of(variant (n,))`: the same of those."""
+"""Quantities at any (degrees, within), each (n,). Of many variants it has `of(variant (n,))`: the same of those.
+
+It may have `inside(within)`: what it takes in their place, so that what all angles in a piece share is found once.
+"""
 
 
 class Brackets(NamedTuple):
@@ -157,11 +160,16 @@ def _between(grid: Grid, owner: int, asked: Slopes, places: Indices, nodes: Indi
 def at_brackets(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str) -> Callable[[Array], Array]:
     """Return what gives values or slopes of the quantities of brackets (n,) at angles (n,) in degrees inside them."""
     asked: Any = evaluate if grid.variant is None else evaluate.of(grid.variant[brackets.row])  # type: ignore[attr-defined]
-    within, number = grid.within[brackets.row, 0], np.arange(len(brackets.row))
+    within: Any = grid.within[brackets.row, 0]
+    if hasattr(asked, "inside"):
+        within = asked.inside(within)
 
     def at(degrees: Array) -> Array:
-        stacked = np.stack([getattr(sampled, part) for sampled in asked(degrees, within).values()])
-        return np.asarray(stacked[brackets.owner, number])
+        found = np.empty_like(degrees)
+        for owner, sampled in enumerate(asked(degrees, within).values()):
+            own = brackets.owner == owner
+            found[own] = getattr(sampled, part)[own]
+        return found
 
     return at
 

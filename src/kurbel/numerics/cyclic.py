@@ -17,9 +17,13 @@ def around(before: Array, after: Array, sides: Array) -> Array:
     is left. What the equations leave open there is taken as small as can be. Raises LinAlgError where floats do not
     reach.
     """
-    count, size = sides.shape
     if not all(np.isfinite(one).all() for one in (before, after, sides)):
         raise np.linalg.LinAlgError("beyond the range of floats")  # LAPACK itself prints it, or answers with anything
+    return _around(before, after, sides)
+
+
+def _around(before: Array, after: Array, sides: Array) -> Array:
+    count, size = sides.shape
     if count == 1:
         # a direction that is open has a singular value of rounding, 1e-13 as it may be; one of 1e-11 has no digit left
         return np.asarray(np.linalg.lstsq(before[0] + after[0], sides[0], rcond=1e-11)[0][None])
@@ -31,7 +35,7 @@ def around(before: Array, after: Array, sides: Array) -> Array:
     parts = rows[:, size:, :size], rows[:, size:, size:-1], rows[:, size:, -1]
     left = [np.concatenate((part, whole[2 * len(part) :])) for part, whole in zip(parts, (before, after, sides))]
     found = np.empty_like(sides)
-    found[::2] = around(*left)
+    found[::2] = _around(*left)
     ends = np.concatenate((found[even], np.roll(found[::2], -1, axis=0)[: len(turn)]), axis=1)
     rest = rows[:, :size, -1:] - rows[:, :size, :-1] @ ends[..., None]
     found[odd] = np.linalg.solve(upper[:, :size], rest)[..., 0]

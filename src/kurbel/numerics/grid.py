@@ -32,9 +32,12 @@ class Pieces:
         self.low, self.high = low, high
         self.nodes, self.weights = map(np.array, rule)
         start, end = low[:, None], high[:, None]
-        self.within = np.broadcast_to((start + end) / 2, (len(low), len(self.nodes)))
-        right_angle = 90.0 * np.rint(self.within / 90.0)
+        middle = (start + end) / 2
+        self.within = np.broadcast_to(middle, (len(low), len(self.nodes)))
+        right_angle = 90.0 * np.rint(middle / 90.0)
         offset = ((start - right_angle) + (end - right_angle)) / 2 + (end - start) / 2 * self.nodes
+        # node by node in memory: what is one number to a piece then meets whole rows of pieces at once
+        offset = np.asfortranarray(offset)
         self.degrees: Array = right_angle + offset
         self.degrees[:, 0], self.degrees[:, -1] = low, high
         self.beyond = offset - (self.degrees - right_angle)
@@ -47,11 +50,15 @@ class Pieces:
 
     def integral(self, value: Array) -> float:
         """Return ∫ value dφ (φ in radians) over all pieces by the rule, of every variant; value (pieces, nodes)."""
-        return float(self.half_widths @ (value @ self.weights))
+        return float(self.half_widths @ self._means(value))
 
     def integrals(self, value: Array) -> Array:
         """Return ∫ value dφ (φ in radians) over each piece; value (…, pieces, nodes)."""
-        return np.asarray(self.half_widths * (value @ self.weights))
+        return np.asarray(self.half_widths * self._means(value))
+
+    def _means(self, value: Array) -> Array:
+        # summed in one order, however the values lie in memory
+        return np.asarray(np.ascontiguousarray(value) @ self.weights)
 
 
 class Grid(Pieces):

@@ -65,7 +65,7 @@ class Jet:
         return Jet(power, exponent * (power / self.value) * self.slope)
 
     def __abs__(self) -> Jet:
-        sign = np.where(self.value >= 0, 1.0, -1.0)
+        sign = 2.0 * (self.value >= 0) - 1.0
         return Jet(self.value * sign, self.slope * sign)
 
     def __ge__(self, other: float) -> Any:

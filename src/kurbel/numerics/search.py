@@ -116,20 +116,18 @@ def _with_peaks(
     kept = np.zeros(value.shape, dtype=bool)
     kept[:, 0] = kept[:, -1] = True
     kept[rows] = True
-    standing = np.flatnonzero(kept)
+    row, node = np.nonzero(kept)
     nodes = value.shape[1]
-    place = np.searchsorted(standing, brackets.row[own] * nodes + brackets.node[own]) + 1
+    place = np.searchsorted(row * nodes + node, brackets.row[own] * nodes + brackets.node[own]) + 1
     order = np.lexsort((peaks[own], place))
     into = place[order]
-    parts = (
-        (grid.degrees.ravel()[standing], peaks),
-        (standing // nodes, brackets.row),
-        (value.ravel()[standing], heights),
-    )
-    degrees, row, values = (np.insert(at_nodes, into, at_peaks[own][order]) for at_nodes, at_peaks in parts)
-    first = np.searchsorted(standing, grid.first * nodes)
-    first = first + np.searchsorted(into, first, side="right")
-    return Curve(degrees, row, values, first, grid, into + np.arange(len(into)))
+
+    def whole(at_nodes: Any, at_peaks: Any) -> Any:
+        return np.insert(at_nodes, into, at_peaks[own][order])
+
+    pieces = whole(row, brackets.row)
+    degrees, values = whole(grid.degrees[row, node], peaks), whole(value[row, node], heights)
+    return Curve(degrees, pieces, values, np.searchsorted(pieces, grid.first), grid, into + np.arange(len(into)))
 
 
 def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:

@@ -59,8 +59,13 @@ def csv_rows(titles: Titles, rows: Iterable[Any], look: Look, headed: bool = Tru
     if headed:
         yield separator.join(_quoted(_harmless(name), separator) for name in titles.whole) + "\n"
     for row in rows:
-        texts = (_cell(value, look, in_full=True) for value in titles.values(row))
-        yield separator.join(_quoted(text, separator) for text in texts) + "\n"
+        yield separator.join([_csv_cell(value, look, separator) for value in titles.values(row)]) + "\n"
+
+
+def _csv_cell(value: Any, look: Look, separator: str) -> str:
+    text = _cell(value, look, in_full=True)
+    # a number is never quoted, so that none is looked at twice
+    return _quoted(text, separator) if isinstance(value, str) else text
 
 
 def json_rows(titles: Titles, rows: Iterable[Any], look: Look) -> Iterator[str]:

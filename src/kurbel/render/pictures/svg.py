@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from html import escape
 from typing import TYPE_CHECKING
 
-from kurbel.render.pictures.scene import Dots, Item, Line, Places, Scene, Text, levels
+from kurbel.render.pictures.scene import Dots, Item, Places, Scene, Text, levels
 from kurbel.render.pictures.style import css
 
 if TYPE_CHECKING:
@@ -59,10 +59,9 @@ def _of_one_moment(item: Item) -> bool:
 def _item(item: Item, seconds: float) -> str:
     if isinstance(item, Text):
         return _text(item, seconds)
-    parts = item.parts if isinstance(item, Line) else (item.places,)
     if isinstance(item, Dots):
         return _dots(item, seconds)
-    path = _path(parts, item.closed)
+    path = _path(item.parts, item.closed)
     moves = "".join(_moves("d", (_path(one, item.closed) for one in item.frames), seconds) if item.frames else "")
     style = ' style="stroke-dasharray:none"' if item.look.endswith(" solid") else ""
     return f'<path class="{item.look.removesuffix(" solid")}"{style} d="{path}"{f">{moves}</path>" if moves else "/>"}'

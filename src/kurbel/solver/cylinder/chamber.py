@@ -7,53 +7,40 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from kurbel.crank_angle import CrankAngle
-    from kurbel.solver.cylinder.drive import Drive
-    from kurbel.solver.cylinder.gas import PistonGas
+    from kurbel.solver.cylinder.state import State
 
 
-class OfChamber:
-    """The columns of the chambers, as `State` has them; None where the cylinder has no such chamber."""
+def _head_volume(state: State) -> Any:
+    """Return the volume of the head-end chamber in m³, with its clearance where that is given."""
+    gas = state.drive.own_gas
+    return gas.piston.head_area * state.way + gas.clearance_volumes[0] if gas and gas.head else None
 
-    drive: Drive
-    angle: CrankAngle
-    slope: Any
-    x: Any
 
-    @property
-    def V(self) -> Any:
-        """Volume of the head-end chamber in m³, with its clearance where that is given."""
-        gas = self.drive.own_gas
-        return gas.piston.head_area * self._way + gas.clearance_volumes[0] if gas and gas.head else None
+def _crank_volume(state: State) -> Any:
+    """Return the volume of the crank-end chamber in m³, with its clearance where that is given."""
+    gas = state.drive.own_gas
+    if not (gas and gas.crank):
+        return None
+    return gas.piston.crank_area * (state.drive.mechanism.stroke - state.way) + gas.clearance_volumes[1]
 
-    @property
-    def V_crank(self) -> Any:
-        """Volume of the crank-end chamber in m³, with its clearance where that is given."""
-        gas = self.drive.own_gas
-        if not (gas and gas.crank):
-            return None
-        return gas.piston.crank_area * (self.drive.mechanism.stroke - self._way) + gas.clearance_volumes[1]
 
-    @property
-    def dV(self) -> Any:
-        """Change of the volume of the head-end chamber in m³ per degree."""
-        gas = self.drive.own_gas
-        return gas.piston.head_area * np.radians(1.0) * self.slope if gas and gas.head else None
+def _volume_change(state: State) -> Any:
+    """Return the change of the volume of the head-end chamber in m³ per degree."""
+    gas = state.drive.own_gas
+    return gas.piston.head_area * np.radians(1.0) * state.slope if gas and gas.head else None
 
-    @property
-    def dp_head(self) -> Any:
-        """Rise of the head-end pressure in Pa per degree; None without a trace."""
-        return self._rise(self.drive.own_gas, "head")
 
-    @property
-    def dp_crank(self) -> Any:
-        """Rise of the crank-end pressure in Pa per degree; None without a trace."""
-        return self._rise(self.drive.own_gas, "crank")
+def _rise(state: State, end: str) -> Any:
+    """Return the rise of the pressure at an end in Pa per degree; None without a trace."""
+    rise = getattr(getattr(state.drive.own_gas, end, None), "rise", None)
+    return rise(state.phi) if rise else None
 
-    @property
-    def _way(self) -> Any:
-        return self.x - self.drive.mechanism.start
 
-    def _rise(self, gas: PistonGas | None, end: str) -> Any:
-        rise = getattr(getattr(gas, end, None), "rise", None)
-        return rise(self.angle.degrees) if rise else None
+OF_CHAMBERS = {
+    "V": _head_volume,
+    "V_crank": _crank_volume,
+    "dV": _volume_change,
+    "dp_head": lambda state: _rise(state, "head"),
+    "dp_crank": lambda state: _rise(state, "crank"),
+}
+"""Attribute of `State` -> what finds it; None where the cylinder has no such chamber."""

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from kurbel.crank_angle import CrankAngle, jet_angle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
     from kurbel.machine.resistance import RamForce
     from kurbel.solver.cylinder.gas import PistonGas
+    from kurbel.solver.cylinder.inside import Inside
     from kurbel.solver.cylinder.pins import PinFriction
     from kurbel.solver.cylinder.rod import ExactRod
 
@@ -209,9 +212,15 @@ class Drive:
         """Return the state at crank angles (n,) in degrees, on the sides of jumps that hold `within`, or just after."""
         return State(self, CrankAngle.of(degrees), within)
 
-    def jets_at(self, degrees: Array, within: Array, beyond: Array | float = 0.0) -> State:
+    def jets_at(self, degrees: Array, within: Array | Inside, beyond: Array | float = 0.0) -> State:
         """Return the state with slopes by φ at crank angles (n,), on the sides of jumps that hold `within`."""
         return State(self, jet_angle(degrees, beyond), within)
+
+    def on(self, grid: Grid, rows: Any = np.s_[:]) -> State:
+        """Return the state with slopes at the nodes of a grid, or of these pieces of it."""
+        drive = self if grid.variant is None else self.taken(grid.variant[rows][:, None])
+        within = np.broadcast_to(grid.within[rows, :1], grid.degrees[rows].shape)
+        return drive.jets_at(np.asfortranarray(grid.degrees[rows]), within, grid.beyond[rows])
 
     @cached_property
     def cuts(self) -> Cuts:

@@ -11,20 +11,20 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
 from kurbel.mechanisms import quantities_of
-from kurbel.numerics.arithmetic import every, some, total, where
+from kurbel.numerics.arithmetic import every, total, where
 from kurbel.numerics.extreme import Extreme, largest, smallest
 from kurbel.numerics.grid import Pieces, integral
-from kurbel.solver.cylinder.assembled import Assembled
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.searched import Searched
 from kurbel.solver.cylinder.state import State
-from kurbel.solver.figures import Results, answered, crank_angles
+from kurbel.solver.figures import Results, crank_angles
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.declared.quantities import Lists
     from kurbel.solver.cylinder.brake import Brake
+    from kurbel.solver.cylinder.guide_load import GuideLoad
     from kurbel.solver.cylinder.indicated import Indicated
     from kurbel.solver.cylinder.pin_works import PinWorks
     from kurbel.solver.cylinder.rod_load import RodLoad
@@ -60,7 +60,7 @@ class CylinderForces(Searched, Results):
         return (
             self,
             self.motion,
-            *((self.rod_load, self.pin_works) if self.drive.has_force else ()),
+            *((self.rod_load, self.pin_works, self.guide_load) if self.drive.has_force else ()),
             *((self.indicated,) if gas else ()),
             *((self.brake,) if gas and brake is not None else ()),
         )
@@ -79,6 +79,13 @@ class CylinderForces(Searched, Results):
 
         return RodLoad(self)
 
+    @property
+    def guide_load(self) -> GuideLoad:
+        """How hard the crosshead presses on its guide."""
+        from kurbel.solver.cylinder.guide_load import GuideLoad
+
+        return GuideLoad(self)
+
     @cached_property
     def indicated(self) -> Indicated:
         """What the traces of the cylinder's own piston tell."""
@@ -93,13 +100,6 @@ class CylinderForces(Searched, Results):
 
         machine = self.drive.machine
         return Brake(machine, (self,)) if len(machine.cylinders) == 1 else None
-
-    def __getattr__(self, id: str) -> Any:
-        """Return a key value that is no attribute here: extremes, and what the motion or the mechanism has."""
-        quantity = self.lists.key_values("forces").get(id) if "drive" in self.__dict__ else None
-        if quantity is None:
-            raise AttributeError(f"no key value is called {id}")
-        return answered(self.answering, quantity)
 
     def at(self, degrees: Any, within: Array | None = None) -> State:
         """Return every quantity at crank angles (n,) in degrees: `forces.at([0, 10]).T` in N, …
@@ -151,41 +151,6 @@ class CylinderForces(Searched, Results):
         """The inertia forces where the acceleration is largest and smallest; none without masses or speed."""
         turns = (self.motion.b_max, self.motion.b_min) if self.drive.has_inertia else ()
         return [Extreme(-self.drive.mass * one.value, one.degrees) for one in turns if one]
-
-    @property
-    def p_guide_max(self) -> Extreme | None:
-        """Largest pressure of the crosshead's shoe on its guide in Pa."""
-        area, found = self.drive.guide_area, self.extremes_of("N")
-        if area is None or found is None:
-            return None
-        most = largest(*(Extreme(abs(one.value), one.degrees) for one in found))
-        return Extreme(most.value / area, most.degrees)
-
-    @property
-    def p_guide_mean(self) -> Any:
-        """Mean pressure in Pa of the shoe on its guide over the way there and back; None without friction there."""
-        area, f = self.drive.guide_area, self.drive.crosshead_friction
-        return None if area is None or not self._rubs_off else self.crosshead_work / (f * area * self._way)
-
-    @property
-    def _rubs_off(self) -> bool:
-        """Whether any work is lost at the crosshead."""
-        return self.drive.rubs and self.crosshead_work is not None and some(self.crosshead_work != 0)
-
-    @property
-    def wear_max(self) -> Extreme | None:
-        """Largest value of the wear line f |N| |c| in W."""
-        if self.drive.guide_area is None:
-            return None
-        found = self.extremes_over(("wear",))
-        return found["wear"].largest if found else None
-
-    @property
-    def wear_mean(self) -> Any:
-        """Mean of the wear line over time in W."""
-        speed = self.drive.machine.speed
-        lost = self.crosshead_work if self.drive.guide_area is not None else None
-        return None if lost is None or speed is None else lost * speed / self.drive.revolutions
 
     @property
     def A_head(self) -> Any:
@@ -281,16 +246,16 @@ class CylinderForces(Searched, Results):
         friction = self.drive.cylinder.friction
         if friction is None or friction.rings is None:
             return None
-        return self.drive.ring_force * self._way
+        return self.drive.ring_force * self.way
 
     @cached_property
     def constant_work(self) -> Any:
         """Work of the friction that is given as a force, in J per cycle."""
         friction = self.drive.cylinder.friction
-        return None if friction is None or friction.constant is None else friction.constant * self._way
+        return None if friction is None or friction.constant is None else friction.constant * self.way
 
     @property
-    def _way(self) -> Any:
+    def way(self) -> Any:
         """The way in m of what slides, there and back, per cycle."""
         return 2 * self.drive.mechanism.stroke * self.drive.revolutions
 
@@ -367,7 +332,7 @@ class CylinderForces(Searched, Results):
         turnover = self.grid.integral(np.abs(self.samples.M.value))
         pieces = self.drive.pieces.other()
         if self._is_cut:
-            pieces = self.cut_at_bends(Assembled(self.drive, pieces))
+            pieces = self.cut_at_bends(pieces, self.drive.on(pieces))
         return float(integral(pieces, self._torque) - self.work_left) / turnover if turnover else 0.0
 
     def _torque(self, pieces: Pieces) -> Array:

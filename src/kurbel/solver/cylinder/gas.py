@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from kurbel.crank_angle import CrankAngle
 from kurbel.machine.piston import Piston
 from kurbel.machine.variants import taken
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import total
 from kurbel.numerics.cycles import later
-from kurbel.solver.pressure import Setting, pressure_in
+from kurbel.solver.pressure import Pressure, Setting, pressure_in
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
+    from kurbel.arrays import Indices
 
 
 class PistonGas:
@@ -60,15 +60,18 @@ class PistonGas:
         """Crank angles in degrees of a turn at which quadratures should split."""
         return tuple(angle for end in (self.head, self.crank) if end for angle in end.bends)
 
-    def force(self, x: Any, angle: CrankAngle, within: Array, alike: bool = False) -> Any:
-        """Return P = p_H A_H − p_C A_C in N, R 296, with gauge pressures; alike: with the mean of both areas, R 297."""
+    def force(self, pressure: Callable[[Pressure], Any], alike: bool = False) -> Any:
+        """Return P = p_H A_H − p_C A_C in N, R 296; alike: with the mean of both areas, R 297.
+
+        pressure: gives the gauge pressure in Pa at either end.
+        """
         mean = (self.piston.head_area + self.piston.crank_area) / 2
         at_head, at_crank = (mean, mean) if alike else (self.piston.head_area, self.piston.crank_area)
         force: Any = 0.0
         if self.head:
-            force = force + at_head * self.head(x, angle, within)
+            force = force + at_head * pressure(self.head)
         if self.crank:
-            force = force - at_crank * self.crank(x, angle, within)
+            force = force - at_crank * pressure(self.crank)
         return force
 
     @cached_property

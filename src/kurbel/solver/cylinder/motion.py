@@ -114,7 +114,10 @@ class Motion:
         return self._extremes(_curvature, 2, self.mechanism.acceleration_extremes())
 
     def _extremes(self, function: Kinematic, order: int, closed: tuple[Extreme, ...] = ()) -> Extremes:
-        """Return the extremes over a turn of a function of the crank angle times ω^order; closed: where it has them."""
+        """Return the extremes over a turn of a function of the crank angle times ω^order.
+
+        closed: where the mechanism has them. The search is as exact, and takes a sweep over them four times as long.
+        """
         # a power would raise where a product is inf, which is refused by name
         scale = math.prod((0.0 if self.omega is None else self.omega,) * order)
         found = _of_closed(closed) if closed else self._searched(function)

@@ -13,10 +13,8 @@ import numpy as np
 
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
-from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import fan
 from kurbel.numerics.grid import Grid
-from kurbel.numerics.jet import once_each
 from kurbel.numerics.search import Sampled, curves
 from kurbel.solver.shaft.line import ShaftLine, shaft_obstacle
 from kurbel.solver.shaft.statics import Vector, norm
@@ -115,7 +113,7 @@ class PinFriction:
         _, cos_psi = drive.mechanism.rod_angle(angle) or (0.0, 1.0)
         slope = formulas.rod_slope(angle.cos, cos_psi, drive.mechanism.lam)
         # the rod turns by −dψ: forward where it swings back
-        side = np.where(CrankAngle.of(once_each(state.within)).cos >= 0, 1.0, -1.0)
+        side = np.where(state.inside.angle.cos >= 0, 1.0, -1.0)
         return Rubbing(
             norm(*on_pin(state)) * self.crank_pin,
             norm(*on_crosshead_pin(state)) * (side * self.crosshead_pin),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.cycles import Flat
@@ -25,11 +26,13 @@ from kurbel.numerics.search import (
 )
 from kurbel.solver.cylinder.assembled import Assembled
 from kurbel.solver.cylinder.drive import Drive
+from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.motion import Motion
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, Indices
     from kurbel.numerics.where import Where
+    from kurbel.solver.cylinder.state import State
 
 
 _SURE = 4.0
@@ -44,9 +47,13 @@ class Quantities:
         self.names = names
         self.rubs = rubs
 
-    def __call__(self, degrees: Array, within: Array) -> dict[str, Sampled]:
+    def __call__(self, degrees: Array, within: Array | Inside) -> dict[str, Sampled]:
         state = self.drive.jets_at(degrees, within)
         return self.of_state(state if self.rubs else state.unrubbed)
+
+    def inside(self, within: Array) -> Inside:
+        """Return what all angles in the pieces share that hold these."""
+        return Inside(self.drive, CrankAngle.of(within))
 
     def of_state(self, state: Any) -> dict[str, Sampled]:
         """Return them in a state."""
@@ -67,27 +74,20 @@ class Searched:
     @cached_property
     def grid(self) -> Grid:
         """The cycle in smooth pieces, cut also where the guide force changes sides, if friction makes that a kink."""
-        return self.cut_at_bends(self._uncut) if self._is_cut else self.drive.pieces
+        return self.cut_at_bends(self.drive.pieces, self._uncut) if self._is_cut else self.drive.pieces
 
     @property
     def _is_cut(self) -> bool:
         return self.drive.rubs or (self.drive.pin_friction is not None and self.drive.has_force)
 
     @cached_property
-    def _uncut(self) -> Assembled:
+    def _uncut(self) -> State:
         """The state at the nodes of the smooth pieces, before they are cut where the guide force changes sides."""
-        return Assembled(self.drive, self.drive.pieces, (*self._together, "guide_sense"))
+        return self.drive.on(self.drive.pieces)
 
-    @cached_property
-    def _together(self) -> tuple[str, ...]:
-        """The columns that are declared to have extremes, and what the work at the crosshead is made of."""
-        declared = quantities_of(self.drive.mechanism).all_columns
-        rubbing = ("crosshead_power",) if self.drive.rubs and self.drive.has_force else ()
-        return (*(one.id for one in declared if "forces" in one.extremes), *rubbing)
-
-    def cut_at_bends(self, samples: Assembled) -> Grid:
+    def cut_at_bends(self, grid: Grid, samples: State) -> Grid:
         """Return the grid of samples cut where the guide force changes sides, and near the least force on a pin."""
-        grid, pins = samples.grid, self.drive.pin_friction
+        pins = self.drive.pin_friction
         if self.drive.rubs:
             sense = self.quantities("guide_sense")
             sampled = sense.of_state(samples)
@@ -105,14 +105,17 @@ class Searched:
         return Quantities(self.drive, names)
 
     @cached_property
-    def samples(self) -> Assembled:
+    def samples(self) -> State | Assembled:
         """The state at the nodes of the grid."""
-        return Assembled(self.drive, self.grid, self._together, self._uncut if self._is_cut else None)
+        if self.grid is self.drive.pieces:
+            return self._uncut
+        return Assembled(self.drive, self.grid, self._uncut, self.drive.pieces)
 
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
         """Those of every column that is declared to have extremes, as far as there is one."""
-        return self.extremes_over(name for name in self._together if name != "crosshead_power")
+        declared = quantities_of(self.drive.mechanism).all_columns
+        return self.extremes_over(one.id for one in declared if "forces" in one.extremes)
 
     def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
         """Return the extremes in SI of these columns, as far as there are any."""

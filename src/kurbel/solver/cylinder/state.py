@@ -10,50 +10,55 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
-from kurbel.errors import NoSolutionError
 from kurbel.mechanisms import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
-from kurbel.numerics.cycles import Unlike
-from kurbel.numerics.jet import once_each
-from kurbel.solver.cylinder.chamber import OfChamber
+from kurbel.numerics.jet import Jet, once_each
+from kurbel.solver.cylinder.chamber import OF_CHAMBERS
+from kurbel.solver.cylinder.guide import OF_GUIDE
+from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.rod_load import rod_load
-from kurbel.solver.cylinder.rod_point import OfPoint
+from kurbel.solver.cylinder.rod_point import OF_POINT
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.cylinder.drive import Drive
     from kurbel.solver.cylinder.pins import Rubbing
+    from kurbel.solver.pressure import Pressure
+
+_ELSEWHERE = {**OF_GUIDE, **OF_CHAMBERS, **OF_POINT}
 
 
-class State(OfPoint, OfChamber):
+class State:
     """A cylinder at crank angles (n,); its attributes are named by the ids of the columns, in SI, each of shape (n,).
 
     angle: the crank angles; with jets for sine and cosine every quantity becomes a jet with its slope by φ.
-    within: angles in degrees (n,) that say on which side of a jump each one is meant; the angles themselves mean the
-    side just after it. rubs: whether friction in pins and journals counts.
+    within: angles in degrees (n,) that say on which side of a jump each one is meant, or what is known of them; the
+    angles themselves mean the side just after it.
     A quantity that the machine does not have is None. What the mechanism offers is one of them.
     """
 
-    def __init__(self, drive: Drive, angle: CrankAngle, within: Array | None = None, rubs: bool = True) -> None:
+    def __init__(self, drive: Drive, angle: CrankAngle, within: Array | Inside | None = None) -> None:
         self.drive = drive
         self.angle = angle
-        self._asked = angle, within
-        self._rubs = rubs
-        self.within = angle.degrees if within is None else within
-        self._beside = None if within is None else State(drive, CrankAngle.of(once_each(within)), rubs=rubs)
+        if within is None:
+            within = Inside(drive, angle)
+        self.inside = within if isinstance(within, Inside) else Inside(drive, CrankAngle.of(once_each(within)))
 
     def __getattr__(self, id: str) -> Any:
-        """Return a column that the mechanism offers; None for one that only others do."""
+        """Return what is defined elsewhere, or a column that the mechanism offers; None for one that only others do."""
+        if id in _ELSEWHERE:
+            found = self.__dict__[id] = _ELSEWHERE[id](self)
+            return found
         offer = next((one for one in self.drive.mechanism.OFFERS if one.quantity.id == id), None)
         if offer is None:
             if id.startswith("_") or id not in by_id(every_quantity().all_columns):
                 raise AttributeError(f"no column is called {id}")
             return None
-        found = [getattr(self, name) for name in offer.times]
+        times = [getattr(self, name) for name in offer.times]
         factor = offer.factor(self.drive.mechanism, self.angle)
-        if factor is None or any(one is None for one in found):
+        if factor is None or any(one is None for one in times):
             return None
-        return reduce(mul, found) * factor if found else factor
+        return reduce(mul, times) * factor if times else factor
 
     @property
     def omega(self) -> Any:
@@ -61,21 +66,31 @@ class State(OfPoint, OfChamber):
         return self.drive.omega
 
     @property
-    def _inside(self) -> State:
-        """The state asked for within the piece; not kept as an attribute, or no state would be freed after use."""
-        return self if self._beside is None else self._beside
-
-    @property
     def phi(self) -> Array:
         """Crank angle in degrees."""
         return self.angle.degrees  # type: ignore[no-any-return]
 
     @cached_property
-    def x(self) -> Any:
-        """Displacement in m; of what only swings, None."""
-        return self.drive.mechanism.coordinate(self.angle) if self.drive.mechanism.slides else None
+    def _plain(self) -> CrankAngle:
+        """The crank angles without the slopes of jets."""
+        degrees, sin, cos = self.angle
+        return CrankAngle(degrees, getattr(sin, "value", sin), getattr(cos, "value", cos))
 
     @property
+    def _is_jet(self) -> bool:
+        return isinstance(self.angle.sin, Jet)
+
+    @cached_property
+    def _coordinate(self) -> Any:
+        value = self.drive.mechanism.coordinate(self._plain)
+        return Jet(value, self.slope.value) if self._is_jet else value
+
+    @property
+    def x(self) -> Any:
+        """Displacement in m; of what only swings, None."""
+        return self._coordinate if self.drive.mechanism.slides else None
+
+    @cached_property
     def way(self) -> Any:
         """Displacement in m from the inner dead centre, wherever the book counts x from: what the chambers see."""
         return self.x - self.drive.mechanism.start
@@ -83,7 +98,8 @@ class State(OfPoint, OfChamber):
     @cached_property
     def slope(self) -> Any:
         """dx/dφ in m per radian; of what only swings, dθ/dφ."""
-        return self.drive.mechanism.slope(self.angle)
+        value = self.drive.mechanism.slope(self._plain)
+        return Jet(value, self.curvature.value) if self._is_jet else value
 
     @cached_property
     def curvature(self) -> Any:
@@ -102,49 +118,51 @@ class State(OfPoint, OfChamber):
         return None if w is None else self.curvature * (w * w)  # a power would raise where the product is inf
 
     @cached_property
-    def _rod(self) -> Any:
+    def rod_angle(self) -> Any:
+        """sin ψ and cos ψ; None without a rod."""
         return self.drive.mechanism.rod_angle(self.angle)
 
     @cached_property
     def psi(self) -> Any:
         """Rod angle in degrees."""
-        return None if self._rod is None else bearing(*self._rod)
+        return None if self.rod_angle is None else bearing(*self.rod_angle)
 
     @property
     def z(self) -> Any:
         """What of the stroke, or of the swing, is passed from the inner dead centre; of what turns on, None."""
         one = self.drive.mechanism
-        return None if one.turns else (one.coordinate(self.angle) - one.start) / one.stroke
+        return None if one.turns else (self._coordinate - one.start) / one.stroke
 
-    @cached_property
+    @property
     def direction(self) -> Array:
-        """+1 on the outstroke, −1 on the return stroke, shape (n,); +1 for what turns on and on."""
-        if self.drive.mechanism.turns:
-            return np.ones_like(self.within)
-        inner, outer = self.drive.mechanism.dead_centres()
-        return np.where(np.mod(once_each(self.within) - inner, 360.0) < outer - inner, 1.0, -1.0)
+        """+1 on the outstroke, −1 on the return stroke; +1 for what turns on and on."""
+        return self.inside.direction
+
+    def pressure(self, end: Pressure) -> Any:
+        """Return the gauge pressure in Pa at an end of a piston."""
+        return end(self.way, self.angle, self.inside.held(end))
 
     @cached_property
     def p_head(self) -> Any:
         """Pressure at the head end of the cylinder's own piston in Pa, counted as in the machine file."""
         gas = self.drive.own_gas
-        return gas.head(self.way, self.angle, self.within) + gas.base if gas and gas.head else None
+        return self.pressure(gas.head) + gas.base if gas and gas.head else None
 
     @cached_property
     def p_crank(self) -> Any:
         """Pressure at the crank end of the cylinder's own piston in Pa, counted as in the machine file."""
         gas = self.drive.own_gas
-        return gas.crank(self.way, self.angle, self.within) + gas.base if gas and gas.crank else None
+        return self.pressure(gas.crank) + gas.base if gas and gas.crank else None
 
     @cached_property
     def P_gas(self) -> Any:
         """Force of gas, steam or water on all pistons in N, R 296."""
-        return sum(gas.force(self.way, self.angle, self.within) for gas in self.drive.gas) if self.drive.gas else None
+        return sum(gas.force(self.pressure) for gas in self.drive.gas) if self.drive.gas else None
 
     @property
     def P_gas_book(self) -> Any:
         """The same with both areas of a piston alike, in N, R 297."""
-        with_equal_areas = [gas.force(self.way, self.angle, self.within, alike=True) for gas in self.drive.gas]
+        with_equal_areas = [gas.force(self.pressure, alike=True) for gas in self.drive.gas]
         return sum(with_equal_areas) if with_equal_areas else None
 
     @cached_property
@@ -156,7 +174,7 @@ class State(OfPoint, OfChamber):
     def P_weight(self) -> Any:
         """Weight along the stroke line in N, positive toward the shaft."""
         weight = self.drive.weight
-        return np.full_like(self.within, weight[0]) if weight else None
+        return np.full_like(self.phi, weight[0]) if weight else None
 
     @cached_property
     def _resistance(self) -> Any:
@@ -199,36 +217,15 @@ class State(OfPoint, OfChamber):
         return None if not masses or masses.crosshead is None else rod_load(self, without=masses.crosshead)
 
     @cached_property
-    def _after_steady_friction(self) -> Any:
+    def after_steady_friction(self) -> Any:
         """Force left for crosshead and rod after friction that is the same over the stroke, in N."""
         steady = self.drive.steady_friction
         return self.P - self.direction * steady if some(steady != 0) else self.P
 
     @cached_property
-    def guide_sense(self) -> Any:
-        """The force whose sign is that of N: P sin ψ + G cos ψ with the load G on the guide, in N."""
-        sin_psi, cos_psi = self._rod if self._rod else (0.0, 1.0)
-        return self._after_steady_friction * sin_psi + cos_psi * self._guide_load
-
-    @cached_property
-    def _guide_load(self) -> Any:
-        """What rests on the guide beside the push of the rod in N: weight less the couple of an exact rod."""
-        return self.drive.guide_weight - self._rod_side if self._has_couple else self.drive.guide_weight
-
-    @property
-    def _has_couple(self) -> bool:
-        return self.drive.rod is not None or self.rubbing is not None
-
-    @cached_property
-    def _rod_side(self) -> Any:
-        """Side force in N of the couples on the rod: of an exact one, and of the friction in its pins."""
-        exact = self.drive.rod.side_force(self._rod, self.angle) if self.drive.rod else 0.0
-        return exact if self.rubbing is None else exact + self._pin_side
-
-    @cached_property
     def rubbing(self) -> Rubbing | None:
         """Moments of friction in pins and journals in N m; None where there is none."""
-        friction = self.drive.pin_friction if self._rubs else None
+        friction = self.drive.pin_friction if self.inside.rubs else None
         if friction is None or self.P is None:
             return None
         return friction.moments(self.unrubbed)
@@ -236,75 +233,26 @@ class State(OfPoint, OfChamber):
     @property
     def unrubbed(self) -> State:
         """The state as it would be if pins and journals did not rub: the loads that make them rub."""
-        return State(self.drive, *self._asked, rubs=False)
+        return State(self.drive, self.angle, self.inside.unrubbed)
+
+    @cached_property
+    def rod_side(self) -> Any:
+        """Side force in N of the couples on the rod: of an exact one, and of the friction in its pins; else None."""
+        exact = self.drive.rod.side_force(self.rod_angle, self.angle) if self.drive.rod else None
+        return exact if self.rubbing is None else _sum(exact, self._pin_side)
 
     @property
     def _pin_side(self) -> Any:
         """Side force in N of the friction in both pins of the rod."""
         assert self.rubbing is not None
-        return self.rubbing.couple / self.drive.mechanism.rod_length / self._rod[1]
-
-    @cached_property
-    def N(self) -> Any:
-        """Force on the guide in N, D 3 with signs: N = (P sin ψ + G cos ψ)/(cos ψ + f sin ψ sgn c sgn N).
-
-        With f = 0 and no weight this is R 301, N = P tan ψ. Raises NoSolutionError where the crosshead locks itself.
-        """
-        if self.P is None:
-            return None
-        if self._rod is None:
-            alone = self.drive.weight if self.drive.mechanism.known_across else None
-            return alone and np.full_like(self.within, alone[1])
-        if not self.drive.rubs:
-            return self._after_steady_friction * (self._rod[0] / self._rod[1]) + self._guide_load
-        return self.guide_sense / self._below
-
-    @cached_property
-    def _guide_side(self) -> Array:
-        """+1 where N ≥ 0, else −1, asked for within the piece: where N vanishes at its end, rounding would pick one."""
-        return np.where(self._inside.guide_sense >= 0, 1.0, -1.0)
-
-    @cached_property
-    def _below(self) -> Any:
-        sin_psi, cos_psi = self._rod
-        below = cos_psi + sin_psi * (self._guide_side * self.direction * self.drive.crosshead_friction)
-        locked = getattr(below, "value", below) <= 0
-        if locked.any():
-            if self.drive.variant is not None:
-                raise Unlike(np.broadcast_to(self.drive.variant, locked.shape)[locked])
-            raise NoSolutionError(self._locks(float(self.phi[locked][0])))
-        return below
-
-    def _locks(self, degrees: float) -> str:
-        f = self.drive.crosshead_friction
-        bound = 1 / np.sqrt(1 + f * f)
-        return (
-            f"{self.drive.name}: the crosshead locks itself near φ = {degrees % 360:.4g}°, where the machine is driven "
-            f"and f tan ψ ≥ 1 (f = {f:g}); a driven machine needs (R + |e|)/L < 1/√(1 + f²) = {bound:.6g}"
-        )
-
-    @cached_property
-    def _crosshead_drag(self) -> Any:
-        """Crosshead friction f |N| in N, against the motion."""
-        return self.N * (self._guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
-
-    @cached_property
-    def p_guide(self) -> Any:
-        """|N| over the area of the shoe in Pa; None where its size is not given."""
-        area = self.drive.guide_area
-        return None if area is None or self.N is None else abs(self.N) / area
-
-    @cached_property
-    def wear(self) -> Any:
-        """f |N| |c| in W, the wear line of the guide (D); None without a shoe or a speed."""
-        return None if self.p_guide is None or self.c is None else self._crosshead_drag * self.c * self.direction
+        return self.rubbing.couple / self.drive.mechanism.rod_length / self.rod_angle[1]
 
     @cached_property
     def F_friction(self) -> Any:
         """All friction along the stroke line in N, positive toward the shaft."""
         if self.P is None or not self.drive.has_friction:
             return None
-        return (self._crosshead_drag + self.drive.steady_friction) * -self.direction
+        return (self.crosshead_drag + self.drive.steady_friction) * -self.direction
 
     @cached_property
     def along_rod(self) -> Any:
@@ -315,10 +263,10 @@ class State(OfPoint, OfChamber):
     @cached_property
     def S(self) -> Any:
         """Rod force in N, compression positive, R 300; of an exact rod, between the masses at its ends."""
-        if self.P is None or self._rod is None:
+        if self.P is None or self.rod_angle is None:
             return None
-        push = self.along_rod / self._rod[1]
-        return push - self._rod_side * self._rod[0] if self._has_couple else push
+        push = self.along_rod / self.rod_angle[1]
+        return push if self.rod_side is None else push - self.rod_side * self.rod_angle[0]
 
     @cached_property
     def S_crosshead(self) -> Any:
@@ -326,14 +274,14 @@ class State(OfPoint, OfChamber):
         if self.P is None or not self.drive.rod:
             return None
         b = self.b if self.drive.has_inertia else None
-        return self.drive.rod.at_crosshead(self._rod, self.along_rod, self.N - self.drive.guide_weight, b)
+        return self.drive.rod.at_crosshead(self.rod_angle, self.along_rod, self.N - self.drive.guide_weight, b)
 
     @cached_property
     def S_crank(self) -> Any:
         """Force along an exact rod at the crank pin in N."""
         if self.P is None or not self.drive.rod:
             return None
-        return self.drive.rod.at_crank(self._rod, self.angle, self.T, self.D)
+        return self.drive.rod.at_crank(self.rod_angle, self.angle, self.T, self.D)
 
     @cached_property
     def D(self) -> Any:
@@ -342,8 +290,8 @@ class State(OfPoint, OfChamber):
         if radial is None:
             return None
         push = self.along_rod * radial
-        if self.drive.rod is not None and self._rod is not None:
-            push = push + self.drive.rod.radial(self._rod, self.angle)
+        if self.drive.rod is not None and self.rod_angle is not None:
+            push = push + self.drive.rod.radial(self.rod_angle, self.angle)
         return push if self.rubbing is None else push + self.angle.sin * self._pin_side
 
     @property
@@ -382,12 +330,7 @@ class State(OfPoint, OfChamber):
     def _rod_tangential(self) -> Any:
         """What couple and weight of an exact rod give to T in N."""
         assert self.drive.rod is not None
-        return self.drive.rod.tangential(self._rod, self.angle)
-
-    @cached_property
-    def crosshead_power(self) -> Any:
-        """Crosshead friction times way by crank angle in J per radian, positive."""
-        return self._crosshead_drag * (self.slope * self.direction)
+        return self.drive.rod.tangential(self.rod_angle, self.angle)
 
 
 def _sum(first: Any, second: Any) -> Any:

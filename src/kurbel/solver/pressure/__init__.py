@@ -68,11 +68,14 @@ class Pressure(Protocol):
         """The highest gauge pressure in Pa, and the first crank angle in degrees of the cycle that has it."""
         ...
 
-    def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
+    def held(self, within: Array) -> Any:
+        """Return what holds over the segments in which angles (n,) in degrees lie: each side of a jump has its own."""
+        ...
+
+    def __call__(self, x: Any, angle: CrankAngle, held: Any) -> Any:
         """Return the gauge pressure in Pa at crank angles (n,), where the displacement is x (n,) in m.
 
-        within: angles (n,) in degrees inside the segment that is meant, so that each side of a jump can be asked for.
-        With a jet for x the pressure is a jet too.
+        held: of the segment that is meant. With a jet for x the pressure is a jet too.
         """
         ...
 

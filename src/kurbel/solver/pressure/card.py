@@ -1,29 +1,35 @@
 """The pressure of a card: segments over the stroke, found by crank angle."""
 
-from __future__ import annotations
-
 import math
 from copy import copy
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle, within_cycle
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.indicator import STROKES, Card, Line
 from kurbel.mechanisms import fan
 from kurbel.numerics.arithmetic import sqrt, where
 from kurbel.numerics.extreme import Extreme
-from kurbel.numerics.jet import once_each
 from kurbel.solver.pressure import Setting
 from kurbel.solver.pressure.places import segments_over
 from kurbel.solver.pressure.segments import Process, Processes, Segment, Stroke, polytropic_exponent
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
     from kurbel.machine.rectangle import Rectangle
+
+
+class Held(NamedTuple):
+    """Segments that hold angles, each (n,): rise of pressure in Pa over the whole stroke, and angles of their ends."""
+
+    segment: Segment
+    gradient: Array
+    begins: Array
+    ends: Array
 
 
 class ProcessPressure:
@@ -40,14 +46,12 @@ class ProcessPressure:
         self._lift, self._clearance = processes.lift, processes.clearance
         self._places = segments_over(processes, setting)
         self.starts = self._places.starts
-        self._ends = self._places.ends
         table = self._places.table
-        self._z, self._p, self._next_z, self._exponents = table.z, table.p, table.next_z, table.exponent
         self._gradients = (table.next_p - table.p) / (table.next_z - table.z)
-        self._polytropic = bool(self._exponents.any())
+        self._polytropic = bool(table.exponent.any())
         self._variant: Indices | None = None
 
-    def taken(self, index: Indices) -> ProcessPressure:
+    def taken(self, index: Indices) -> "ProcessPressure":
         """Return the pressure of these variants, at angles of the shape of the index."""
         from kurbel.machine.variants import taken
 
@@ -59,36 +63,35 @@ class ProcessPressure:
         )
         return other
 
-    def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
-        """Return the gauge pressure in Pa at displacements x (n,) in m, on the segments that hold `within` (n,)."""
-        segment = self._places.holding(within_cycle(once_each(within), self.setting.cycle), self._variant)
+    def held(self, within: Array) -> Held:
+        """Return the segments that hold angles (n,) in degrees."""
+        segment = self._places.holding(within_cycle(within, self.setting.cycle), self._variant)
+        table = Segment(*(part[segment] for part in self._places.table))
+        return Held(table, self._gradients[segment], self._places.angles[segment], self._places.ends[segment])
+
+    def __call__(self, x: Any, angle: CrankAngle, held: Held) -> Any:
+        """Return the gauge pressure in Pa at displacements x (n,) in m, on the segments that are held."""
         share = x / self._stroke if self.setting.head_end else 1 - x / self._stroke
-        share = self._at_corners(share, angle, segment)
-        straight = (self._p[segment] - self.setting.base) + self._gradients[segment] * (share - self._z[segment])
-        return self._curved(straight, share, segment) if self._polytropic else straight
+        self._put_corners(getattr(share, "value", share), angle.degrees, held)
+        straight = (held.segment.p - self.setting.base) + held.gradient * (share - held.segment.z)
+        return self._curved(straight, share, held.segment) if self._polytropic else straight
 
-    def _at_corners(self, share: Any, angle: CrankAngle, segment: Indices) -> Any:
-        """Return the stroke fractions, at corners those of the card: their angles are rounded, lines may be steep."""
-        degrees, value = angle.degrees, getattr(share, "value", share)
+    def _put_corners(self, share: Array, degrees: Array, held: Held) -> None:
+        """Make stroke fractions at corners those of the card: their angles are rounded, lines may be steep."""
         # of a piece of a grid only the first and the last node may stand at a corner
-        at = np.s_[:, :: degrees.shape[1] - 1] if segment.shape != degrees.shape else np.s_[:]
-        turned, own = within_cycle(degrees[at], self.setting.cycle), value[at]
-        begins = np.abs(turned - self._places.angles[segment]) <= _ROUNDING
-        ends = np.abs(turned - self._ends[segment]) <= _ROUNDING
-        moved = np.where(begins, self._z[segment], np.where(ends, self._next_z[segment], own)) - own
-        if not moved.any():
-            return share
-        apart = np.zeros_like(value)
-        apart[at] = moved
-        return share + apart
+        at = np.s_[:, :: degrees.shape[1] - 1] if held.begins.shape != degrees.shape else np.s_[:]
+        turned = within_cycle(degrees[at], self.setting.cycle)
+        for corner, z in ((held.ends, held.segment.next_z), (held.begins, held.segment.z)):
+            met = np.abs(turned - corner) <= _ROUNDING
+            share[at] = np.where(met, z, share[at])
 
-    def _curved(self, straight: Any, share: Any, segment: Indices) -> Any:
+    def _curved(self, straight: Any, share: Any, segment: Segment) -> Any:
         """Return P (V/V′)^n less the ambient on polytropic segments, and the straight value elsewhere."""
-        exponents, clearance = self._exponents[segment], self._clearance
+        exponents, clearance = segment.exponent, self._clearance
         curved = exponents != 0  # what is straight may begin without any volume
         # beside a dead centre rounding may put x a hair outside the stroke; the clearance keeps the volume positive
-        swelling = _chosen(curved, share + clearance, 1.0) / np.where(curved, self._z[segment] + clearance, 1.0)
-        power = (self._p[segment] + self._lift) * swelling**-exponents - self.setting.ambient
+        swelling = _chosen(curved, share + clearance, 1.0) / np.where(curved, segment.z + clearance, 1.0)
+        power = (segment.p + self._lift) * swelling**-exponents - self.setting.ambient
         return _chosen(curved, power, straight)
 
     @cached_property
@@ -123,7 +126,7 @@ _ROUNDING = 3e-13
 """Degrees of crank angle by which the angle of a corner may be off: a few units in the last place of 720."""
 
 
-def rectangle_process(card: Rectangle, setting: Setting) -> Process:
+def rectangle_process(card: "Rectangle", setting: Setting) -> Process:
     """Return the process of a rectangular card: the mean pressure stands on the stroke that drives, or is driven."""
     level = setting.base if card.level is None else card.level
     above = {"expansion": max(card.mean, 0.0), "compression": max(-card.mean, 0.0)}

@@ -11,7 +11,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.machine.trace import Trace
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Cuts
-from kurbel.numerics.jet import Jet, once_each
+from kurbel.numerics.jet import Jet
 from kurbel.solver.pressure import Setting
 from kurbel.solver.pressure.corrected import corrected
 
@@ -30,6 +30,18 @@ class Segments(NamedTuple):
     end: Array
     p: Array
     next_p: Array
+
+
+class Held(NamedTuple):
+    """The straight pieces that hold angles `within` in degrees, each (n,).
+
+    since: degrees from their starts on; p: pressure in Pa there; gradient: Pa per degree.
+    """
+
+    within: Array
+    since: Array
+    p: Array
+    gradient: Array
 
 
 class TracePressure:
@@ -59,14 +71,17 @@ class TracePressure:
         self._gradients = (self._segments.next_p - self._segments.p) / (self._segments.end - self._segments.start)
         self.bends: tuple[float, ...] = ()
 
-    def __call__(self, x: Any, angle: CrankAngle, within: Array) -> Any:
-        """Return the gauge pressure in Pa at crank angles (n,), on the segments that hold the angles `within`."""
-        meant = once_each(within)
-        turned = np.mod(meant, self.setting.cycle)
+    def held(self, within: Array) -> Held:
+        """Return what holds on the segments in which angles (n,) in degrees lie."""
+        turned = np.mod(within, self.setting.cycle)
         segment = np.searchsorted(self.starts, turned, side="right") - 1
-        since = np.mod(turned - self.starts[segment], self.setting.cycle) + (angle.degrees - meant)
-        value = self._segments.p[segment] + self._gradients[segment] * since
-        return Jet(value, self._gradients[segment] * (180 / math.pi)) if isinstance(x, Jet) else value
+        since = np.mod(turned - self.starts[segment], self.setting.cycle)
+        return Held(within, since, self._segments.p[segment], self._gradients[segment])
+
+    def __call__(self, x: Any, angle: CrankAngle, held: Held) -> Any:
+        """Return the gauge pressure in Pa at crank angles (n,), on the segments that are held."""
+        value = held.p + held.gradient * (held.since + (angle.degrees - held.within))
+        return Jet(value, held.gradient * (180 / math.pi)) if isinstance(x, Jet) else value
 
     def taken(self, index: Indices) -> "TracePressure":
         """Return itself: a trace is of one machine."""
@@ -82,7 +97,9 @@ class TracePressure:
 
     def rise(self, degrees: Array) -> Array:
         """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each."""
-        ahead, behind = (self(None, CrankAngle.of(at), at) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2))
+        ahead, behind = (
+            self(None, CrankAngle.of(at), self.held(at)) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2)
+        )
         return np.asarray((ahead - behind) / _CHORD)
 
     @cached_property
