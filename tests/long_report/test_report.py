@@ -162,6 +162,17 @@ def test_two_machines_side_by_side() -> None:
     html5lib.HTMLParser(strict=True).parse(page)
 
 
+def test_equal_cylinders_are_told_once_side_by_side() -> None:
+    """The pins of the crossheads, too: each shell has two equal pieces that no load reaches, and all tell the same."""
+    names = re.findall("<caption>(.*?)</caption>", page_of("v8-cross-plane", "v8-cross-plane"))
+    every = "left 1, right 1, left 2, right 2, left 3, right 3, left 4, right 4"
+    assert names[:2] == [every, every]
+    assert [name for name in names if "crosshead" in name] == [
+        "crosshead pin of left 1–4",
+        "crosshead pin of right 1–4",
+    ]
+
+
 def test_differences_are_in_percent(tmp_path: Path) -> None:
     one, other, out = tmp_path / "a.yaml", tmp_path / "b.yaml", tmp_path / "r.html"
     one.write_text("{name: A, speed: 50 rpm, stroke: 800 mm, rod_ratio: 5}")
