@@ -5,7 +5,7 @@ from typing import NamedTuple, Union
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, ComplexArray
 
 Places = tuple[tuple[float, float], ...]
 
@@ -71,6 +71,7 @@ class Scene(NamedTuple):
 
 def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
     """Return places x, y (n,) without those that lie on a straight line between others, but for `within`."""
+    places = x + 1j * y
     keep = np.zeros(len(x), dtype=bool)
     keep[[0, -1]] = True
     spans = [(0, len(x) - 1)]
@@ -78,7 +79,7 @@ def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
         start, end = spans.pop()
         if end - start < 2:
             continue
-        far = _distances(x[start : end + 1], y[start : end + 1])
+        far = _distances(places[start : end + 1])
         most = int(np.argmax(far))
         if far[most] > within:
             keep[start + most] = True
@@ -86,11 +87,8 @@ def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
     return tuple(zip(x[keep].tolist(), y[keep].tolist()))
 
 
-def _distances(x: Array, y: Array) -> Array:
-    """Return how far places (n,) lie from the chord between the first and the last."""
-    along, across = x[-1] - x[0], y[-1] - y[0]
-    length = float(np.hypot(along, across))
-    if not length:
-        return np.asarray(np.hypot(x - x[0], y - y[0]))
-    inner = np.clip(((x - x[0]) * along + (y - y[0]) * across) / length**2, 0.0, 1.0)
-    return np.asarray(np.hypot(x - x[0] - inner * along, y - y[0] - inner * across))
+def _distances(places: ComplexArray) -> Array:
+    """Return how far places x + iy (n,) lie from the chord between the first and the last."""
+    chord, reached = places[-1] - places[0], places - places[0]
+    along = np.minimum(np.maximum((reached / chord).real, 0.0), 1.0) if chord else 0.0
+    return np.asarray(np.abs(reached - along * chord))
