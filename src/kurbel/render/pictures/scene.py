@@ -10,6 +10,9 @@ from kurbel.arrays import Array, ComplexArray
 Places = tuple[tuple[float, float], ...]
 
 
+_SUBSCRIPT = re.compile(r"(?:(?<=\b\w)|(?<=Δ\w))_([^\s|]+?)(?=,?\s|,?$|\|)")
+
+
 class Line(NamedTuple):
     """A line through places, of a class of the style; `parts`: several lines of one look; frames: how it moves."""
 
@@ -22,7 +25,8 @@ class Line(NamedTuple):
 class Text(NamedTuple):
     """A text at a place, by its start, middle or end; halo: it may stand on lines; frames: where it moves to.
 
-    still: it is of one moment, and stands only where nothing moves.
+    still: it is of one moment, and stands only where nothing moves; plain: it is a name or a
+    number, of which nothing is lowered.
     """
 
     x: float
@@ -33,6 +37,18 @@ class Text(NamedTuple):
     halo: bool = False
     frames: Places = ()
     still: bool = False
+    plain: bool = False
+
+    @property
+    def levels(self) -> list[str]:
+        """What stands on the line and what below it as subscripts, in turn.
+
+        >>> Text(0, 0, "T_max 5.1 kN").levels, Text(0, 0, "F_x, F_y in N").levels
+        (['T', 'max', ' 5.1 kN'], ['F', 'x', ', F', 'y', ' in N'])
+        >>> Text(0, 0, "my_engine").levels, Text(0, 0, "A_1", plain=True).levels
+        (['my_engine'], ['A_1'])
+        """
+        return [self.text] if self.plain else _SUBSCRIPT.split(self.text)
 
 
 class Dots(NamedTuple):
@@ -46,17 +62,6 @@ class Dots(NamedTuple):
 
 
 Item = Union[Line, Text, Dots]
-
-_SUBSCRIPT = re.compile(r"(?:(?<=\b\w)|(?<=Δ\w))_([^\s|]+?)(?=,?\s|,?$|\|)")
-
-
-def levels(text: str) -> list[str]:
-    """Return what of a text stands on the line and what below it as subscripts, in turn.
-
-    >>> levels("T_max 5.1 kN"), levels("F_x, F_y in N"), levels("my_engine")
-    (['T', 'max', ' 5.1 kN'], ['F', 'x', ', F', 'y', ' in N'], ['my_engine'])
-    """
-    return _SUBSCRIPT.split(text)
 
 
 class Scene(NamedTuple):
