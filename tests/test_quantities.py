@@ -26,11 +26,12 @@ from kurbel.solver.bearings.bearing import Bearing
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.guide_load import GuideLoad
 from kurbel.solver.cylinder.indicated import Indicated
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.pin_works import PinWorks
 from kurbel.solver.cylinder.rod_load import RodLoad
-from kurbel.solver.cylinder.state import State
+from kurbel.solver.cylinder.state import _ELSEWHERE, State
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
 from kurbel.solver.turning.coupling import ElasticCoupling
 from kurbel.solver.turning.flywheel import MachineTurning
@@ -39,7 +40,7 @@ from toy_mechanism import HarmonicCam
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
     "motion": (Motion,),
-    "forces": (CylinderForces, Motion, RodLoad, PinWorks, Indicated, Brake),
+    "forces": (CylinderForces, Motion, RodLoad, PinWorks, GuideLoad, Indicated, Brake),
     "flywheel": (MachineTurning, ElasticCoupling, Brake),
     "stress": (CrankshaftStrength,),
     "balance": (MachineBalance, LocomotiveBalance, BookBalance),
@@ -61,7 +62,8 @@ def test_every_common_column_has_a_definition() -> None:
     whole = {"flywheel": case.flywheel, "stress": case.strength, "balance": case.balance}
     formulas = {name: set(results.at([0.0]).formulas) for name, results in whole.items()}
     formulas["bearings"] = {id for part in case.bearings.parts for id in part.at([0.0]).formulas}
-    known = {"motion": set(dir(State)), "forces": set(dir(State)), **formulas}
+    of_cylinder = {*dir(State), *_ELSEWHERE}
+    known = {"motion": of_cylinder, "forces": of_cylinder, **formulas}
     for command, defined in known.items():
         for id, column in COMMON.columns(command).items():
             assert id == "phi" or (column.asks[0] if column.asks else id) in defined, id
