@@ -1,7 +1,5 @@
 """The pressure of a card: segments over the stroke, found by crank angle."""
 
-from __future__ import annotations
-
 import math
 from copy import copy
 from functools import cached_property
@@ -10,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle, within_cycle
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.indicator import STROKES, Card, Line
@@ -21,7 +20,6 @@ from kurbel.solver.pressure.places import segments_over
 from kurbel.solver.pressure.segments import Process, Processes, Segment, Stroke, polytropic_exponent
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
     from kurbel.machine.rectangle import Rectangle
 
 
@@ -53,7 +51,7 @@ class ProcessPressure:
         self._polytropic = bool(table.exponent.any())
         self._variant: Indices | None = None
 
-    def taken(self, index: Indices) -> ProcessPressure:
+    def taken(self, index: Indices) -> "ProcessPressure":
         """Return the pressure of these variants, at angles of the shape of the index."""
         from kurbel.machine.variants import taken
 
@@ -128,7 +126,7 @@ _ROUNDING = 3e-13
 """Degrees of crank angle by which the angle of a corner may be off: a few units in the last place of 720."""
 
 
-def rectangle_process(card: Rectangle, setting: Setting) -> Process:
+def rectangle_process(card: "Rectangle", setting: Setting) -> Process:
     """Return the process of a rectangular card: the mean pressure stands on the stroke that drives, or is driven."""
     level = setting.base if card.level is None else card.level
     above = {"expansion": max(card.mean, 0.0), "compression": max(-card.mean, 0.0)}
