@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from kurbel.machine import Machine
-from kurbel.machine.turning import Effort, Flywheel
+from kurbel.machine.flywheel import Flywheel
+from kurbel.machine.turning import Effort
 from kurbel.solver.case import Case
 from kurbel.solver.turning.flywheel import MachineTurning
 

@@ -41,9 +41,10 @@ if TYPE_CHECKING:
     from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.equal import EqualCylinders
+    from kurbel.machine.flywheel import Flywheel
     from kurbel.machine.origin import Origin
     from kurbel.machine.shaft_line import ShaftLine, ShaftPart
-    from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
+    from kurbel.machine.turning import Coupling, Effort, Harmonics, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
 
@@ -157,7 +158,7 @@ class Machine(Described):
             "Order in which the cylinders fire, at equal intervals over the cycle; sets `crank_position`",
             absent="positions as given",
         ),
-        "flywheel": Key(Record("kurbel.machine.turning:Flywheel"), "Flywheel", absent="no speed line"),
+        "flywheel": Key(Record("kurbel.machine.flywheel:Flywheel"), "Flywheel", absent="no speed line"),
         "load": Key(
             OneOf(Choice(("constant",)), Record("kurbel.machine.turning:Load")),
             "Resistance at the shaft",

@@ -1,13 +1,12 @@
-"""What turns with the shaft: flywheel, load, a turning-moment diagram known from elsewhere, an elastic coupling."""
+"""What works on the shaft: load, a turning-moment diagram known from elsewhere, an elastic coupling."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.bounds import Point, size_faults
-from kurbel.declared.forms import Number, Points, Record, UnitName, not_negative, positive
+from kurbel.declared.forms import Number, Points, UnitName, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, refuse
@@ -19,95 +18,6 @@ _TORQUE_KEYS: Keys = {
         Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M", needs="unit"
     ),
 }
-
-
-CAST_IRON = 7250.0
-"""Density in kg/m³ of what rims are cast of."""
-
-
-@dataclass(frozen=True, eq=False)
-class Rim(Described):
-    """The rim of a flywheel: mean diameter in m, density in kg/m³, and the tension in Pa that it may bear or None."""
-
-    mean_diameter: float
-    density: float = CAST_IRON
-    allowable_tension: float | None = None
-
-    KEYS: ClassVar[Keys] = {
-        "mean_diameter": positive("length", "Mean diameter of the rim", "D", required=True),
-        "density": positive(
-            "density", "Density of its material", "ρ", absent="7250 kg/m³, cast iron", also=("material",)
-        ),
-        "allowable_tension": positive(
-            "stress", "Tension that the rim may bear; a warning tells when it has more", "k_z"
-        ),
-    }
-
-    def section(self, inertia: float) -> float:
-        """Return the area A in m² of a thin rim with J = ρ A π D (D/2)², arms and hub left out; inertia in kg m²."""
-        return 4 * inertia / (math.pi * self.density * self.mean_diameter**3)
-
-    def speed(self, omega: float) -> float:
-        """Return the speed v in m/s of the middle of the rim at an angular velocity in rad/s."""
-        return omega * self.mean_diameter / 2
-
-    def stress(self, omega: float) -> float:
-        """Return the hoop stress ρ v² in Pa of a rim that turns freely, at an angular velocity in rad/s."""
-        return self.density * self.speed(omega) ** 2
-
-
-@dataclass(frozen=True, eq=False)
-class Flywheel(Described):
-    """A flywheel: its moment of inertia J in kg m², the wanted coefficient of fluctuation δ, and the rim to be built.
-
-    Any of them may be None, but not both of the first two.
-    """
-
-    inertia: float | None = None
-    fluctuation: float | None = None
-    rim: Rim | None = None
-
-    KEYS: ClassVar[Keys] = {
-        "inertia": not_negative("inertia", "Moment of inertia; or give `gd2`", "J"),
-        "gd2": not_negative(
-            "gd2",
-            "Old form of the moment of inertia: 4gJ as a weight times an area, or 4J as a mass times an area",
-            "GD²",
-            instead="inertia",
-        ),
-        "mass": not_negative(
-            "mass",
-            "Mass, with the radius of gyration another form of the moment of inertia m k²",
-            "m",
-            instead="inertia",
-            needs="radius_of_gyration",
-        ),
-        "radius_of_gyration": positive("length", "Radius of gyration", "k", instead="gd2", needs="mass"),
-        "fluctuation": Key(
-            Number(above=0, below=2), "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean", "δ"
-        ),
-        "rim": Key(
-            Record("kurbel.machine.turning:Rim"), "A rim that has the whole moment of inertia", absent="no section"
-        ),
-    }
-
-    @classmethod
-    def of_keys(
-        cls,
-        inertia: float | None = None,
-        gd2: float | None = None,
-        mass: float | None = None,
-        radius_of_gyration: float | None = None,
-        **others: Any,
-    ) -> Flywheel:
-        """Return the flywheel with J = inertia, GD²/4 or m k²."""
-        if mass is not None and radius_of_gyration is not None:
-            return cls(mass * radius_of_gyration**2, **others)
-        return cls(gd2 / 4 if gd2 is not None else inertia, **others)
-
-    def __post_init__(self) -> None:
-        if self.inertia is None and self.fluctuation is None:
-            refuse(Fault((), "a flywheel needs 'inertia', 'gd2', 'mass' or the wanted 'fluctuation'"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,16 +88,9 @@ class Load(Described):
     }
 
     @classmethod
-    def of_keys(
-        cls,
-        power_law: float | None = None,
-        slip: float | None = None,
-        unit: Factor | None = None,
-        points: list[Point] | None = None,
-    ) -> Load:
+    def of_keys(cls, power_law: float | None = None, slip: float | None = None, **points: Any) -> Load:
         """Return the load that these keys of a machine file describe; raises RuleError."""
-        diagram = None if unit is None or points is None else Effort.of_points(unit, points)
-        return cls(power_law, slip, diagram)
+        return cls(power_law, slip, Effort.of_points(**points) if points else None)
 
     def __post_init__(self) -> None:
         forms = {"power_law": self.power, "slip": self.slip, "points": self.diagram}

@@ -7,11 +7,11 @@ from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kurbel.machine.balance import Locomotive
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.shaft.weights import Weight, levered
 
 if TYPE_CHECKING:
+    from kurbel.machine.balance import Locomotive
     from kurbel.solver.balance.machine_balance import MachineBalance
 
 

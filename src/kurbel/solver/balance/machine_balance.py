@@ -17,17 +17,16 @@ from kurbel.numerics.search import Extremes
 from kurbel.solver.balance.best import Least, in_planes, least, shafts
 from kurbel.solver.balance.circles import Circles
 from kurbel.solver.balance.free import Free
-from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.products import Products, of_throws
 from kurbel.solver.balance.rolling import rolling_moment, swirls
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Columns, Results, passed_on
 from kurbel.solver.shaft.weights import OwnThrow, Weight, counterweights_of, middle_of, shafts_of, wheels_of
-from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.torques import Sum
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array, ComplexArray
+    from kurbel.solver.balance.locomotive import LocomotiveBalance
 
 _REAL = 1e-12
 """Beside its size, what a counterweight opposite the throw may point aside by rounding."""
@@ -175,7 +174,11 @@ class MachineBalance(Results):
 
     @cached_property
     def _roll_extremes(self) -> Extremes | None:
-        return Excess(self.roll).effort_extremes if self.roll else None
+        if not self.roll:
+            return None
+        from kurbel.solver.turning.excess import Excess
+
+        return Excess(self.roll).effort_extremes
 
     M_roll_max = passed_on("_roll_extremes", "largest", "Largest rolling moment on the frame in N m.")
     M_roll_min = passed_on("_roll_extremes", "smallest", "Smallest rolling moment on the frame in N m.")
@@ -263,7 +266,11 @@ class MachineBalance(Results):
     def locomotive(self) -> LocomotiveBalance | None:
         """What of it concerns the wheels of a locomotive; None of another machine."""
         given = self.machine.locomotive
-        return LocomotiveBalance(self, given) if given else None
+        if given is None:
+            return None
+        from kurbel.solver.balance.locomotive import LocomotiveBalance
+
+        return LocomotiveBalance(self, given)
 
 
 class BookBalance:

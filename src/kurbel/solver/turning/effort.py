@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.numerics.brackets import Sampled
 from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
 from kurbel.solver.cylinder.following import own_cuts, position
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
@@ -26,19 +29,31 @@ class CylinderEffort:
     """
 
     def __init__(self, alike: Sequence[CylinderForces], cycle: float, torque_in: Callable[[State], Any]) -> None:
+        self._alike = alike
+        self._cycle = cycle
         self._drive = alike[0].drive
         self._positions = np.array([position(one) for one in alike])
         self._torque_in = torque_in
-        cuts = own_cuts(alike[0])
-        self.cuts = Cuts.joined([cuts.shifted(behind, cycle) for behind in self._positions.tolist()])
 
-    def torque(self, degrees: Array, within: Array) -> Jet:
+    @cached_property
+    def cuts(self) -> Cuts:
+        """Where it bends or jumps over the cycle; searched only where more is asked than the torque at some angles."""
+        cuts = own_cuts(self._alike[0])
+        return Cuts.joined([cuts.shifted(behind, self._cycle) for behind in self._positions.tolist()])
+
+    def torque(self, degrees: Array, within: Array | Inside) -> Jet:
         """Return the torque; see `Torque`."""
-        behind = self._positions.reshape(-1, *(1 for _ in degrees.shape))
-        angles = degrees - behind
-        torque = self._torque_in(self._drive.jets_at(angles.ravel(), (within - behind).ravel()))
-        every = Sampled.of(torque, (angles.size,))
+        angles = degrees - self._behind(degrees)
+        inside = within if isinstance(within, Inside) else (within - self._behind(within)).ravel()
+        every = Sampled.of(self._torque_in(self._drive.jets_at(angles.ravel(), inside)), (angles.size,))
         return Jet(*(part.reshape(angles.shape).sum(axis=0) for part in every))
+
+    def inside(self, within: Array) -> Inside:
+        """Return what all angles in the pieces share that hold these (n,)."""
+        return Inside(self._drive, CrankAngle.of((within - self._behind(within)).ravel()))
+
+    def _behind(self, degrees: Array) -> Array:
+        return self._positions.reshape(-1, *(1 for _ in degrees.shape))
 
 
 def efforts(

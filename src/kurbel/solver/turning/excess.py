@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class Excess:
     another mean is brought to that of the effort.
     """
 
-    def __init__(self, effort: Torque, given: Torque | None = None) -> None:
+    def __init__(self, effort: Sum, given: Torque | None = None) -> None:
         self.effort = effort
         self.grid = (effort.cuts if given is None else Sum((1.0, effort), (1.0, given)).cuts).grid()
         self.cycle = float(self.grid.breaks[-1])
@@ -66,7 +66,7 @@ class Excess:
     def effort_extremes(self) -> Extremes:
         """Largest and smallest turning effort in N m, one-sided values at jumps included."""
         sampled = Sampled.of(self._sampled_effort, self.grid.degrees.shape)
-        return extremes(self.grid, {"M": sampled}, _evaluated(self.effort.torque))["M"]
+        return extremes(self.grid, {"M": sampled}, _Evaluated(self.effort))["M"]
 
     @cached_property
     def crossings(self) -> tuple[float, ...]:
@@ -120,6 +120,17 @@ class Excess:
     def dE(self) -> float:
         """ΔE in J, the largest swing of the excess work."""
         return self.largest.value - self.smallest.value if self.largest and self.smallest else 0.0
+
+
+class _Evaluated:
+    """A torque with its slope; see `search.Evaluate`."""
+
+    def __init__(self, torque: Sum) -> None:
+        self._torque = torque
+        self.inside = torque.inside
+
+    def __call__(self, degrees: Array, within: Any) -> dict[str, Sampled]:
+        return {"M": Sampled.of(self._torque.torque(degrees, within), degrees.shape)}
 
 
 def _evaluated(torque: Callable[[Array, Array], Jet]) -> Evaluate:

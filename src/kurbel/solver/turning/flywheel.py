@@ -24,7 +24,7 @@ from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-    from kurbel.machine.turning import Rim
+    from kurbel.machine.flywheel import Rim
     from kurbel.numerics.where import Where
     from kurbel.solver.turning.coupling import ElasticCoupling
 

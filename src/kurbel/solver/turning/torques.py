@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from kurbel.machine.turning import Effort, Harmonics
 from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.machine.turning import Effort, Harmonics
 
 
 class Torque(Protocol):
@@ -40,12 +40,17 @@ class Sum:
         """The cuts of all parts."""
         return Cuts.joined([part.cuts for _, part in self.parts])
 
-    def torque(self, degrees: Array, within: Array) -> Jet:
-        """Return the sum with its slope; see `Torque`."""
+    def torque(self, degrees: Array, within: Array | tuple[Any, ...]) -> Jet:
+        """Return the sum with its slope; see `Torque`. within: angles, or what `inside` made of them."""
         total = Jet(np.zeros_like(degrees), np.zeros_like(degrees))
-        for factor, part in self.parts:
-            total = total + part.torque(degrees, within) * factor
+        of_each = within if isinstance(within, tuple) else (within,) * len(self.parts)
+        for (factor, part), inside in zip(self.parts, of_each):
+            total = total + part.torque(degrees, inside) * factor
         return total
+
+    def inside(self, within: Array) -> tuple[Any, ...]:
+        """Return what each part takes in place of these angles (n,): what all angles in a piece share is found once."""
+        return tuple(part.inside(within) if hasattr(part, "inside") else within for _, part in self.parts)
 
 
 class Uniform:
@@ -103,4 +108,6 @@ class Diagram:
 
 def known_torque(effort: Effort | Harmonics, cycle: float) -> Torque:
     """Return the torque of an effort that is known from elsewhere, over a cycle in degrees."""
+    from kurbel.machine.turning import Harmonics
+
     return HarmonicTorque(effort, cycle) if isinstance(effort, Harmonics) else Diagram(effort, cycle)
