@@ -31,7 +31,7 @@ from kurbel.solver.cylinder.indicated import Indicated
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.pin_works import PinWorks
 from kurbel.solver.cylinder.rod_load import RodLoad
-from kurbel.solver.cylinder.state import _ELSEWHERE, State
+from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
 from kurbel.solver.turning.coupling import ElasticCoupling
 from kurbel.solver.turning.flywheel import MachineTurning
@@ -62,8 +62,7 @@ def test_every_common_column_has_a_definition() -> None:
     whole = {"flywheel": case.flywheel, "stress": case.strength, "balance": case.balance}
     formulas = {name: set(results.at([0.0]).formulas) for name, results in whole.items()}
     formulas["bearings"] = {id for part in case.bearings.parts for id in part.at([0.0]).formulas}
-    of_cylinder = {*dir(State), *_ELSEWHERE}
-    known = {"motion": of_cylinder, "forces": of_cylinder, **formulas}
+    known = {"motion": set(dir(State)), "forces": set(dir(State)), **formulas}
     for command, defined in known.items():
         for id, column in COMMON.columns(command).items():
             assert id == "phi" or (column.asks[0] if column.asks else id) in defined, id
