@@ -56,6 +56,15 @@ def test_cylinders_that_work_alike_give_what_each_gives_by_itself() -> None:
     np.testing.assert_allclose(machine.at(ANGLES).M, 0.9 * sum(each), rtol=1e-13, atol=1e-9)
 
 
+def test_masses_alone_do_no_work_and_fluctuate_beside_none() -> None:
+    """∮ m x′ x″ dφ = 0: their mean torque is none, where its rounding once stood as a divisor under ΔE."""
+    moved = replace(ENGINE, pistons=())
+    machine = turning(moved, replace(moved, crank_position=140.0))
+    assert machine.M_mean == machine.work_shaft == 0.0
+    assert machine.dE > 100
+    assert machine.energy_fluctuation is None
+
+
 def test_the_efficiency_scales_the_turning_effort_only() -> None:
     """R p. 611."""
     whole, less = turning(ENGINE), turning(ENGINE, efficiency=0.9)

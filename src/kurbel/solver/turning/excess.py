@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.numerics.jet import Jet
 
+_ROUNDING = 1e-13
+"""Beside the largest torque: a mean that is less is none, as that of masses without gas, but rounding."""
 _BALANCED = 1e-9
 """Means of effort and resistance that differ by less, relatively, are equal."""
 
@@ -51,7 +53,8 @@ class Excess:
         return torque.torque(self.grid.degrees, self.grid.within)
 
     def _mean_of(self, sampled: Jet) -> float:
-        return self.grid.integral(sampled.value) / math.radians(self.cycle)
+        mean = self.grid.integral(sampled.value) / math.radians(self.cycle)
+        return mean if abs(mean) > _ROUNDING * float(np.abs(sampled.value).max()) else 0.0
 
     @cached_property
     def _sampled(self) -> Jet:
