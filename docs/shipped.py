@@ -13,8 +13,9 @@ from click.testing import CliRunner
 
 import gallery  # docs/gallery.py
 from kurbel.cli import kurbel
+from kurbel.machine.alike import gathered
 from kurbel.render.charset import Charset
-from kurbel.report.alike import gathered, together
+from kurbel.report.alike import together
 
 _CONFIGS = Path(__file__).parent.parent / "configs"
 _SHOWN = {

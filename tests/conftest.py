@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -17,6 +18,9 @@ settings.load_profile("brief")
 
 # processes that the tests start are an installed kurbel's: they find it compiled, instead of compiling it each anew
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# what pytest rewrites of the tests is kept for the next run, too: it takes most of the collection
+sys.dont_write_bytecode = False
 
 # a width in the environment (pytest-xdist sets one) is asked of every output, by contract
 os.environ.pop("COLUMNS", None)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 
@@ -43,3 +43,22 @@ def few(
         )
         for value, name in zip(every, ids or [None] * len(every))
     ]
+
+
+def law_of_each(values: Iterable[object]) -> Callable[[Callable[..., None]], Callable[[], None]]:
+    """Make one test of a law that each of these keeps, where a test for each would cost more than the law does.
+
+    A tuple is of several arguments; pytest shows those that fail beside the law.
+    """
+    every = [value if isinstance(value, tuple) else (value,) for value in values]
+
+    def law(test: Callable[..., None]) -> Callable[[], None]:
+        def test_of_all() -> None:
+            assert every
+            for value in every:
+                test(*value)
+
+        test_of_all.__doc__, test_of_all.__module__ = test.__doc__, test.__module__
+        return test_of_all
+
+    return law

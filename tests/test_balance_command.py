@@ -148,3 +148,10 @@ def test_tables_keep_within_the_width_asked_for(name: str, width: int) -> None:
     columns = [symbol for head in heads for symbol in head[1:]]
     assert {"F_+", "F_−", "F_a", "M_+", "M_−", "∠M_−"} <= set(columns)
     assert len(columns) == len(set(columns))
+
+
+@pytest.mark.parametrize("asked", [["--columns", "F_x"], ["--angles", "30"]])
+def test_only_orders_and_what_stands_over_the_angle_exclude_each_other(asked: list[str]) -> None:
+    result = CliRunner().invoke(kurbel, ["balance", str(CONFIGS / "boxer.yaml"), "--orders", *asked])
+    assert result.exit_code == 2
+    assert f"--orders prints nothing over the crank angle; leave it or {asked[0]} out." in result.stderr

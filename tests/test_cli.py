@@ -172,7 +172,7 @@ def test_error_message_in_ascii() -> None:
 
 @POSIX_ONLY
 def test_reader_that_leaves_early() -> None:
-    command = f"{sys.executable} -m kurbel table --step 0.01 -f csv | head -1"
+    command = f"{sys.executable} -m kurbel table --step 0.05 -f csv | head -1"
     result = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, check=False)
     assert (result.returncode, result.stderr) == (0, b"")
     assert result.stdout == b"rod_ratio,phi_deg,acceleration_factor,velocity_factor\n"

@@ -194,7 +194,7 @@ coupling: {stiffness: 13784 N m/rad, damping: 5.84372 N m s/rad, inertia: 66.24 
 ENDLESS = [("flywheel", 3), ("harmonics", 0), ("torsion", 0)]
 
 
-@pytest.mark.parametrize(("command", "status"), few(ENDLESS, ENDLESS[1:2]))
+@pytest.mark.parametrize(("command", "status"), few(ENDLESS, []))
 def test_a_coupling_whose_motion_finds_no_end_is_no_fault_of_kurbel(command: str, status: int) -> None:
     answer = CliRunner().invoke(kurbel, [command, "-"], input=STALLS)
     assert answer.exit_code == status

@@ -8,6 +8,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parent.parent
 CODE = [file for folder in ("src", "tests", "docs", "benchmarks") for file in (ROOT / folder).rglob("*.py")]
 PAGES = [*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md")]
@@ -63,6 +65,7 @@ def astray(text: str, beside: Path) -> list[str]:
     return files + [name for name in NAME.findall(text) if not can_be_had(name)]
 
 
+@pytest.mark.slow
 def test_docstrings_and_pages_point_to_what_is_there() -> None:
     texts = {file: "\n".join(docstrings(file)) for file in CODE}
     texts |= {page: page.read_text(encoding="utf-8") for page in PAGES}

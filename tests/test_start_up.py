@@ -13,6 +13,7 @@ import pytest
 from kurbel.machine_file import load
 from kurbel.report.warnings import cylinder_warnings
 from kurbel.solver.case import Case
+from representative import law_of_each
 
 ROOT = Path(__file__).parent.parent
 HOUSE = ROOT / "src" / "kurbel"
@@ -20,7 +21,7 @@ WATERWORKS, BOTH_CRANKS = (str(ROOT / "configs" / f"waterworks{name}.yaml") for 
 DECLARING = [path for path in sorted(HOUSE.rglob("*.py")) if "(NamedTuple)" in path.read_text(encoding="utf-8")]
 
 
-@pytest.mark.parametrize("module", DECLARING, ids=lambda path: str(path.relative_to(HOUSE)))
+@law_of_each(DECLARING)
 def test_where_named_tuples_are_declared_annotations_are_taken_as_they_stand(module: Path) -> None:
     """NamedTuple compiles each postponed one at every start."""
     imported = (node for node in ast.parse(module.read_text(encoding="utf-8")).body if isinstance(node, ast.ImportFrom))

@@ -18,6 +18,7 @@ from kurbel.errors import UsageError
 from kurbel.report.tables import Report
 from kurbel.report.zusammenstellung import ROWS, zusammenstellung
 from reference.zusammenstellung_112 import MISPRINTS, PRINTED
+from representative import law_of_each
 
 
 def run(*arguments: str) -> str:
@@ -32,8 +33,7 @@ def values(report: Report, ratio: float, row: str) -> dict[float, float]:
     return dict(zip(phi.values, column.values))
 
 
-@pytest.mark.parametrize(("ratio", "phi", "acceleration", "velocity"), PRINTED)
-@pytest.mark.parametrize("row", ["acceleration_factor", "velocity_factor"])
+@law_of_each((*figures, row) for figures in PRINTED for row in ("acceleration_factor", "velocity_factor"))
 def test_every_legible_figure_is_reproduced_or_a_known_misprint(ratio, phi, acceleration, velocity, row) -> None:
     printed = acceleration if row == "acceleration_factor" else velocity
     computed = values(zusammenstellung(), ratio, row)[phi]

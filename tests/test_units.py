@@ -15,12 +15,12 @@ from kurbel.declared.units import kinds, parse_quantity, unit_names
 from kurbel.errors import UnitError
 from kurbel.machine_file import load
 from kurbel.solver.case import Case
+from representative import law_of_each
 
 G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
 
 
-@pytest.mark.parametrize(
-    ("text", "kind", "value"),
+@law_of_each(
     [
         ("450 mm", "length", 0.45),
         ("0.1 cm", "length", 0.001),
@@ -167,14 +167,14 @@ def test_hints_of_numbers(text: str, hint: str) -> None:
     assert hint in str(caught.value)
 
 
-@pytest.mark.parametrize("kind", [kind for kind in SI if kind != "ratio"])
+@law_of_each(kind for kind in SI if kind != "ratio")
 def test_every_shown_unit_can_be_read_back(kind: str) -> None:
     for units in (system[kind] for system in SYSTEMS.values()):
         for unit in (units,) if isinstance(units, str) else units:
             assert parse_quantity(f"1 {unit}", kind) > 0
 
 
-@pytest.mark.parametrize("kind", [kind for kind in SI if kind != "ratio"])
+@law_of_each(kind for kind in SI if kind != "ratio")
 def test_every_unit_is_positive_and_finite(kind: str) -> None:
     for unit in unit_names(kind):
         assert 0 < parse_quantity(f"1 {unit}", kind) < math.inf
@@ -240,3 +240,23 @@ def test_the_units_of_one_run_are_not_those_of_the_next() -> None:
             assert show(0.3, "length") == "0.3 m"
         assert show(0.254, "length") == "10 in"
     assert show(0.3, "length") == "300 mm"
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "hint"),
+    [
+        ("7 ft 6 in", "length", "write feet and inches in one unit, such as '90 in' for 7 ft 6 in"),
+        ("7' 6\"", "length", "write feet and inches in one unit, such as '90 in' for 7 ft 6 in"),
+        ("60 lb per inch", "spring", "a spring of 60 lb per inch is '1/60 in/psi'"),
+        ("60 psi/in", "spring", "a spring of 60 lb per inch is '1/60 in/psi'"),
+    ],
+)
+def test_what_a_restorer_writes_in_inches(text: str, kind: str, hint: str) -> None:
+    with pytest.raises(UnitError) as caught:
+        parse_quantity(text, kind)
+    assert hint in str(caught.value)
+
+
+def test_a_spring_of_60_lb_per_inch() -> None:
+    # 1 psi = 0.45359237 · 9.80665/0.0254² Pa, of which 60 make an inch
+    assert parse_quantity("1/60 in/psi", "spring") == pytest.approx(0.0254**3 / (60 * 0.45359237 * 9.80665), rel=1e-15)

@@ -157,3 +157,10 @@ def test_one_cylinder_may_have_what_another_has_not() -> None:
 def test_a_unit_alone_is_no_value() -> None:
     result = of_stages("--where", "p_head = bar")
     assert (result.exit_code, "has no number before the unit; write 5.4 bar" in result.stderr) == (2, True)
+
+
+def test_the_excess_work_reaches_its_extremes_where_the_effort_crosses_the_resistance() -> None:
+    turning = Case(load(CONFIGS / "waterworks.yaml")).flywheel
+    found = turning.angles_where("E", turning.E_max.value)
+    assert found.angles == pytest.approx((turning.E_max.degrees,), abs=1e-9)
+    assert found.span == pytest.approx((turning.E_min.value, turning.E_max.value), rel=1e-12)

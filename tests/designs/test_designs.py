@@ -93,10 +93,14 @@ def test_shards_are_the_whole() -> None:
             shard(wrong, 10)
 
 
+@pytest.mark.slow
 def test_the_sequence_of_sobol_is_that_of_joe_and_kuo() -> None:
     from scipy.stats import qmc  # takes most of a second
 
     assert (_digits(256, 13) / 2.0**32 == qmc.Sobol(13, scramble=False).random(256)).all()
+
+
+def test_the_sequence_of_sobol_has_one_point_in_every_strip() -> None:
     points = sobol(64, 3, 5)
     assert all((np.sort(np.floor(64 * column)) == np.arange(64)).all() for column in points.T)
     with pytest.raises(UsageError, match="is known for 13"):

@@ -229,3 +229,24 @@ def test_python_is_told_what_is_wrong(inputs: dict[str, list[float]], message: s
     machine = kurbel.Machine((kurbel.Cylinder(kurbel.SliderCrank(0.1, 0.5)),))
     with pytest.raises(kurbel.KurbelError, match=r"kurbel\.load"):
         kurbel.sweep(machine, {"crank": [1.0]})
+
+
+def test_what_varies_stands_in_the_unit_of_its_size(tmp_path: Path) -> None:
+    file = tmp_path / "compressor.yaml"
+    file.write_text(
+        "{stroke: 180 mm, rod: 460 mm, bore: 140 mm, speed: 420 rpm, indicator: {pressures: absolute, head_end: "
+        "{compressor: {suction: 12 bar, delivery: 31 bar, clearance: 14 %, exponent: 1.4}}}}"
+    )
+    delivery = "indicator.head_end.compressor.delivery"
+    lines = run("--vary", f"{delivery}=25:35:5 bar", "--columns", "b_max", file=str(file)).stdout.splitlines()
+    assert [line.split()[:3] for line in lines if "─" not in line] == [
+        ["row", delivery, "b_max"],
+        ["bar", "m/s²"],
+        *([str(row), f"{value}.00", "208.2"] for row, value in ((1, 25), (2, 30), (3, 35))),
+    ]
+
+
+def test_two_points_are_no_range() -> None:
+    result = run("--vary", "rod=1800mm..2000mm", "--columns", "b_max")
+    assert result.exit_code == 2
+    assert "a range is first:last:step, such as 140:160:5 mm" in result.stderr

@@ -228,3 +228,13 @@ def test_progress_is_told_to_a_terminal_after_a_second(
     monkeypatch.setattr(sys.stderr, "isatty", lambda: False)
     progress("writing")
     assert capsys.readouterr().err == "kurbel report: forces …\n"
+
+
+def test_equal_cylinders_are_told_once_in_the_input() -> None:
+    from kurbel.report.check import checked
+
+    case = case_of("v8-cross-plane")
+    names = "left 1, right 1, left 2, right 2, left 3, right 3, left 4, right 4"
+    told = checked(case.machine)
+    assert sum(one.cylinder for one in told.sections) == 8
+    assert [one.title for one in told.told_once if one.cylinder] == [names]

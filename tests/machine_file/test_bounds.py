@@ -17,6 +17,7 @@ from kurbel.declared.unit_systems import SI
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine_file import columns, events, load, loads
 from kurbel.machine_file.schema import json_schema
+from representative import law_of_each
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod_ratio: 5\n"
 GAS = "bore: 300 mm\nindicator: {head_end: {constant: {expansion: 1 bar, compression: 2 bar}}}\n"
@@ -61,7 +62,7 @@ def test_absurd_values_are_refused_by_name(command: str, text: str, message: str
     assert message in result.stderr
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@law_of_each(KINDS)
 def test_every_kind_has_sizes_that_can_be_squared_and_divided(kind: str) -> None:
     smallest, largest, *_ = KINDS[kind]
     assert 0 <= smallest < 1 <= largest

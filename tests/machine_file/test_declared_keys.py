@@ -19,6 +19,7 @@ from kurbel.machine_file import loads
 from kurbel.machine_file.reader import ROOT
 from kurbel.machine_file.schema import json_schema
 from kurbel.mechanisms.slider_crank import SliderCrank
+from representative import law_of_each
 
 whole_schema = cache(json_schema)
 
@@ -38,12 +39,7 @@ def all_records() -> Iterator[Record]:
 
 
 def declared(field: str) -> list[Any]:
-    return [
-        pytest.param(record, name, key, id=f"{record.target.split(':')[1]}.{name}")
-        for record in all_records()
-        for name, key in record.keys.items()
-        if getattr(key, field)
-    ]
+    return [(record, name, key) for record in all_records() for name, key in record.keys.items() if getattr(key, field)]
 
 
 def allowed_by_schema(record: Record, *names: str) -> bool:
@@ -54,14 +50,14 @@ def allowed_by_schema(record: Record, *names: str) -> bool:
     return jsonschema.Draft7Validator({"allOf": rules}).is_valid(dict.fromkeys(names, 1))
 
 
-@pytest.mark.parametrize(("record", "name", "key"), declared("instead"))
+@law_of_each(declared("instead"))
 def test_two_keys_that_say_the_same_thing_are_a_contradiction(record: Record, name: str, key: Key) -> None:
     with pytest.raises(RuleError, match=f"{name}: '{key.instead}' and '{name}' say the same thing"):
         record.load().from_keys(**{name: 1.5, key.instead: 1.5})
     assert not allowed_by_schema(record, name, key.instead)
 
 
-@pytest.mark.parametrize(("record", "name", "key"), declared("needs"))
+@law_of_each(declared("needs"))
 def test_a_key_needs_the_one_beside_it(record: Record, name: str, key: Key) -> None:
     with pytest.raises(RuleError, match=f"{name}: '{name}' needs '{key.needs}' beside it"):
         record.load().from_keys(**{name: 1.5})

@@ -26,9 +26,10 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
 from kurbel.report.forces import forces_report
+from kurbel.report.frame import Frame
 from kurbel.report.motion import motion_report
 from kurbel.solver.case import Case
-from representative import few
+from representative import few, law_of_each
 
 MACHINES = {
     "straight": SliderCrank(0.4, 2.0),
@@ -67,7 +68,7 @@ ANGLES = (3.0, 47.0, 90.0, 118.0, 177.0, 181.0, 233.0, 291.0, 352.0)
 
 
 def every(machines=MACHINES):
-    return pytest.mark.parametrize("machine", machines.values(), ids=machines.keys())
+    return law_of_each(machines.values())
 
 
 def exact_coordinate(machine):
@@ -147,14 +148,9 @@ def test_the_stroke_runs_from_dead_centre_to_dead_centre(machine):
     assert (back < 0).all()
 
 
-@every(STROKES)
-@pytest.mark.parametrize("outstroke", [True, False])
-def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, outstroke):
-    for inverse in {Mechanism.crank_angles_at, type(machine).crank_angles_at}:
-        check_inverse(machine, outstroke, inverse)
-
-
-def check_inverse(machine, outstroke, inverse):
+@law_of_each((machine, out, searched) for machine in STROKES.values() for out in (True, False) for searched in (0, 1))
+def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, outstroke, searched):
+    inverse = Mechanism.crank_angles_at if searched else type(machine).crank_angles_at
     way = machine.stroke * np.array([0.0, 1e-12, 1e-6, 0.01, 0.3, 0.5, 0.77, 0.999, 1 - 1e-9, 1.0])
     angles = inverse(machine, way, outstroke)
     inner, outer = machine.dead_centres()
@@ -282,8 +278,7 @@ def resized(machine, scale):
     return type(machine)(**{key: value * scale if value and key in lengths else value for key, value in fields.items()})
 
 
-@every(MOVED)
-@pytest.mark.parametrize("scale", [2.0**-1000, 2.0**1000])
+@law_of_each((machine, scale) for machine in MOVED.values() for scale in (2.0**-1000, 2.0**1000))
 def test_size_does_not_matter(machine, scale):
     scaled = resized(machine, scale)
     angle = CrankAngle.of(np.array([0.0, 33.0, 180.0, 271.0]))
@@ -301,14 +296,15 @@ POWERS_OF_A_MOMENT = {**POWERS, "N": -1, "N m": 0, "J": 0, "W": 0}
 """The same where moments stay."""
 
 
-GROWING = [(machine, report) for report in (motion_report, forces_report) for machine in MACHINES.values()]
+REPORTS = [("motion", motion_report), ("forces", forces_report)]
+GROWING = [(machine, *report) for report in REPORTS for machine in MACHINES.values()]
 
 
-@pytest.mark.parametrize(("machine", "report"), few(GROWING, GROWING[len(MACHINES) :: 4]))
-def test_every_answer_grows_with_the_lengths_as_its_unit_says(machine, report):
+@pytest.mark.parametrize(("machine", "command", "report"), few(GROWING, GROWING[len(MACHINES) :: 4]))
+def test_every_answer_grows_with_the_lengths_as_its_unit_says(machine, command, report):
     """Twice as large: the same angles and forces, twice the ways and moments, a quarter of the pressure."""
-    angles = (0.0, 33.0, 118.0, 291.0)
-    parts = [report(loaded(one), angles, None, "si").parts[0] for one in (machine, resized(machine, 2.0))]
+    frame = Frame(command, (0.0, 33.0, 118.0, 291.0), None, "si")
+    parts = [report(loaded(one), frame).parts[0] for one in (machine, resized(machine, 2.0))]
     powers = POWERS if machine.slides else POWERS_OF_A_MOMENT
     small, large = (
         {one.id: (one.unit, one.values) for one in part.columns}

@@ -15,6 +15,7 @@ from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
+from representative import law_of_each
 
 DEGREES = np.linspace(0.0, 360.0, 73)
 DRAWN = {name: one for name, one in MACHINES.items() if one.sketch(CrankAngle.of(0.0)) is not None}
@@ -37,7 +38,7 @@ def test_every_mechanism_of_the_book_is_drawn() -> None:
     assert set(MACHINES) == set(DRAWN)
 
 
-@pytest.mark.parametrize("name", DRAWN)
+@law_of_each(DRAWN)
 def test_the_crank_is_where_the_crank_angle_says(name: str) -> None:
     joints = sketch_of(DRAWN[name])
     turn = np.exp(1j * np.radians(DEGREES))
@@ -45,7 +46,7 @@ def test_the_crank_is_where_the_crank_angle_says(name: str) -> None:
     assert (joints[SHAFT] == 0).all()
 
 
-@pytest.mark.parametrize("name", DRAWN)
+@law_of_each(DRAWN)
 def test_links_are_stiff_unless_something_slides_on_them(name: str) -> None:
     mechanism, joints, sketch = DRAWN[name], sketch_of(DRAWN[name]), whole(DRAWN[name])
     fork = isinstance(mechanism, SlottedLever) and math.isinf(mechanism.link)
@@ -62,7 +63,7 @@ def test_links_are_stiff_unless_something_slides_on_them(name: str) -> None:
         assert np.ptp(abs(joints[fixed])) == 0
 
 
-@pytest.mark.parametrize("name", [name for name, one in DRAWN.items() if one.slides])
+@law_of_each(name for name, one in DRAWN.items() if one.slides)
 def test_the_output_moves_as_x_does(name: str) -> None:
     mechanism, joints, sketch = DRAWN[name], sketch_of(DRAWN[name]), whole(DRAWN[name])
     assert sketch.toward is not None

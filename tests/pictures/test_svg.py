@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -19,7 +19,7 @@ from kurbel.render.html import SHADE as PAGE_SHADE
 from kurbel.render.pictures.drawing import draw_file
 from kurbel.render.pictures.labels import CHARACTER, Box
 from kurbel.render.pictures.layout import scene
-from kurbel.render.pictures.scene import Text, thinned
+from kurbel.render.pictures.scene import Text, levels, thinned
 from kurbel.render.pictures.style import FAINT, GAIN, INK, LOOKS, LOSS, PAPER, css
 from kurbel.render.pictures.svg import svg_file
 from kurbel.report.pictures import Wish, pictures
@@ -184,3 +184,41 @@ def test_a_long_name_takes_several_lines() -> None:
     assert len(lines) == 3
     assert all(len(line) <= 85 for line in lines)
     assert laid.height > scene(picture, Look()).height
+
+
+@pytest.mark.parametrize(
+    ("text", "typeset"),
+    [
+        ("T_max 5.1 kN", ["T", "max", " 5.1 kN"]),
+        ("|M_ν| in N m", ["|M", "ν", "| in N m"]),
+        ("M_f,max 3 N m, 20°", ["M", "f,max", " 3 N m, 20°"]),
+        ("F_x, F_y in kN", ["F", "x", ", F", "y", " in kN"]),
+        ("−P_b", ["−P", "b", ""]),
+        ("Δφ_G", ["Δφ", "G", ""]),
+        ("boiler_house_engine", ["boiler_house_engine"]),
+    ],
+)
+def test_subscripts_stand_lower(text: str, typeset: list[str]) -> None:
+    assert levels(text) == typeset
+
+
+def test_subscripts_of_a_file() -> None:
+    (picture,) = drawn("waterworks", "motion")
+    root = ElementTree.fromstring("".join(svg_file([picture], Look())))
+    spans = {one.text for one in root.iter("{http://www.w3.org/2000/svg}tspan")}
+    assert {"max", "min"} <= spans
+    texts = ["".join(one.itertext()) for one in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert not any("_" in text for text in texts)
+
+
+@pytest.mark.parametrize("name", ["torsional-damper", "generator-coupling", "marine-diesel"])
+def test_names_along_an_axis_stand_inside_and_apart(name: str) -> None:
+    (picture,) = drawn(name, "modes")
+    laid = scene(picture, Look())
+    names = picture.panels[0].x.names
+    found = [one for one in laid.items if isinstance(one, Text) and one.text in names]
+    spans = sorted((one.x - CHARACTER * len(one.text) / 2, one.x + CHARACTER * len(one.text) / 2) for one in found)
+    assert {names[0], names[-1]} <= {one.text for one in found}
+    assert spans[0][0] >= 0
+    assert spans[-1][1] <= laid.width
+    assert all(before[1] <= after[0] for before, after in pairwise(spans))

@@ -9,6 +9,7 @@ import pytest
 from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms.slider_crank import SliderCrank
+from representative import law_of_each
 
 CRANK, LAM, OMEGA = 0.0285, 0.28, math.pi / 30
 # φ, displacement m, velocity m/s, acceleration m/s² as printed, and the exact three
@@ -37,7 +38,7 @@ LAST_DIGIT_OFF = {180}
 """The acceleration at 180° is −0.000225, printed −0.00022."""
 
 
-@pytest.mark.parametrize("row", TABLE, ids=[str(row[0]) for row in TABLE])
+@law_of_each((row,) for row in TABLE)
 def test_exact_motion(row):
     degrees, *_, x, c, b = row
     machine, angle = SliderCrank(CRANK, CRANK / LAM), CrankAngle.of(float(degrees))
@@ -46,7 +47,7 @@ def test_exact_motion(row):
     assert machine.curvature(angle) * OMEGA**2 == pytest.approx(b, rel=5e-6)
 
 
-@pytest.mark.parametrize("row", TABLE, ids=[str(row[0]) for row in TABLE])
+@law_of_each((row,) for row in TABLE)
 def test_printed_table_is_first_order(row):
     degrees, x, c, b, *_ = row
     angle = CrankAngle.of(float(degrees))

@@ -6,6 +6,7 @@ import pytest
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms.slider_crank import SliderCrank
+from representative import law_of_each
 
 RATIOS = (2, 3, 4, 5, 6, 7)
 PRINTED = {
@@ -31,7 +32,7 @@ MISPRINTS = {(45, 6), (120, 3), (135, 3), (135, 4), (150, 3)}
 CASES = [(degrees, ratio, place) for degrees in PRINTED for place, ratio in enumerate(RATIOS)]
 
 
-@pytest.mark.parametrize(("degrees", "ratio", "place"), CASES)
+@law_of_each(CASES)
 def test_rotary_force(degrees, ratio, place):
     machine = SliderCrank(1.0, float(ratio))
     computed = machine.slope(CrankAngle.of(float(degrees)))

@@ -209,7 +209,8 @@ def test_a_linear_load_takes_one_step_of_newton(load: Load | None, monkeypatch: 
         return rate(self, prepared, y)
 
     monkeypatch.setattr(ChainEquation, "rate", counted)
-    assert case.flywheel.elastic.growth < 0
+    growth = case.flywheel.elastic.growth
+    assert growth < 0 if load else abs(growth) < 1e-12  # a constant load neither holds nor drives what turns as a whole
     assert looks[0] == 2 * len(sizes) + 1
 
 

@@ -25,6 +25,7 @@ from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
 from kurbel.solver.cylinder.forces import CylinderForces
 from machines import AT, STEAM_CARD
+from representative import law_of_each
 
 SLIDING: dict[str, Mechanism] = {
     "slider-crank": SliderCrank(0.4, 2.0),
@@ -53,7 +54,7 @@ def solved(mechanism: Mechanism, rpm: float | None = 90, **cylinder: Any) -> Cyl
 
 
 def every(machines: dict[str, Mechanism]) -> Any:
-    return pytest.mark.parametrize("mechanism", machines.values(), ids=machines)
+    return law_of_each(machines.values())
 
 
 @every(SLIDING)

@@ -40,7 +40,7 @@ def note(solved: Case) -> str:
 def test_over_is_what_is_taken_without_it() -> None:
     plain, over = (case(rotation).cylinders[0].at(np.arange(0.0, 360.0, 5.0)) for rotation in ("", "over"))
     assert (plain.N == over.N).all()
-    assert forces_report(case(), Frame("forces", (0.0,), None, "si")).notes == ()
+    assert not tuple(forces_report(case(), Frame("forces", (0.0,), None, "si")).notes)
 
 
 @pytest.mark.parametrize("inclination", [0.0, 30.0, 90.0])
@@ -94,7 +94,7 @@ def test_where_it_lifts() -> None:
 
 
 def test_standing_and_guideless_machines_have_no_lower_guide() -> None:
-    assert forces_report(case("under", inclination="90 deg"), Frame("forces", (0.0,), None, "si")).notes == ()
+    assert not tuple(forces_report(case("under", inclination="90 deg"), Frame("forces", (0.0,), None, "si")).notes)
     assert case("under", inclination="90 deg").cylinders[0].lifted == ()
 
 

@@ -57,7 +57,6 @@ def solved(
 
 
 @cache
-@cache
 def precise_area() -> float:
     """∮ p dx of the smooth pressure, by mpmath."""
 

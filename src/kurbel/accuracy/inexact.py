@@ -8,15 +8,14 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.accuracy.oracle import why_no_motion, why_not
 from kurbel.accuracy.rivals import MOTIONS, summed_excess, trapezoid
 from kurbel.accuracy.textbook import Moved, TextbookCylinder, TextbookMachine
+from kurbel.arrays import Array
 from kurbel.machine import Cylinder, Machine
 from kurbel.solver.cylinder.friction import mean_friction_over_rod_angle, redtenbacher_logarithm, redtenbacher_loss
 
-Array = NDArray[np.float64]
 SHIFT = 0.1
 """Degrees by which a dead centre may be found wrong."""
 NOISE = 0.005

@@ -7,14 +7,13 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.accuracy.given import Given
 from kurbel.accuracy.periodic import SAMPLE_STEP, around
 from kurbel.accuracy.textbook import Moved, TextbookMachine
+from kurbel.arrays import Array
 from kurbel.machine import Machine
 
-Array = NDArray[np.float64]
 OK, BLOW_UP, NEGATIVE, OPEN = "ok", "blow-up", "negative energy", "not periodic"
 _SAME = 1e-9
 """What all further cycles may still change ω by, as a share of its swing, for a line to count as periodic."""

@@ -233,8 +233,8 @@ class CylinderOracle:
             turn, outstroke = 360 * (stroke // 2), stroke % 2 == 0
             corners = {Decimal(0), Decimal(1)} | {z for c in self.chambers for z in c.corners(stroke)}
             found |= {self.motion.angle_at(z, outstroke) + turn for z in corners}
-        angles = _apart(sorted(found | {inner + 360 * self.turns}))
-        return _apart(sorted({*angles, *self._guide_turns(angles)})) if self.friction else angles
+        angles = apart(sorted(found | {inner + 360 * self.turns}))
+        return apart(sorted({*angles, *self._guide_turns(angles)})) if self.friction else angles
 
     def _guide_turns(self, angles: tuple[Decimal, ...]) -> Iterator[Decimal]:
         """Yield the angles at which the guide force changes sides."""
@@ -253,7 +253,7 @@ def sign_changes(function: Any, low: Decimal, high: Decimal, parts: int = 24) ->
             yield root(at, ends[k], ends[k + 1])
 
 
-def _apart(angles: list[Decimal]) -> tuple[Decimal, ...]:
+def apart(angles: list[Decimal]) -> tuple[Decimal, ...]:
     """Leave out angles that differ from their neighbour by rounding only."""
     kept = angles[:1]
     for angle in angles[1:]:

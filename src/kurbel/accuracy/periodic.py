@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.accuracy.decimals import legendre, pi, precise
+from kurbel.accuracy.oracle import apart
 from kurbel.accuracy.references import MachineOracle
 from kurbel.machine import Machine
 
@@ -157,8 +158,7 @@ class SpeedOracle:
     def ends(self) -> list[Decimal]:
         """Return the ends of the elements in degrees: breaks, every 30°, and ever finer after each of them if stiff."""
         steps = {Decimal(angle) for angle in range(0, int(self.effort.cycle) + 1, SAMPLE_STEP)}
-        corners = sorted(steps | set(self.effort.breaks))
-        corners = [a for i, a in enumerate(corners) if not i or a - corners[i - 1] > Decimal("1e-20")]
+        corners = apart(sorted(steps | set(self.effort.breaks)))
         least = min(self.inertia(angle) for angle in corners) * self._omega**2 / 2
         settling = least / abs(self.law().torque(Decimal(1))[1]) * 180 / pi()  # degrees in which K settles to a third
         found = []

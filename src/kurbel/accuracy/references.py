@@ -12,7 +12,7 @@ from functools import cache, cached_property
 from itertools import pairwise
 
 from kurbel.accuracy.decimals import integral, largest, pi, root
-from kurbel.accuracy.oracle import Chamber, CrankMotion, CylinderOracle, Segment, sign_changes
+from kurbel.accuracy.oracle import Chamber, CrankMotion, CylinderOracle, Segment, apart, sign_changes
 from kurbel.machine import Machine
 
 
@@ -117,8 +117,7 @@ class MachineOracle:
             period = 360 * one.turns
             for repeat in range(int(self.cycle) // period):
                 found |= {(angle + position + repeat * period) % self.cycle for angle in own}
-        angles = sorted(angle + self.cycle if angle < 0 else angle for angle in found)
-        return tuple(a for i, a in enumerate(angles) if not i or a - angles[i - 1] > Decimal("1e-20"))
+        return apart(sorted(angle + self.cycle if angle < 0 else angle for angle in found))
 
     @cache  # noqa: B019, an oracle lives for one question, and is asked most pieces twice
     def work(self, low: Decimal, high: Decimal) -> Decimal:

@@ -7,17 +7,16 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.accuracy import marching
 from kurbel.accuracy.periodic import SAMPLE_STEP
 from kurbel.accuracy.textbook import Moved, TextbookCylinder, TextbookMachine
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import CYCLES, Machine
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
-Array = NDArray[np.float64]
 OWN = "kurbel"
 _FULL = (36, 360, 3600, 100_000)
 _QUICK = (36, 360, 3600)

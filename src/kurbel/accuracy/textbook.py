@@ -10,12 +10,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kurbel.accuracy.given import End, Given
+from kurbel.arrays import Array
 from kurbel.machine import Cylinder, Machine
 
-Array = NDArray[np.float64]
 FORMULAS = ("exact", "first-order", "infinite", "printed")
 
 

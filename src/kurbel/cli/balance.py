@@ -21,5 +21,8 @@ def balance(asked: Asked, orders_only: bool) -> None:
     """
     from kurbel.report.balance import balance_report
 
+    rows = {"--columns": asked.columns, "--angles": asked.angles}
+    if orders_only and (given := [option for option, said in rows.items() if said is not None]):
+        raise click.UsageError(f"--orders prints nothing over the crank angle; leave it or {' and '.join(given)} out.")
     case = asked.case()
     asked.write(balance_report(case, asked.frame("balance", case.balance.cycle), orders_only))

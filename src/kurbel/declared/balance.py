@@ -32,9 +32,9 @@ BALANCE_VALUES = (
     _balance("M_roll_min", "M_roll,min", "torque", "Smallest rolling moment on the frame", unless="rolls_as_it_turns"),
     _balance("counterweight_given", "u", "unbalance", "Sum of the given counterweights, mass times radius"),
     _balance("counterweight_best", "u_1", "unbalance", "Counterweight that takes away what turns with the crank"),
-    _balance("counterweight_best_angle", "α_1", "angle", "Its direction from throw 1", "alpha_1"),
+    _balance("counterweight_best_angle", "α_1", "angle", "Its direction from throw 1"),
     _balance("counterweight_least", "u_min", "unbalance", "Counterweight that leaves the least largest free force"),
-    _balance("counterweight_least_angle", "α_min", "angle", "Its direction from throw 1", "alpha_min"),
+    _balance("counterweight_least_angle", "α_min", "angle", "Its direction from throw 1"),
     _balance("share_best", "c_min", "ratio", "Share of the reciprocating mass that it balances"),
     _balance("F_free_best", "F_min", "force", "Largest free force that it leaves"),
     _balance("train_speed", "v_z", "velocity", "Speed of the train"),
@@ -50,14 +50,14 @@ ORDERS = by_id(
     (
         Quantity("order", "n", "ratio", "Turns of the circles in one turn of the crank"),
         Quantity("F_forward", "F_+", "force", "Free force: circle that turns with the crank"),
-        Quantity("F_backward", "F_−", "force", "Free force: circle that turns against it", "F_-"),
+        Quantity("F_backward", "F_−", "force", "Free force: circle that turns against it"),
         Quantity("F_forward_book", "F_+,0", "force", "The same by the acceleration of first order (R 291)"),
-        Quantity("F_backward_book", "F_−,0", "force", "The same by the acceleration of first order (R 291)", "F_-,0"),
+        Quantity("F_backward_book", "F_−,0", "force", "The same by the acceleration of first order (R 291)"),
         Quantity("F_share", "F_n²/F²", "ratio", "Share of the order in the mean square of the free force", "F_n2/F2"),
         Quantity("M_forward", "M_+", "torque", "Free moment: circle that turns with the crank"),
-        Quantity("M_backward", "M_−", "torque", "Free moment: circle that turns against it", "M_-"),
+        Quantity("M_backward", "M_−", "torque", "Free moment: circle that turns against it"),
         Quantity("M_forward_book", "M_+,0", "torque", "The same by the acceleration of first order (R 291)"),
-        Quantity("M_backward_book", "M_−,0", "torque", "The same by the acceleration of first order (R 291)", "M_-,0"),
+        Quantity("M_backward_book", "M_−,0", "torque", "The same by the acceleration of first order (R 291)"),
         Quantity("M_share", "M_n²/M²", "ratio", "Share of the order in the mean square of the free moment", "M_n2/M2"),
     )
 )
@@ -81,7 +81,7 @@ WEIGHTS = by_id(
     (
         Quantity("axial_position", "z", "length", "Place along the shaft"),
         Quantity("product", "u", "unbalance", "Mass times radius"),
-        Quantity("angle", "α", "angle", "Direction at φ = 0 from the stroke line of cylinder 1", "alpha"),
+        Quantity("angle", "α", "angle", "Direction at φ = 0 from the stroke line of cylinder 1"),
         Quantity("hammer_blow", "H", "force", "By how much it loads and lifts its wheel"),
     )
 )

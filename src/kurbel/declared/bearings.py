@@ -44,7 +44,7 @@ _LOAD_COLUMNS = (
 BEARING_COLUMNS = (
     _bearing("load", "F_L", "force", "Load of a rod on its pin, or of the shaft on a main bearing"),
     *(
-        _bearing(f"load_{frame}", f"ε_{index}", "angle", f"Direction of the load {whence}", f"eps_{index}")
+        _bearing(f"load_{frame}", f"ε_{index}", "angle", f"Direction of the load {whence}")
         for frame, index, whence in _LOAD_COLUMNS
     ),
 )
@@ -53,11 +53,11 @@ BEARING_VALUES = (
     _bearing("load_max", "F_L,max", "force", "Largest load"),
     _bearing("load_min", "F_L,min", "force", "Smallest load"),
     _bearing("load_mean", "F_L,m", "force", "Mean load over time"),
-    _bearing("load_high", "F_L,m,½", "force", "Mean load while it exceeds half the largest", "F_L,m,1/2"),
-    _bearing("unloaded_arc", "Δε_Z", "angle", "Arc of the pin or journal that is never loaded", "deps_Z"),
-    _bearing("unloaded_middle", "ε_Z", "angle", "Middle of its widest piece, in the frame of the pin", "eps_Z"),
-    _bearing("unloaded_arc_shell", "Δε_L", "angle", "Arc of the shell that is never loaded", "deps_L"),
-    _bearing("unloaded_middle_shell", "ε_L", "angle", "Middle of its widest piece, in the frame of the shell", "eps_L"),
+    _bearing("load_high", "F_L,m,½", "force", "Mean load while it exceeds half the largest"),
+    _bearing("unloaded_arc", "Δε_Z", "angle", "Arc of the pin or journal that is never loaded"),
+    _bearing("unloaded_middle", "ε_Z", "angle", "Middle of its widest piece, in the frame of the pin"),
+    _bearing("unloaded_arc_shell", "Δε_L", "angle", "Arc of the shell that is never loaded"),
+    _bearing("unloaded_middle_shell", "ε_L", "angle", "Middle of its widest piece, in the frame of the shell"),
     _bearing("pressure_max", "p_L,max", "pressure", "Largest pressure, load over d l"),
     _bearing("pressure_mean", "p_L,m", "pressure", "Mean pressure over time"),
     _bearing("rubbing_speed_max", "v_L,max", "velocity", "Largest speed of one surface on the other"),

@@ -9,16 +9,15 @@ PHI = Quantity(
     "φ",
     "angle",
     "Crank angle from the inner dead centre, in the sense of rotation",
-    "phi",
     commands=("motion", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
 )
 """What these are told over, and so is all else."""
 FACTORS = by_id(
     (
-        Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R", "cos phi + R/L cos 2phi"),
-        Quantity("velocity_factor", "sin(φ+ψ)/cos ψ", "ratio", "c over v, and T over P", "sin(phi+psi)/cos psi"),
+        Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R"),
+        Quantity("velocity_factor", "sin(φ+ψ)/cos ψ", "ratio", "c over v, and T over P"),
         Quantity("displacement_factor", "x/R", "ratio", "x over R"),
-        Quantity("psi", "ψ", "angle", "Angle between connecting rod and stroke line", "psi"),
+        Quantity("psi", "ψ", "angle", "Angle between connecting rod and stroke line"),
         Quantity("rod_force_factor", "S/P", "ratio", "Rod force over piston force, 1/cos ψ (R 300)"),
         Quantity("guide_force_factor", "N/P", "ratio", "Guide force over piston force, tan ψ (R 301)"),
         Quantity("radial_force_factor", "D/P", "ratio", "Radial over piston force, cos(φ+ψ)/cos ψ (R 302)"),

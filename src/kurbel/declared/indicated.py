@@ -13,9 +13,9 @@ _brake = partial(Quantity, commands=("forces", "flywheel"))
 INDICATED_COLUMNS = (
     _chamber("V", "V", "volume", "Volume of the head-end chamber, with its clearance where that is given"),
     _chamber("V_crank", "V_C", "volume", "Volume of the crank-end chamber, with its clearance where that is given"),
-    _chamber("dV", "dV/dφ", "volume_rise", "Change of the volume of the head-end chamber over the angle", "dV/dphi"),
-    _chamber("dp_head", "dp_H/dφ", "pressure_rise", "Rise of the head-end pressure, over 1 deg", "dp_H/dphi"),
-    _chamber("dp_crank", "dp_C/dφ", "pressure_rise", "Rise of the crank-end pressure, over 1 deg", "dp_C/dphi"),
+    _chamber("dV", "dV/dφ", "volume_rise", "Change of the volume of the head-end chamber over the angle"),
+    _chamber("dp_head", "dp_H/dφ", "pressure_rise", "Rise of the head-end pressure, over 1 deg"),
+    _chamber("dp_crank", "dp_C/dφ", "pressure_rise", "Rise of the crank-end pressure, over 1 deg"),
 )
 INDICATED_VALUES = (
     _forces("mean_pressure_gross", "p_i,g", "pressure", "Share of p_i of compression and expansion"),
@@ -23,9 +23,9 @@ INDICATED_VALUES = (
     _forces("V_clearance", "V_c", "volume", "Clearance of the head-end chamber"),
     _forces("n_compression", "n_c", "ratio", "Exponent of p V^n over the compression, 90 to 40 deg before its end"),
     _forces("n_expansion", "n_d", "ratio", "Exponent of p V^n over the expansion, 60 to 100 deg after its start"),
-    _forces("p_rise_max", "dp/dφ_max", "pressure_rise", "Largest rise of pressure over 1 deg of angle", "dp/dphi_max"),
+    _forces("p_rise_max", "dp/dφ_max", "pressure_rise", "Largest rise of pressure over 1 deg of angle"),
     _forces("cycles_measured", "Z", "ratio", "Number of measured cycles, of whose mean the forces are"),
-    _forces("mean_pressure_std", "s_p_i", "pressure", "Standard deviation of p_i over the cycles", "s_p_i"),
+    _forces("mean_pressure_std", "s_p_i", "pressure", "Standard deviation of p_i over the cycles"),
     _forces("mean_pressure_cov", "COV", "ratio", "Coefficient of variation of p_i: standard deviation over mean"),
     _forces("p_max_mean", "p_max,m", "pressure", "Mean of the largest gauge pressures of the cycles", gauge=True),
     _forces("p_max_std", "s_p_max", "pressure", "Standard deviation of the largest pressures of the cycles"),
@@ -33,12 +33,12 @@ INDICATED_VALUES = (
     _forces("cycle_worst", "Z_min", "ratio", "Number of the cycle with the smallest p_i, counted from 1"),
     _brake("mean_pressure_brake", "p_e", "pressure", "Mean effective pressure: brake work over the swept volume"),
     _brake("mean_pressure_friction", "p_r", "pressure", "Friction mean pressure, p_i less p_e"),
-    _brake("eta_m", "η_m", "ratio", "Mechanical efficiency: brake power over indicated power", "eta_m"),
+    _brake("eta_m", "η_m", "ratio", "Mechanical efficiency: brake power over indicated power"),
 )
 CYCLE_VALUES = (
     Quantity("mean_pressure", "p_i", "pressure", "Mean indicated pressure of the cycle"),
     Quantity("p_max", "p_max", "pressure", "Largest gauge pressure of the cycle", gauge=True),
-    Quantity("phi_p_max", "φ_p,max", "angle", "Crank angle of the largest pressure", "phi_p,max"),
-    Quantity("p_rise_max", "dp/dφ_max", "pressure_rise", "Largest rise of pressure over 1 deg", "dp/dphi_max"),
+    Quantity("phi_p_max", "φ_p,max", "angle", "Crank angle of the largest pressure"),
+    Quantity("p_rise_max", "dp/dφ_max", "pressure_rise", "Largest rise of pressure over 1 deg"),
 )
 """Columns of the table of all measured cycles."""

@@ -19,6 +19,8 @@ _motion = partial(Quantity, commands=("motion", "forces"))
 _forces = partial(Quantity, commands=_FORCES)
 _searched = partial(Quantity, commands=_FORCES, extremes=_FORCES)
 _turning = partial(Quantity, commands=(*_FORCES, *_FLYWHEEL))
+_strokes, _both_ways = partial(_motion, unless="equal_strokes"), partial(_forces, unless="works_one_way")
+_guide, _inertia = partial(_forces, after="T_peak"), partial(_forces, after="P_start_min")
 
 
 _COLUMNS = (
@@ -30,7 +32,7 @@ _COLUMNS = (
         "Fraction of the stroke, or of the swing, from the inner dead centre",
         on_request=("motion", "forces"),
     ),
-    _motion("psi", "ψ", "angle", "Angle between connecting rod and stroke line", "psi"),
+    _motion("psi", "ψ", "angle", "Angle between connecting rod and stroke line"),
     _motion(
         "x",
         "x",
@@ -103,9 +105,7 @@ _COLUMNS = (
         peak=True,
     ),
     _forces("p_guide", "p_g", "pressure", "Mean pressure of the crosshead's shoe on its guide, |N| over its area"),
-    _forces(
-        "wear", "f N c", "power", "Work of friction on the guide over time, by which it wears (Redtenbacher)", "f N c"
-    ),
+    _forces("wear", "f N c", "power", "Work of friction on the guide over time, by which it wears (Redtenbacher)"),
     Quantity(
         "D", "D", "force", "Radial force at the crank pin, positive toward the shaft", commands=(*_FORCES, *_STRESS)
     ),
@@ -132,72 +132,42 @@ _COLUMNS = (
 
 _MOTION_VALUES = (
     _motion("stroke", "s", "length", "Stroke"),
-    _motion("phi_idc", "φ_i", "angle", "Crank angle of the inner dead centre", "phi_i"),
-    _motion("phi_odc", "φ_o", "angle", "Crank angle of the outer dead centre", "phi_o"),
-    _motion(
-        "phi_work", "φ_w", "angle", "Crank rotation of the outstroke (working stroke)", "phi_w", unless="equal_strokes"
-    ),
-    _motion("phi_return", "φ_r", "angle", "Crank rotation of the return stroke", "phi_r", unless="equal_strokes"),
-    _motion(
-        "time_ratio",
-        "t_w/t_r",
-        "ratio",
-        "Time of the outstroke (working stroke) over that of the return stroke",
-        unless="equal_strokes",
-    ),
+    _motion("phi_idc", "φ_i", "angle", "Crank angle of the inner dead centre"),
+    _motion("phi_odc", "φ_o", "angle", "Crank angle of the outer dead centre"),
+    _strokes("phi_work", "φ_w", "angle", "Crank rotation of the outstroke (working stroke)"),
+    _strokes("phi_return", "φ_r", "angle", "Crank rotation of the return stroke"),
+    _strokes("time_ratio", "t_w/t_r", "ratio", "Time of the outstroke (working stroke) over that of the return stroke"),
     _motion("v", "v", "velocity", "Crank-pin speed"),
     _motion("c_m", "c_m", "velocity", "Mean piston speed 2 s n (R 290)"),
-    _motion("c_work_m", "c_a,m", "velocity", "Mean speed of the outstroke (of work, R p. 617)", unless="equal_strokes"),
-    _motion("c_return_m", "c_r,m", "velocity", "Mean speed of the return stroke (R p. 617)", unless="equal_strokes"),
+    _strokes("c_work_m", "c_a,m", "velocity", "Mean speed of the outstroke (of work, R p. 617)"),
+    _strokes("c_return_m", "c_r,m", "velocity", "Mean speed of the return stroke (R p. 617)"),
     _motion("c_max", "c_max", "velocity", "Largest velocity on the outstroke"),
     _motion("c_min", "c_min", "velocity", "Largest velocity on the return stroke, negative", unless="has_no_c_min"),
     _motion("c_work_max", "c_a,max", "velocity", "Largest speed of the working stroke (R 304)"),
     _motion("c_return_max", "c_r,max", "velocity", "Largest speed of the return stroke (R 305)"),
     _motion("b_max", "b_max", "acceleration", "Largest acceleration"),
     _motion("b_min", "b_min", "acceleration", "Smallest acceleration: the largest deceleration, negative"),
-    _motion(
-        "phi_b_zero", "φ_b=0", "angle", "Crank angles at which the acceleration passes zero", "phi_b=0", listed=True
-    ),
+    _motion("phi_b_zero", "φ_b=0", "angle", "Crank angles at which the acceleration passes zero", listed=True),
 )
 _CYLINDER_VALUES = (
     _forces("A_head", "A_H", "area", "Piston area at the head end"),
     _forces("A_crank", "A_C", "area", "Piston area at the crank end"),
     _forces("p_max", "p_max", "pressure", "Largest gauge pressure in the cylinder's own piston", gauge=True),
-    _forces(
-        "p_guide_max", "p_g,max", "pressure", "Largest pressure of the crosshead's shoe on its guide", after="T_peak"
-    ),
-    _forces(
-        "p_guide_mean", "p_g,m", "pressure", "Mean over the way of the shoe's pressure on its guide", after="T_peak"
-    ),
-    _forces("wear_max", "f N c_max", "power", "Largest value of the wear line of the guide", after="T_peak"),
-    _forces("wear_mean", "f N c_m", "power", "Mean of the wear line: power lost on the guide", after="T_peak"),
+    _guide("p_guide_max", "p_g,max", "pressure", "Largest pressure of the crosshead's shoe on its guide"),
+    _guide("p_guide_mean", "p_g,m", "pressure", "Mean over the way of the shoe's pressure on its guide"),
+    _guide("wear_max", "f N c_max", "power", "Largest value of the wear line of the guide"),
+    _guide("wear_mean", "f N c_m", "power", "Mean of the wear line: power lost on the guide"),
     _forces("m", "m", "mass", "Reciprocating mass with its share of the connecting rod"),
-    _forces("P_inertia_max", "P_b,max", "force", "Largest inertia force toward the shaft", after="P_start_min"),
-    _forces(
-        "P_inertia_min", "P_b,min", "force", "Largest inertia force away from the shaft, negative", after="P_start_min"
-    ),
+    _inertia("P_inertia_max", "P_b,max", "force", "Largest inertia force toward the shaft"),
+    _inertia("P_inertia_min", "P_b,min", "force", "Largest inertia force away from the shaft, negative"),
 )
 _WORK_VALUES = (
     _forces(
-        "phi_reversal",
-        "φ_P=0",
-        "angle",
-        "Druckwechsel: crank angles at which the piston force turns over",
-        "phi_P=0",
-        listed=True,
+        "phi_reversal", "φ_P=0", "angle", "Druckwechsel: crank angles at which the piston force turns over", listed=True
     ),
     _forces("work", "A_i", "energy", "Indicated work of all pistons of the rod per cycle"),
-    _forces(
-        "work_driving", "A_i+", "energy", "Indicated work of the driving pistons per cycle", unless="works_one_way"
-    ),
-    _forces(
-        "work_driven",
-        "A_i−",
-        "energy",
-        "Indicated work of the driven pistons per cycle, negative",
-        "A_i-",
-        unless="works_one_way",
-    ),
+    _both_ways("work_driving", "A_i+", "energy", "Indicated work of the driving pistons per cycle"),
+    _both_ways("work_driven", "A_i−", "energy", "Indicated work of the driven pistons per cycle, negative"),
     _forces("resistance_work", "A_r", "energy", "Work per cycle of what the ram or rocker works against, negative"),
     _forces("power", "N_i", "power", "Indicated power"),
     _forces("mean_pressure", "p_i", "pressure", "Mean indicated pressure of the cylinder's own piston"),
@@ -221,12 +191,7 @@ _WORK_VALUES = (
     _forces("loss_rings", "e_R", "ratio", "Work lost at the piston rings over that of the driving pistons"),
     *PIN_LOSSES,
     _forces(
-        "energy_residual",
-        "ΔA/A",
-        "ratio",
-        "Energy in minus energy out by an independent quadrature",
-        "dA/A",
-        residual=True,
+        "energy_residual", "ΔA/A", "ratio", "Energy in minus energy out by an independent quadrature", residual=True
     ),
     *EFFORT_VALUES,
 )

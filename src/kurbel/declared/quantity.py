@@ -7,6 +7,13 @@ NOISE_POWER = -14
 """A residual below this power of ten is rounding, another on every processor."""
 
 
+GREEK = {
+    "φ": "phi", "ψ": "psi", "θ": "theta", "Θ": "Theta", "ω": "omega", "δ": "delta", "Δ": "d", "λ": "lambda", "μ": "mu",
+    "ν": "nu", "η": "eta", "π": "pi", "ρ": "rho", "ε": "eps", "γ": "gamma", "α": "alpha", "β": "beta", "κ": "kappa",
+    "σ": "sigma", "τ": "tau", "Σ": "sum ", "½": "1/2", "−": "-", "\u0307": "_dot", "\u0308": "_ddot",
+}  # fmt: skip
+"""Sign of a symbol -> what stands for it where the output has no Greek letters."""
+_PLAIN = str.maketrans(GREEK)
 _EXTREME_TEXTS = {"largest": "Largest", "smallest": "Smallest", "peak": "Largest magnitude of"}
 """Part of the extremes of a column -> the first words of its sentence."""
 
@@ -14,10 +21,11 @@ _EXTREME_TEXTS = {"largest": "Largest", "smallest": "Smallest", "peak": "Largest
 class Quantity(NamedTuple):
     """One printed quantity; the order in which quantities are declared is that in which they are printed.
 
-    `id` stands in JSON and CSV, `symbol` over the printed table (`plain` where the output has no Greek letters),
-    `kind` decides the unit (see `units`), and `text` says in one sentence what it is. `commands` print it, as far as
-    the machine has it; the results of a command answer it by the attribute of its id, or where they have it, by what it
-    `asks`: the name of a method, its argument, and which part of its answer.
+    `id` stands in JSON and CSV, `symbol` over the printed table (`plain` where the output has no Greek letters, if it
+    is more than what stands for each of them), `kind` decides the unit (see `units`), and `text` says in one sentence
+    what it is. `commands` print it, as far as the machine has it; the results of a command answer it by the attribute
+    of its id, or where they have it, by what it `asks`: the name of a method, its argument, and which part of its
+    answer.
     `extremes`: of a column, the commands that print its largest and smallest value as key values `<id>_max` and
     `<id>_min`; `called` names it in their sentences.
     `unless`: where the results say that this is so, it says nothing new and is printed only if it is asked for.
@@ -56,7 +64,7 @@ class Quantity(NamedTuple):
     @property
     def ascii_symbol(self) -> str:
         """The symbol for an output that cannot show Greek letters."""
-        return self.plain or self.symbol
+        return self.plain or self.symbol.translate(_PLAIN)
 
     def is_noise(self, value: float) -> bool:
         """Whether this value is a residual of rounding alone."""

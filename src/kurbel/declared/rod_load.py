@@ -7,6 +7,7 @@ from functools import partial
 from kurbel.declared.quantity import Quantity
 
 _rod = partial(Quantity, commands=("forces",), unless="no_compressor")
+_reversal = partial(_rod, wanted_large=True)
 
 ROD_COLUMNS = (
     _rod(
@@ -36,30 +37,19 @@ ROD_VALUES = (
         "φ_G=0",
         "angle",
         "Crank angles at which the rod load at the crosshead pin reverses",
-        "phi_G=0",
         listed=True,
     ),
-    _rod(
+    _reversal(
         "reversal_angle",
         "Δφ_G",
         "angle",
         "Crank angle per cycle of a reversed rod load: pressed or pulled, whichever is less; a bound is the least",
-        "dphi_G",
-        wanted_large=True,
     ),
-    _rod(
-        "reversal_longest",
-        "Δφ_G,1",
-        "angle",
-        "The longest stretch of it; a bound is the least",
-        "dphi_G,1",
-        wanted_large=True,
-    ),
-    _rod(
+    _reversal("reversal_longest", "Δφ_G,1", "angle", "The longest stretch of it; a bound is the least"),
+    _reversal(
         "reversal_ratio",
         "P_G,min/max",
         "ratio",
         "Smaller over larger peak of the rod load, pressed and pulled; a bound is the least",
-        wanted_large=True,
     ),
 )

@@ -35,10 +35,8 @@ def _each(
     """
     for part in parts:
         index, called = SHAFT_PARTS[part]
-        own = symbol.replace("*", index)
-        plain = own.replace("σ", "sigma")
         asks = (method, argument or part, answer) if method else ()
-        yield _stress(id.replace("*", part), own, kind, text.replace("*", called), plain, asks=asks)
+        yield _stress(id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called), asks=asks)
 
 
 STRENGTH_COLUMNS = (
@@ -111,17 +109,13 @@ STRENGTH_VALUES = (
 STRESSES = by_id(
     (
         Quantity(
-            "compression",
-            "σ_c",
-            "stress",
-            "Compression of a web by the force along it, negative where it is pulled",
-            "sigma_c",
+            "compression", "σ_c", "stress", "Compression of a web by the force along it, negative where it is pulled"
         ),
-        Quantity("bending_in_plane", "σ_b1", "stress", "Bending in the plane of the throw", "sigma_b1"),
-        Quantity("bending_out_of_plane", "σ_b2", "stress", "Bending square to the plane of the throw", "sigma_b2"),
-        Quantity("torsion", "τ", "stress", "Torsion", "tau"),
-        Quantity("combined", "σ_res", "stress", "Combined stress 0.35 σ + 0.65 √(σ² + 4(α₀τ)²) (Bach)", "sigma_res"),
-        Quantity("von_mises", "σ_v", "stress", "Equivalent stress √(σ² + 3τ²) (von Mises)", "sigma_v"),
+        Quantity("bending_in_plane", "σ_b1", "stress", "Bending in the plane of the throw"),
+        Quantity("bending_out_of_plane", "σ_b2", "stress", "Bending square to the plane of the throw"),
+        Quantity("torsion", "τ", "stress", "Torsion"),
+        Quantity("combined", "σ_res", "stress", "Combined stress 0.35 σ + 0.65 √(σ² + 4(α₀τ)²) (Bach)"),
+        Quantity("von_mises", "σ_v", "stress", "Equivalent stress √(σ² + 3τ²) (von Mises)"),
     )
 )
 """Stresses at one place of a crankshaft, by id."""

@@ -7,30 +7,22 @@ from functools import partial
 from kurbel.declared.quantity import Quantity, by_id
 
 _torsion = partial(Quantity, commands=("torsion",))
+_harmonics = partial(Quantity, commands=("harmonics",))
 
 TORSION_COLUMNS = (
     _torsion("M_shaft", "M_w", "torque", "Torque in the piece of shaft, mean and vibration"),
-    _torsion("tau", "τ", "stress", "Torsional stress where the piece is thinnest", "tau"),
+    _torsion("tau", "τ", "stress", "Torsional stress where the piece is thinnest"),
 )
 
 HARMONIC_VALUES = (
-    Quantity(
+    _harmonics(
         "orders_share",
         "Σ|M_ν|²/2",
         "ratio",
         "Share of the mean square of the torque about its mean that these orders carry (Parseval)",
         "sum M_nu2/2",
-        commands=("harmonics",),
     ),
-    Quantity(
-        "major_orders",
-        "ν_H",
-        "ratio",
-        "Major orders, in which all cranks pull together",
-        "nu_H",
-        commands=("harmonics",),
-        listed=True,
-    ),
+    _harmonics("major_orders", "ν_H", "ratio", "Major orders, in which all cranks pull together", listed=True),
 )
 
 TORSION_VALUES = (
@@ -44,21 +36,21 @@ TORSION_VALUES = (
         residual=True,
     ),
     _torsion("M_vibratory", "M_w,a", "torque", "Largest vibratory torque of any piece, half of what it swings"),
-    _torsion("tau_vibratory", "τ_a", "stress", "Largest vibratory stress of any piece", "tau_a"),
+    _torsion("tau_vibratory", "τ_a", "stress", "Largest vibratory stress of any piece"),
     _torsion("vibration_loss", "N_d", "power", "Mean power that the damping takes"),
 )
 
 TORQUE_ORDERS = by_id(
     (
         Quantity("speed", "n", "speed", "Speed of rotation"),
-        Quantity("order", "ν", "ratio", "Order: periods per turn of the shaft", "nu"),
-        Quantity("M_cos", "a_ν", "torque", "Factor of cos νφ", "a_nu"),
-        Quantity("M_sin", "b_ν", "torque", "Factor of sin νφ", "b_nu"),
-        Quantity("M_amplitude", "|M_ν|", "torque", "Amplitude of the order", "|M_nu|"),
-        Quantity("M_phase", "ε_ν", "angle", "Phase: the order is |M_ν| cos(νφ − ε_ν)", "eps_nu"),
+        Quantity("order", "ν", "ratio", "Order: periods per turn of the shaft"),
+        Quantity("M_cos", "a_ν", "torque", "Factor of cos νφ"),
+        Quantity("M_sin", "b_ν", "torque", "Factor of sin νφ"),
+        Quantity("M_amplitude", "|M_ν|", "torque", "Amplitude of the order"),
+        Quantity("M_phase", "ε_ν", "angle", "Phase: the order is |M_ν| cos(νφ − ε_ν)"),
         Quantity("M_gas", "|M_g|", "torque", "Amplitude of what does not depend on the speed"),
         Quantity("M_inertia", "|M_b|", "torque", "Amplitude of the inertia forces, which goes with the square of ω"),
-        Quantity("t_order", "t_ν", "pressure", "Tangential-pressure coefficient |M_ν|/(R A)", "t_nu"),
+        Quantity("t_order", "t_ν", "pressure", "Tangential-pressure coefficient |M_ν|/(R A)"),
     )
 )
 """Of one order of a torque, by id."""
@@ -67,7 +59,7 @@ MODES = by_id(
     (
         Quantity("mode", "i", "ratio", "Number of the mode; 0 is the rotation of the whole"),
         Quantity("frequency", "f", "frequency", "Natural frequency"),
-        Quantity("omega_natural", "ω_e", "angular_velocity", "Natural angular frequency", "omega_e"),
+        Quantity("omega_natural", "ω_e", "angular_velocity", "Natural angular frequency"),
     )
 )
 """Of one natural vibration, by id."""
@@ -78,8 +70,8 @@ PIECES = by_id(
         Quantity("M_shaft_max", "M_w,max", "torque", "Largest torque in the piece, all orders together"),
         Quantity("M_shaft_min", "M_w,min", "torque", "Smallest torque in the piece"),
         Quantity("M_vibratory", "M_w,a", "torque", "Vibratory torque: half of what it swings"),
-        Quantity("tau_mean", "τ_m", "stress", "Stress of the mean torque where the piece is thinnest", "tau_m"),
-        Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress: half of what it swings", "tau_a"),
+        Quantity("tau_mean", "τ_m", "stress", "Stress of the mean torque where the piece is thinnest"),
+        Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress: half of what it swings"),
     )
 )
 """Of one piece of shaft at the working speed, by id."""
@@ -90,9 +82,9 @@ CRITICAL_SPEEDS = by_id(
         MODES["mode"],
         Quantity("speed", "n_k", "speed", "Critical speed, at which the order meets the mode"),
         Quantity("phase_sum", "|ΣΘ|", "ratio", "Sum of the phase vectors of the cranks, Θ as in Holzer's table"),
-        Quantity("distance", "Δn/n", "ratio", "Distance from the working speed, over that", "dn/n"),
+        Quantity("distance", "Δn/n", "ratio", "Distance from the working speed, over that"),
         Quantity("M_vibratory", "M_w,a", "torque", "Largest vibratory torque of any piece when running there"),
-        Quantity("tau_vibratory", "τ_a", "stress", "Largest vibratory stress of any piece when running there", "tau_a"),
+        Quantity("tau_vibratory", "τ_a", "stress", "Largest vibratory stress of any piece when running there"),
     )
 )
 """Of one critical speed, by id."""
@@ -100,11 +92,11 @@ CRITICAL_SPEEDS = by_id(
 HOLZER = by_id(
     (
         Quantity("inertia", "J", "inertia", "Moment of inertia of the mass"),
-        Quantity("theta", "Θ", "ratio", "Amplitude of the mass, over that of the first", "Theta"),
+        Quantity("theta", "Θ", "ratio", "Amplitude of the mass, over that of the first"),
         Quantity("inertia_torque", "ω²JΘ", "torque", "Torque of the mass per radian of the first", "w2 J Theta"),
         Quantity("torque_sum", "Σω²JΘ", "torque", "Torque in the piece behind the mass per radian", "sum"),
         Quantity("stiffness", "k", "stiffness", "Stiffness of the piece behind the mass"),
-        Quantity("twist", "ΔΘ", "ratio", "Twist of the piece behind the mass", "dTheta"),
+        Quantity("twist", "ΔΘ", "ratio", "Twist of the piece behind the mass"),
     )
 )
 """Of one mass in Holzer's table, by id."""
@@ -113,7 +105,7 @@ SPEEDS = by_id(
     (
         Quantity("speed", "n", "speed", "Speed of rotation"),
         Quantity("M_vibratory", "M_w,a", "torque", "Vibratory torque in the piece at that speed"),
-        Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress in the piece at that speed", "tau_a"),
+        Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress in the piece at that speed"),
     )
 )
 """Of one piece at one speed, by id."""

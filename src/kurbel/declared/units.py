@@ -221,6 +221,10 @@ def _known_text(kind: str) -> str:
 
 def _unit_hint(unit: str, kind: str) -> str:
     name = _normal(unit)
+    if kind == "length" and re.fullmatch(r"(ft|') ?[0-9].*", name):
+        return "; write feet and inches in one unit, such as '90 in' for 7 ft 6 in"
+    if kind == "spring":
+        return "; it is height over pressure: a spring of 60 lb per inch is '1/60 in/psi'"
     if number := NUMBER.match(name):
         return f"; write the unit alone, without {number.group()}"
     if name in ("barg", "bara", "atu", "atü", "ata", "psig", "psia"):

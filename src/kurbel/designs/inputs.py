@@ -62,6 +62,8 @@ def read_input(text: str) -> Input:
         raise _refused(
             text, f"no distribution '{shown(call[1])}'; known are normal(mean, deviation), uniform(least, most)"
         )
+    if ".." in values:
+        raise _refused(text, "a range is first:last:step, such as 140:160:5 mm")
     if ":" in values and "," not in values and NUMBER.match(values):
         return Input(key, _range(text, values))
     return Input(key, _with_unit([part.strip() for part in values.split(",")], text))

@@ -115,7 +115,8 @@ class Sweep:
 
     def _input_head(self, number: int, one: Input) -> Head:
         kind = kind_of_form(self._binder.form(number))
-        return Head(one.key, shown_unit(kind, self.spec.system, 0.0) if kind else "", True, kind)
+        first = _in_base(self.plan.texts(0)[number], kind) or 0.0
+        return Head(one.key, shown_unit(kind, self.spec.system, first) if kind else "", True, kind)
 
     def _has_angle(self, one: Answer) -> bool:
         return self.spec.with_angles and bool(one.quantity.asks[:1] == ("extremes_of",) or one.quantity.id in _AT)
@@ -158,13 +159,8 @@ class Sweep:
 
     def _input_value(self, number: int, text: str) -> Any:
         head = self.heads[number]
-        if not head.kind:
-            return text
-        try:
-            value = parse_ratio(text) if head.kind == "ratio" else parse_quantity(text, head.kind)
-        except KurbelError:  # a word, or what the row fails for
-            return text
-        return convert(value, head.kind, head.unit) + 0.0
+        value = _in_base(text, head.kind)
+        return text if value is None else convert(value, head.kind, head.unit) + 0.0
 
     def _values(self, found: Sequence[Sequence[Any]]) -> Iterable[tuple[Any, ...]]:
         """Return what stands under the heads of the answers, row by row, of the answers (rows, asked) in SI."""
@@ -196,6 +192,16 @@ class Sweep:
 
 
 _AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")
+
+
+def _in_base(text: str, kind: str) -> float | None:
+    """Return the value of a text in the base of its kind; None for a word, or what a row fails for."""
+    if not kind:
+        return None
+    try:
+        return parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
+    except KurbelError:
+        return None
 
 
 def kind_of_form(form: Any) -> str:

@@ -81,18 +81,12 @@ class Flywheel(Described):
     }
 
     @classmethod
-    def of_keys(
-        cls,
-        inertia: float | None = None,
-        gd2: float | None = None,
-        mass: float | None = None,
-        radius_of_gyration: float | None = None,
-        **others: Any,
-    ) -> Flywheel:
+    def of_keys(cls, **keys: Any) -> Flywheel:
         """Return the flywheel with J = inertia, GD²/4 or m k²."""
-        if mass is not None and radius_of_gyration is not None:
-            return cls(mass * radius_of_gyration**2, **others)
-        return cls(gd2 / 4 if gd2 is not None else inertia, **others)
+        mass, radius, gd2 = (keys.pop(name, None) for name in ("mass", "radius_of_gyration", "gd2"))
+        if gd2 is not None:
+            keys["inertia"] = gd2 / 4
+        return cls(**keys) if mass is None else cls(mass * radius**2, **keys)
 
     def __post_init__(self) -> None:
         if self.inertia is None and self.fluctuation is None:

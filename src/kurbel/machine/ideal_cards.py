@@ -184,6 +184,10 @@ class _Engine(Described):
         keys.setdefault("expansion_exponent", keys.get("exponent", AIR_EXPONENT))
         return super().of_keys(clearance=clearance or 1 / (compression_ratio - 1), **keys)
 
+    def __post_init__(self) -> None:
+        if self.peak is not None:
+            refuse(*_order_fault("peak", self.peak, "intake", self.intake))
+
     @property
     def cycles(self) -> tuple[str, ...]:
         """Both; with an exhaust stroke the four-stroke cycle alone."""
@@ -220,9 +224,6 @@ class Otto(_Engine):
 
     KEYS: ClassVar[Keys] = {**_ENGINE_KEYS, "peak": _pressure("Largest pressure, after combustion")}
 
-    def __post_init__(self) -> None:
-        refuse(*_order_fault("peak", self.peak, "intake", self.intake))
-
 
 @dataclass(frozen=True, eq=False)
 class Diesel(_Engine):
@@ -245,10 +246,6 @@ class Diesel(_Engine):
         "cut_off": Key(Number(above=0, below=1), "Fraction of the stroke at which injection ends", required=True),
         "peak": _pressure("Pressure of injection, reached at constant volume", False, "that at the end of compression"),
     }
-
-    def __post_init__(self) -> None:
-        if self.peak is not None:
-            refuse(*_order_fault("peak", self.peak, "intake", self.intake))
 
 
 def _no_exhaust_stroke(exhaust: float | None, cycle: str) -> str:

@@ -195,7 +195,7 @@ def _order_faults(name: str, points: list[Point], whole: float) -> list[Fault]:
     low, high = (along[0], along[-1]) if forward else (along[-1], along[0])
     if (low, high) != (0.0, whole):
         own = "0 is this chamber's own dead centre, where it is smallest"
-        reach = f"the line must reach from {word}0 to {whole:g}{unit}; it runs from {low:g} to {high:g}; {own}"
+        reach = f"the line must reach from {word}0 to {whole:g}{unit}; it runs from {low:g} to {high:g}{unit}; {own}"
         return [Fault((name,), reach)]
     for i in range(1, len(points)):
         if (along[i] < along[i - 1]) if forward else (along[i] > along[i - 1]):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.forms import Number, Points, UnitName, not_negative, positive
@@ -88,16 +88,9 @@ class Load(Described):
     }
 
     @classmethod
-    def of_keys(
-        cls,
-        power_law: float | None = None,
-        slip: float | None = None,
-        unit: Factor | None = None,
-        points: list[Point] | None = None,
-    ) -> Load:
+    def of_keys(cls, power_law: float | None = None, slip: float | None = None, **points: Any) -> Load:
         """Return the load that these keys of a machine file describe; raises RuleError."""
-        diagram = None if unit is None or points is None else Effort.of_points(unit, points)
-        return cls(power_law, slip, diagram)
+        return cls(power_law, slip, Effort.of_points(**points) if points else None)
 
     def __post_init__(self) -> None:
         forms = {"power_law": self.power, "slip": self.slip, "points": self.diagram}

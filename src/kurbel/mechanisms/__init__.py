@@ -55,7 +55,7 @@ def own_force(id: str, symbol: str, kind: str, text: str, called: str, after: st
     return Quantity(id, symbol, kind, text, "", ("forces",), ("forces",), called, after=after)
 
 
-def turning_column(id: str, symbol: str, plain: str, kind: str, text: str, after: str) -> Quantity:
+def turning_column(id: str, symbol: str, kind: str, text: str, after: str, plain: str = "") -> Quantity:
     """Declare a column that tells how the rod turns, on request."""
     both = ("motion", "forces")
     return Quantity(id, symbol, kind, text, plain, both, after=after, on_request=both)

@@ -24,14 +24,14 @@ from kurbel.numerics.extreme import Extreme
 
 def _transmission(id: str, end: str, text: str) -> KeyOffer:
     return KeyOffer(
-        Quantity(id, f"μ_{end}", "angle", text, f"mu_{end}", ("motion", "forces"), after="theta_ddot_min"),
+        Quantity(id, f"μ_{end}", "angle", text, commands=("motion", "forces"), after="theta_ddot_min"),
         lambda four_bar, _: four_bar.transmission[0 if end == "min" else 1],
     )
 
 
 def _coupler_column(end: str, symbol: str, kind: str, text: str) -> Quantity:
     plain = f"theta_K{end}"
-    return turning_column(f"theta_coupler{end}", symbol, plain, kind, f"{text} of the coupler", "theta_ddot")
+    return turning_column(f"theta_coupler{end}", symbol, kind, f"{text} of the coupler", "theta_ddot", plain)
 
 
 COUPLER_OFFERS = turning_offers(

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle
 
 
+_CALLED = "force on each of the two guides of a yoke"
+_N_PAIR = own_force("N_pair", "N_2", "force", f"{_CALLED.capitalize()}, opposite to one another", _CALLED)
+
+
 @dataclass(frozen=True, eq=False)
 class ScotchYoke(Mechanism):
     """A crank pin whose block slides in a yoke square to the stroke line.
@@ -46,17 +50,7 @@ class ScotchYoke(Mechanism):
     }
     OFFERS: ClassVar[tuple[Offer, ...]] = (
         *BLOCK_OFFERS,
-        Offer(
-            own_force(
-                "N_pair",
-                "N_2",
-                "force",
-                "Force on each of the two guides of a yoke, opposite to one another",
-                "force on each of the two guides of a yoke",
-            ),
-            lambda yoke, angle: yoke.guide_pair_factor(angle),
-            ("along_rod",),
-        ),
+        Offer(_N_PAIR, lambda yoke, angle: yoke.guide_pair_factor(angle), ("along_rod",)),
     )
     # R p. 617: up to 200 kgf/cm²
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (pin_pressure(bound=200 * 98066.5),)

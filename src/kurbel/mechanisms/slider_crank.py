@@ -51,12 +51,12 @@ ROD_OFFERS = (
         ("omega", "omega"),
     ),
     Offer(
-        turning_column("psi_dot", "ψ̇", "psi_dot", "angular_velocity", "Angular velocity of the rod, dψ/dt", "b"),
+        turning_column("psi_dot", "ψ̇", "angular_velocity", "Angular velocity of the rod, dψ/dt", "b"),
         lambda one, angle: -one.coupler_at(angle).slope,
         ("omega",),
     ),
     Offer(
-        turning_column("psi_ddot", "ψ̈", "psi_ddot", "angular_acceleration", "Angular acceleration of the rod", "b"),
+        turning_column("psi_ddot", "ψ̈", "angular_acceleration", "Angular acceleration of the rod", "b"),
         lambda one, angle: -one.coupler_at(angle).curvature,
         ("omega", "omega"),
     ),

@@ -23,7 +23,7 @@ _OF = "of the swinging member"
 def _column(id: str, symbol: str, kind: str, text: str, called: str = "") -> Quantity:
     # in forces the place of what slides is told by x
     searched = ("motion",) if called else ()
-    return Quantity(id, symbol, kind, text, id, _BOTH, searched, called, unless="slides", after="b")
+    return Quantity(id, symbol, kind, text, "", _BOTH, searched, called, unless="slides", after="b")
 
 
 def turning_offers(method: str, angle: Quantity, velocity: Quantity, acceleration: Quantity) -> tuple[Offer, ...]:
@@ -53,8 +53,7 @@ def _ends(mechanism: Any) -> list[Extreme]:
 
 
 def _value(id: str, symbol: str, text: str, value: Callable[[Any], Any]) -> KeyOffer:
-    plain = symbol.replace("θ", "theta")
-    return KeyOffer(Quantity(id, symbol, "angle", text, plain, _BOTH, after="stroke"), lambda one, _: value(one))
+    return KeyOffer(Quantity(id, symbol, "angle", text, "", _BOTH, after="stroke"), lambda one, _: value(one))
 
 
 SWING_VALUES = (

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from kurbel.crank_angle import CrankAngle
 
 
+_TEXT, _CALLED = "Bending moment of N on the piston rod at its stuffing box", "bending moment of N on the piston rod"
+_M_BEND = own_force("M_bend", "M_b", "torque", _TEXT, _CALLED)
+
+
 @dataclass(frozen=True, eq=False)
 class YokeFrame(SliderCrank):
     """A slider-crank whose crosshead pin is held by the piston rod alone.
@@ -32,17 +36,7 @@ class YokeFrame(SliderCrank):
     guided: ClassVar[bool] = False
     OFFERS: ClassVar[tuple[Offer, ...]] = (
         *SliderCrank.OFFERS,
-        Offer(
-            own_force(
-                "M_bend",
-                "M_b",
-                "torque",
-                "Bending moment of N on the piston rod at its stuffing box",
-                "bending moment of N on the piston rod",
-            ),
-            lambda drive, angle: drive.bending_arm(angle),
-            ("N",),
-        ),
+        Offer(_M_BEND, lambda drive, angle: drive.bending_arm(angle), ("N",)),
     )
     KEYS: ClassVar[Keys] = {
         **SliderCrank.KEYS,

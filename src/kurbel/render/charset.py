@@ -2,15 +2,15 @@
 
 from typing import NamedTuple
 
+from kurbel.declared.quantity import GREEK
+
 _ASCII = {
-    "σ": "sigma", "τ": "tau", "Σ": "sum ", "₀": "0",
-    "φ": "phi", "ψ": "psi", "θ": "theta", "ω": "omega", "δ": "delta", "λ": "lambda", "μ": "mu", "η": "eta", "π": "pi",
-    "ρ": "rho", "ε": "eps", "γ": "gamma", "α": "alpha", "β": "beta", "κ": "kappa", "Δ": "d", "∮": "integral ",
+    **GREEK, "∮": "integral ", "₀": "0",
     "√": "sqrt", "∞": "inf",
-    "²": "^2", "³": "^3", "½": "1/2", "¼": "1/4", "⅔": "2/3", "·": "*", "×": "x", "−": "-", "–": "-", "—": "-",
+    "²": "^2", "³": "^3", "¼": "1/4", "⅔": "2/3", "·": "*", "×": "x", "–": "-", "—": "-",
     "±": "+-", "≤": "<=", "≥": ">=", "≈": "~", "≠": "!=", "→": "->", "…": "...", "°": " deg", "′": "'", "″": '"',
     "‘": "'", "’": "'", "“": '"', "”": '"', "„": '"', "─": "-", "│": "|", "═": "=", "µ": "u", "‰": "1/1000",
-    "ä": "ae", "ö": "oe", "ü": "ue", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue", "ß": "ss", "\u0307": "_dot", "\u0308": "_ddot",
+    "ä": "ae", "ö": "oe", "ü": "ue", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue", "ß": "ss",
 }  # fmt: skip
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _CONTROL = dict.fromkeys((*range(32), *range(127, 160)), "�")
@@ -53,10 +53,10 @@ class Charset(NamedTuple):
             printed = unit
         return f"{self._power(exponent)} {printed}".strip() if exponent else printed
 
-    def times_power(self, exponent: int) -> str:
-        """Return what follows a number that is counted in a power of ten: `·10⁶`, or `e6`."""
+    def counted(self, number: str, exponent: int) -> str:
+        """Return a number that is counted in a power of ten: `2.4·10⁶`, or `2.4e6`."""
         printed = "·" + self._power(exponent)
-        return printed if self.has(printed) else f"e{exponent}"
+        return f"{number}{printed if self.has(printed) else f'e{exponent}'}" if exponent else number
 
     def below(self, exponent: int) -> str:
         """Return what stands for a value that is only known to be less than a power of ten.

@@ -9,7 +9,7 @@ from kurbel import __version__
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.numbers import rounded, whole_if_integral
-from kurbel.report.tables import Column, KeyValue, Part, Provenance, Report, Value
+from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Provenance, Report, Value
 
 if TYPE_CHECKING:
     from kurbel.report.findings import Findings
@@ -80,26 +80,17 @@ def _ratio(part: Part, digits: int | None) -> dict[str, Any]:
 def _results(part: Part, digits: int | None) -> dict[str, Any]:
     return {
         "columns": [_column(column, digits) for column in part.columns],
-        **_place_tables(part, digits),
+        **({"place_tables": [_place_table(one, digits) for one in part.place_tables]} if part.place_tables else {}),
         "key_values": [_key_value(key_value, digits) for key_value in part.key_values],
         "left_out": [{"what": one.what, "why": one.why} for one in part.left_out],
         "warnings": list(part.warnings),
     }
 
 
-def _place_tables(part: Part, digits: int | None) -> dict[str, Any]:
-    if not part.place_tables:
-        return {}
-    tables = [
-        {
-            "id": table.id,
-            "title": table.title,
-            **({"rows": [dict(zip(table.heads, names)) for names in table.names]} if table.heads else {}),
-            "columns": [_column(column, digits) for column in table.columns],
-        }
-        for table in part.place_tables
-    ]
-    return {"place_tables": tables}
+def _place_table(table: PlaceTable, digits: int | None) -> dict[str, Any]:
+    rows = [dict(zip(table.heads, names)) for names in table.names]
+    columns = [_column(column, digits) for column in table.columns]
+    return {"id": table.id, "title": table.title, **({"rows": rows} if table.heads else {}), "columns": columns}
 
 
 def _column(column: Column, digits: int | None) -> dict[str, Any]:

@@ -2,31 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 from kurbel.render import Look
 from kurbel.render.charset import left, width
 from kurbel.render.lines import plain
 from kurbel.render.prose import folded, sentence
-from kurbel.report.alike import grouped, together
-from kurbel.report.check import Checked, Section
+from kurbel.report.check import Checked
 
 
 def listing(checked: Checked, look: Look) -> str:
     """Return the check as plain text in the characters and the width of the output."""
     charset = look.charset
     lines = folded(charset.text(checked.title), look.width)
-    for sections in grouped(checked.sections, _said):
-        section, title = sections[0], together([one.title for one in sections])
-        lines += ["", *folded(charset.text(title), look.width)]
+    for section in checked.told_once:
+        lines += ["", *folded(charset.text(section.title), look.width)]
         column = max(width(charset.text(entry.what)) for entry in section.entries)
         lines += entries(((f"  {left(charset.text(e.what), column)}  ", e.text) for e in section.entries), look)
     return "\n".join(lines) + "\n"
-
-
-def _said(section: Section) -> Hashable:
-    """Return what equal cylinders have in common."""
-    return (section.cylinder or section.title, tuple((one.what, one.text, one.severity) for one in section.entries))
 
 
 def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:

@@ -40,8 +40,7 @@ def cells_of(table: PlaceTable, look: Look) -> Cells:
         if column.decimals is not None:
             return cell(value, Scale(column.decimals), look.comma)
         if column.alone:
-            number, power = alone(value, look.digits or column.alone, look.comma)
-            return number + (look.charset.times_power(power) if power else "")
+            return look.charset.counted(*alone(value, look.digits or column.alone, look.comma))
         return angle(value, look.comma) if column.unit == "deg" else cell(value, scales[column.unit], look.comma)
 
     def unit_of(column: Column) -> str:

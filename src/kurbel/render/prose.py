@@ -104,7 +104,7 @@ def _number(one: KeyValue, look: Look) -> tuple[str, str]:
     text, exponent = _single(one.value, one.unit, look)
     whole, point, fraction = text.partition("," if look.comma else ".")
     # a whole number is split too, at its end, so that its units stand under those of the others
-    return whole, (point + fraction + (look.charset.times_power(exponent) if exponent else "")) or " "
+    return whole, look.charset.counted(point + fraction, exponent) or " "
 
 
 def number_text(one: KeyValue, look: Look) -> str:
@@ -114,7 +114,7 @@ def number_text(one: KeyValue, look: Look) -> str:
     if one.noise:
         return look.charset.below(NOISE_POWER)
     if not isinstance(one.value, tuple):
-        return _with_power(*_single(one.value, one.unit, look), look)
+        return look.charset.counted(*_single(one.value, one.unit, look))
     if len(one.value) > _MOST_LISTED:
         low, high = (_in_list(value, one.unit, look) for value in (min(one.value), max(one.value)))
         return f"{len(one.value)} from {low} to {high}"
@@ -122,7 +122,9 @@ def number_text(one: KeyValue, look: Look) -> str:
 
 
 def _in_list(value: float, unit: str, look: Look) -> str:
-    return angle(value, look.comma) if unit == "deg" else _with_power(*single(value, look.digits, look.comma), look)
+    if unit == "deg":
+        return angle(value, look.comma)
+    return look.charset.counted(*single(value, look.digits, look.comma))
 
 
 def _single(value: float, unit: str, look: Look) -> tuple[str, int]:
@@ -130,10 +132,6 @@ def _single(value: float, unit: str, look: Look) -> tuple[str, int]:
     if unit == "deg" and look.digits is None:
         return angle(value, look.comma), 0
     return single(value, look.digits, look.comma)
-
-
-def _with_power(text: str, exponent: int, look: Look) -> str:
-    return text + (look.charset.times_power(exponent) if exponent else "")
 
 
 def sentence_text(text: str, look: Look) -> str:

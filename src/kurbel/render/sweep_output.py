@@ -79,7 +79,7 @@ def json_rows(titles: Titles, rows: Iterable[Any], look: Look) -> Iterator[str]:
 
 def markdown_rows(titles: Titles, rows: Iterable[Any], look: Look) -> Iterator[str]:
     """Yield a table in Markdown, numbers to four digits."""
-    heads = [*(f"{name} ({unit})" if unit else name for name, unit in titles.names)]
+    heads = [*(f"{name} ({look.charset.unit(unit)})" if unit else name for name, unit in titles.names)]
     rules = ["--:"] * (len(heads) + 1) + ["---"] * len(titles.last)
     for line in ([titles.row, *heads, *titles.last], rules):
         yield f"| {' | '.join(map(_escaped, line))} |\n"
@@ -109,7 +109,7 @@ def _cell(value: Any, look: Look, in_full: bool = False) -> str:
 def table_rows(titles: Titles, rows: Iterable[Any], look: Look) -> Iterator[str]:
     """Yield a table of numbers to four digits, flush right, heads and units over it."""
     names = [titles.row, *(name for name, _ in titles.names), *titles.last]
-    units = ["", *(unit for _, unit in titles.names), *("" for _ in titles.last)]
+    units = ["", *(look.charset.unit(unit) for _, unit in titles.names), *("" for _ in titles.last)]
     following = iter(rows)
     first = [[_cell(value, look) for value in titles.values(row)] for _, row in zip(range(_WIDTH_OF), following)]
     widths = [max(map(len, column)) for column in zip(names, units, *first)]

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from kurbel.declared.unit_systems import show
 from kurbel.report.frame import Frame, Subject
-from kurbel.report.notes import machine_notes, of_machine
+from kurbel.report.notes import of_machine
 from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.bearings.bearing import Bearing
 from kurbel.solver.bearings.shaft_bearings import ShaftBearings
@@ -22,7 +22,7 @@ def bearings_report(case: Case, frame: Frame) -> Report:
         "whole machine",
         (),
         left_out=lambda: _machine_left_out(case.bearings),
-        warnings=lambda: (*of_machine(machine_notes(case.machine, case), case.machine), *_spacing(case.bearings)),
+        warnings=lambda: (*of_machine(case), *_spacing(case.bearings)),
     )
     report = frame.report(case.machine, "Lagerkräfte", subjects(case), whole, _notes(case.bearings))
     return report._replace(group="bearings")

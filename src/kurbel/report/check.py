@@ -1,7 +1,7 @@
 """The report of `kurbel check`: what a machine has, what is left out, and how its limits and expectations stand."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from typing import NamedTuple
 
 from kurbel.declared.forms import Physical
@@ -9,6 +9,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import KurbelError, Path
 from kurbel.machine import Cylinder, Machine
 from kurbel.mechanisms import Mechanism
+from kurbel.report.alike import grouped, together
 from kurbel.report.compared import Entry, Unjudged, judged
 from kurbel.report.left_out import left_out, missing, stages, strength_left_out, turning_stages
 from kurbel.report.notes import Note, machine_notes
@@ -35,6 +36,17 @@ class Checked(NamedTuple):
     def errors(self) -> tuple[KurbelError, ...]:
         """What keeps limits and expectations from being judged."""
         return tuple(one.error for one in self.unjudged)
+
+    @property
+    def told_once(self) -> tuple[Section, ...]:
+        """The sections, equal cylinders in one."""
+        groups = grouped(self.sections, _said)
+        return tuple(group[0]._replace(title=together([one.title for one in group])) for group in groups)
+
+
+def _said(section: Section) -> Hashable:
+    """Return what equal cylinders have in common."""
+    return (section.cylinder or section.title, tuple((one.what, one.text, one.severity) for one in section.entries))
 
 
 def checked(machine: Machine) -> Checked:

@@ -8,7 +8,7 @@ from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import flywheel_left_out
-from kurbel.report.notes import machine_notes, of_machine
+from kurbel.report.notes import of_machine
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
@@ -49,7 +49,7 @@ def subjects(case: Case) -> Iterable[Subject]:
         turning.answering,
         turning.at,
         left_out=lambda: flywheel_left_out(case.machine),
-        warnings=lambda: of_machine(machine_notes(case.machine, case), case.machine),
+        warnings=lambda: of_machine(case),
         source=turning,
     )
 

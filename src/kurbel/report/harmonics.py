@@ -11,7 +11,7 @@ from kurbel.declared.torsion import TORQUE_ORDERS
 from kurbel.errors import UsageError
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import flywheel_left_out, left_out
-from kurbel.report.notes import machine_notes, of_machine
+from kurbel.report.notes import of_machine
 from kurbel.report.shown import counted, shown_column
 from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
@@ -74,7 +74,7 @@ def _whole(case: Case, found: MachineOrders, more: tuple[PlaceTable, ...], syste
         "whole machine",
         (found,),
         left_out=lambda: (*flywheel_left_out(case.machine), *_no_cranks(found)),
-        warnings=lambda: of_machine(machine_notes(case.machine, case), case.machine),
+        warnings=lambda: of_machine(case),
         place_tables=(table, *more),
     )
 

@@ -77,8 +77,9 @@ def of_cylinder(found: Iterable[Note], machine: Machine, cylinder: Cylinder) -> 
             yield text
 
 
-def of_machine(found: Iterable[Note], machine: Machine) -> Iterable[str]:
-    """Yield all notes, each after the names of its cylinders where there are several."""
-    for notes in grouped(found, lambda note: note.text):
+def of_machine(case: "Case") -> Iterable[str]:
+    """Yield all notes on a machine, each after the names of its cylinders where there are several."""
+    for notes in grouped(machine_notes(case.machine, case), lambda note: note.text):
         names = [note.cylinder for note in notes if note.cylinder is not None]
-        yield f"{together(names)}: {notes[0].text}" if names and len(machine.cylinders) > 1 else notes[0].text
+        several = names and len(case.machine.cylinders) > 1
+        yield f"{together(names)}: {notes[0].text}" if several else notes[0].text

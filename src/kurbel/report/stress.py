@@ -10,7 +10,7 @@ from kurbel.declared.factors import PHI
 from kurbel.declared.shaft import STRESSES
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import left_out, strength_left_out
-from kurbel.report.notes import machine_notes, of_machine
+from kurbel.report.notes import of_machine
 from kurbel.report.shown import shown_column
 from kurbel.report.tables import Column, PlaceTable, Report
 from kurbel.report.warnings import shell_verdict
@@ -46,7 +46,7 @@ def subjects(case: Case) -> Iterable[Subject]:
         (strength,),
         strength.at,
         left_out=lambda: (*left_out(machine, machine.cylinders[0]), *strength_left_out(machine)),
-        warnings=lambda: of_machine(machine_notes(machine, case), machine),
+        warnings=lambda: of_machine(case),
     )
 
 

@@ -12,7 +12,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.harmonics import orders_of
-from kurbel.report.notes import machine_notes, of_machine
+from kurbel.report.notes import of_machine
 from kurbel.report.shown import counted, shown_column
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
@@ -35,8 +35,7 @@ class Wanted(NamedTuple):
 def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Report:  # noqa: B008 (immutable)
     """Return the torsional vibration of the shaft line; without columns of the frame only its tables are told.
 
-    Raises UsageError without a shaft
-    line, NoSolutionError where an undamped resonance has no end.
+    Raises UsageError without a shaft line, NoSolutionError where an undamped resonance has no end.
     """
     with np.errstate(all="ignore"):  # what overflows is refused, by name
         found = case.torsion_of(orders_of(case.machine, wanted.orders))
@@ -59,10 +58,7 @@ def subjects(
         "shaft line",
         (found,),
         left_out=lambda: torsion_left_out(found),
-        warnings=lambda: (
-            *_warnings(found, critical or ()),
-            *of_machine(machine_notes(case.machine, case), case.machine),
-        ),
+        warnings=lambda: (*_warnings(found, critical or ()), *of_machine(case)),
     )
 
 

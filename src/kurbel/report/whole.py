@@ -63,7 +63,7 @@ def _input(case: Case, given: Given, found: Checked) -> Section:
     places = every_place()
     rows = [(path, value, meaning(path, places)) for path, value in given]
     items: list[Item] = [Grid("Given", ("Key", "Value", "Meaning"), tuple(rows))] if rows else []
-    for part in found.sections:
+    for part in found.told_once:
         if part.title not in ("Limits", "Expected"):
             items.append(Grid(part.title, ("", ""), tuple((one.what, one.text) for one in part.entries)))
     return Section("input", "Input as understood", tuple(items))

@@ -25,7 +25,6 @@ ROWS = {
 }
 """What `--rows` calls a row -> its id."""
 
-FORMULAS = ("book", "exact", "first-order")
 _ODD = ("velocity_factor", "psi", "guide_force_factor")  # they change their sign on the return stroke
 
 

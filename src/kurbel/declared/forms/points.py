@@ -25,6 +25,7 @@ class Points(Form):
 
     def __init__(self, *names: str, least: int = 2, ratio: bool = False) -> None:
         self.columns, self.least, self.ratio = names, least, ratio
+        self._first = parse_ratio if ratio else parse_number
         self.called, self.count = {2: ("pair", "two"), 3: ("triple", "three")}[len(names)]
         self.one = f"[{', '.join(names)}]"
 
@@ -93,13 +94,7 @@ class Points(Form):
         if any(type(entry) is not Plain or len(entry) > LONGEST_VALUE for entry in item):
             return None
         try:
-            return tuple(map(parse_number, item))
-        except UnitError:
-            return self._with_ratio(item) if self.ratio else None
-
-    def _with_ratio(self, item: list[str]) -> tuple[float, ...] | None:
-        try:
-            return parse_ratio(item[0]), *map(parse_number, item[1:])
+            return self._first(item[0]), *map(parse_number, item[1:])
         except UnitError:
             return None
 
@@ -109,7 +104,7 @@ class Points(Form):
         if not isinstance(entry, Plain):
             return f'expected a number, got the text "{shown(entry)}"; leave out the quotation marks'
         try:
-            (parse_ratio if self.ratio and not index else parse_number)(shown(entry, LONGEST_VALUE))
+            (parse_number if index else self._first)(shown(entry, LONGEST_VALUE))
         except UnitError as error:
             return str(error)
         return ""

@@ -35,7 +35,9 @@ class Scalar(Form):
         """Read a text of sensible length."""
         if is_nothing(value):
             refused(f"a value is missing; write {self.expected()}")
-        if not isinstance(value, str) or len(value) > LONGEST_VALUE or not value.isprintable():
+        if isinstance(value, str) and len(value) > LONGEST_VALUE:
+            refused(f"expected {self.expected()}, got {len(value)} characters; {LONGEST_VALUE} are the most")
+        if not isinstance(value, str) or not value.isprintable():
             refused(f"expected {self.expected()}, got {kind_of(value)}")
         if not value.strip():
             refused(f"expected {self.expected()}, got an empty text")

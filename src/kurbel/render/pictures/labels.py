@@ -106,8 +106,7 @@ def figure_text(figure: "Figure", look: Look) -> str:
     text = symbol(figure.name, look)
     if figure.value is not None:
         number, power = single(figure.value, look.digits, look.comma)
-        number = signed(number, look)
-        number += look.charset.times_power(power) if power else ""
+        number = look.charset.counted(signed(number, look), power)
         text += f" {number} {look.charset.unit(figure.unit)}".rstrip()
     if figure.at_deg is not None:
         text += f"{',' if figure.value is not None else ''} {angle(figure.at_deg, look.comma)}{look.charset.degree}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 Scales = tuple[Scale, Scale]
 _KINDS = {"faint": "f", "guide": "f", "member": "m", "block": "b"}
 _MOST_LABELS = 12
+_BESIDE = 14.0
+"""Room that a picture has to the right of its panel."""
 
 
 def panel_items(panel: Panel, frame: Box, scales: Scales, look: Look) -> Iterator[Item]:
@@ -63,11 +65,22 @@ def _grid(panel: Panel, scales: Scales, look: Look) -> Iterator[Item]:
     lines += [((x.start, y.place(v)), (x.end, y.place(v))) for v in up]
     yield Line(tuple(lines), "g")
     yield Line((((x.start, y.end), (x.start, y.start), (x.end, y.start)),), "x")
-    for value, text in zip(across, tick_texts(panel.x, across, look)):
-        yield Text(x.place(value), y.start + 14, text, "t", "middle")
+    below = tick_texts(panel.x, across, look)
+    yield from _along([float(x.place(v)) for v in across], below, x.end + _BESIDE, y.start + 14)
     for value, text in zip(up, tick_texts(panel.y, up, look)):
         yield Text(x.start - 6, y.place(value) + 3.5, text, "t", "end")
     yield Text(x.end, y.start + 26, axis_text(panel.x.name, panel.x.unit, look), "t", "end")
+
+
+def _along(places: list[float], texts: Sequence[str], edge: float, base: float) -> Iterator[Item]:
+    """Yield what stands below the ticks, inside the edge of the picture; of two that meet the outer one stands."""
+    taken: list[tuple[float, float]] = []
+    for place, text in sorted(zip(places, texts), key=lambda one: min(one[0] - places[0], places[-1] - one[0])):
+        half = CHARACTER * cells(text) / 2
+        middle = min(place, edge - half)
+        if all(middle + half <= left or middle - half >= right for left, right in taken):
+            taken.append((middle - half, middle + half))
+            yield Text(middle, base, text, "t", "middle")
 
 
 def _shade(shade: Shade, scales: Scales) -> Iterator[Item]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
-from kurbel.render.pictures.scene import Dots, Item, Line, Text
+from kurbel.render.pictures.scene import Dots, Item, Line, Text, levels
 from kurbel.render.pictures.style import FAINT, GAIN, GRID, INK, LOOKS, LOSS, PAPER
 
 if TYPE_CHECKING:
@@ -56,10 +57,12 @@ def _text(axes: Any, item: Text, top: float, order: int) -> None:
 
     anchor = {"start": "left", "middle": "center", "end": "right"}[item.anchor]
     size, weight = (13, "bold") if item.look == "h" else (10, "normal")
+    text = item.text if item.look == "h" else _mathtext(item.text)
     drawn = axes.text(
         item.x,
         item.y + top,
-        item.text,
+        text,
+        parse_math=text != item.text,
         ha=anchor,
         va="baseline",
         size=size * _POINT,
@@ -69,6 +72,15 @@ def _text(axes: Any, item: Text, top: float, order: int) -> None:
     )
     if item.halo:
         drawn.set_path_effects([Stroke(linewidth=3 * _POINT, foreground=PAPER[0]), Normal()])
+
+
+def _mathtext(text: str) -> str:
+    """Return a text with its subscripts as matplotlib sets them; one without any as it is."""
+    first, *following = levels(text)
+    if not following:
+        return text
+    below = [re.sub("([,=/])", r"{\1}", one) for one in following[::2]]
+    return first + "".join(rf"$_{{\mathregular{{{one}}}}}${rest}" for one, rest in zip(below, following[1::2]))
 
 
 def _line(axes: Any, item: Line, top: float, order: int) -> None:

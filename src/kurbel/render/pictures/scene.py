@@ -1,5 +1,6 @@
 """A picture laid out on paper: lines, areas and texts at places in points from the upper left corner."""
 
+import re
 from typing import NamedTuple, Union
 
 import numpy as np
@@ -45,6 +46,17 @@ class Dots(NamedTuple):
 
 
 Item = Union[Line, Text, Dots]
+
+_SUBSCRIPT = re.compile(r"(?:(?<=\b\w)|(?<=Δ\w))_([^\s|]+?)(?=,?\s|,?$|\|)")
+
+
+def levels(text: str) -> list[str]:
+    """Return what of a text stands on the line and what below it as subscripts, in turn.
+
+    >>> levels("T_max 5.1 kN"), levels("F_x, F_y in N"), levels("my_engine")
+    (['T', 'max', ' 5.1 kN'], ['F', 'x', ', F', 'y', ' in N'], ['my_engine'])
+    """
+    return _SUBSCRIPT.split(text)
 
 
 class Scene(NamedTuple):

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from html import escape
 from typing import TYPE_CHECKING
 
-from kurbel.render.pictures.scene import Dots, Item, Line, Places, Scene, Text
+from kurbel.render.pictures.scene import Dots, Item, Places, Scene, Text, levels
 from kurbel.render.pictures.style import css
 
 if TYPE_CHECKING:
@@ -59,10 +59,9 @@ def _of_one_moment(item: Item) -> bool:
 def _item(item: Item, seconds: float) -> str:
     if isinstance(item, Text):
         return _text(item, seconds)
-    parts = item.parts if isinstance(item, Line) else (item.places,)
     if isinstance(item, Dots):
         return _dots(item, seconds)
-    path = _path(parts, item.closed)
+    path = _path(item.parts, item.closed)
     moves = "".join(_moves("d", (_path(one, item.closed) for one in item.frames), seconds) if item.frames else "")
     style = ' style="stroke-dasharray:none"' if item.look.endswith(" solid") else ""
     return f'<path class="{item.look.removesuffix(" solid")}"{style} d="{path}"{f">{moves}</path>" if moves else "/>"}'
@@ -76,7 +75,17 @@ def _text(item: Text, seconds: float) -> str:
         for name, place in (("x", 0), ("y", 1)):
             moves += _moves(name, (_number(one[place]) for one in item.frames), seconds)
     where = f'x="{_number(item.x)}" y="{_number(item.y)}"'
-    return f'<text class="{item.look}{halo}" {where}{anchor}>{escape(item.text)}{moves}</text>'
+    return f'<text class="{item.look}{halo}" {where}{anchor}>{_typeset(item)}{moves}</text>'
+
+
+def _typeset(item: Text) -> str:
+    """Return the words of a text with their subscripts lowered; a title is a name, and has none."""
+    first, *following = [item.text] if item.look == "h" else levels(item.text)
+    text = escape(first)
+    for below, rest in zip(following[::2], following[1::2]):
+        text += f'<tspan dy="2" font-size="80%">{escape(below)}</tspan>'
+        text += f'<tspan dy="-2">{escape(rest)}</tspan>' if rest else ""
+    return text
 
 
 def _dots(item: Dots, seconds: float) -> str:

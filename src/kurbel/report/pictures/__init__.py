@@ -196,15 +196,16 @@ class Wish(NamedTuple):
 def pictures(case: "Case", names: Sequence[str], wish: Wish) -> Iterator[Picture]:
     """Yield these pictures of a machine; without names the first that it has, `all` for every one.
 
-    Raises UsageError for a picture that there
-    is not, or that this machine does not have, NoSolutionError where the machine locks itself or stalls.
+    Raises UsageError for a picture that there is not, or that this machine does not have, NoSolutionError where the
+    machine locks itself or stalls.
     """
     wish = wish._replace(cylinder=wish.cylinder and cylinder_meant(wish.cylinder, _names(case)))
     with np.errstate(all="ignore"):
         if not names:
             yield from _first(case, wish)
             return
-        for declared in _chosen(case, names, wish):
+        every = "all" in names
+        for declared in (one for one in PICTURES if _has(case, one, wish)) if every else [*map(_named, names)]:
             found = list(_pictures(case, declared, wish))
             if not found:
                 raise UsageError(_missing(case, declared, wish))
@@ -238,12 +239,6 @@ def _first(case: "Case", wish: Wish) -> list[Picture]:
             if found := list(_pictures(case, declared, wish)):
                 return found
     raise UsageError(f"{case.machine.name}: there is nothing to draw; kurbel check says what is missing")
-
-
-def _chosen(case: "Case", names: Sequence[str], wish: Wish) -> Iterable[Declared]:
-    if "all" not in names:
-        return [_named(name) for name in names]
-    return [one for one in PICTURES if _has(case, one, wish)]
 
 
 def _named(name: str) -> Declared:

@@ -13,7 +13,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.unit_systems import convert
 from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Piece, Shade, Words
 from kurbel.report.pictures.sampling import Samples, pieces
-from kurbel.report.pictures.source import PHI, Source, mark, zero_line
+from kurbel.report.pictures.source import PHI, Source, level, mark
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -57,7 +57,7 @@ def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
     marks = tuple(_highest(source, unit, run)) if own else ()
     y = Axis(Words("p", "p"), f"{unit} abs" if gas.absolute else unit)
     x = Axis(_V if over_volume else source.words("x"), run)
-    ambient = zero_line(curves, float(convert(gas.base, "pressure", unit)))
+    ambient = level(curves, float(convert(gas.base, "pressure", unit)))
     return Panel(x, y, (*curves, ambient), marks=marks, title=piston.name if several else "")
 
 
@@ -138,7 +138,7 @@ def _panel_of_rest(source: Source, samples: Samples, over: str) -> Panel:
     base = -inertia[0] if inertia else np.zeros_like(x)
     if inertia:
         curves.append(Curve(_INERTIA_LINE, pieces(samples, x, base)))
-    return Panel(run, Axis(_P, unit), (*curves, zero_line(curves)), tuple(between(x, base, force)))
+    return Panel(run, Axis(_P, unit), (*curves, level(curves)), tuple(between(x, base, force)))
 
 
 def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
@@ -158,7 +158,7 @@ def _rest(source: Source) -> Panel:
     panel = source.panel(("P",))
     reversals = source.results.phi_reversal or ()
     marks = tuple(Mark(angle, 0.0, Figure(_REVERSAL, at_deg=angle)) for angle in reversals)
-    return panel._replace(curves=(*panel.curves, zero_line(panel.curves)), marks=(*panel.marks, *marks))
+    return panel._replace(curves=(*panel.curves, level(panel.curves)), marks=(*panel.marks, *marks))
 
 
 def forces(source: Source) -> Iterator[Panel]:
@@ -168,7 +168,7 @@ def forces(source: Source) -> Iterator[Panel]:
     kinds = dict.fromkeys(source.quantity(id).kind for id in found)
     for kind in kinds:
         panel = source.panel([id for id in found if source.quantity(id).kind == kind])
-        yield panel._replace(curves=(*panel.curves, zero_line(panel.curves)))
+        yield panel._replace(curves=(*panel.curves, level(panel.curves)))
 
 
 def polar_effort(source: Source) -> Iterator[Panel]:

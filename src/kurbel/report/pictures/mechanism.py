@@ -10,7 +10,7 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.unit_systems import convert
 from kurbel.mechanisms.sketch import PIN, Point, Sketch
-from kurbel.report.pictures.picture import Arrow, Axis, Curve, Frame, Panel, Piece, Words
+from kurbel.report.pictures.picture import Arrow, Axis, Curve, Panel, Piece, Words
 from kurbel.report.pictures.source import PHI, Source
 
 if TYPE_CHECKING:
@@ -32,8 +32,7 @@ def mechanism(source: Source) -> Iterator[Panel]:
     moving = np.arange(_FRAMES) * (drive.cycle / _FRAMES)
     drawn = _drawn(source, np.array([_chief_angle(source)] if angles is None else angles, dtype=float))
     if angles is None:
-        still = drawn[0]
-        yield still._replace(frames=tuple(Frame(one.curves, one.arrows) for one in _drawn(source, moving)))
+        yield drawn[0]._replace(frames=tuple(_drawn(source, moving)))
     else:
         yield from drawn
 

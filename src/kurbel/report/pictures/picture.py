@@ -1,7 +1,6 @@
 """What a picture is made of, whatever draws it: curves, shades and marks on panels with two axes, in units as shown."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -96,7 +95,8 @@ class Arrow(NamedTuple):
 class Panel(NamedTuple):
     """Two axes with what stands on them; equal: both have one scale; plain: nothing is written at the axes.
 
-    title: what tells it from the other panels of its picture; frames: how it moves, round and round.
+    title: what tells it from the other panels of its picture; frames: how it moves, round and round,
+    by panels with as many curves, points and arrows.
     """
 
     x: Axis
@@ -108,14 +108,7 @@ class Panel(NamedTuple):
     equal: bool = False
     plain: bool = False
     title: str = ""
-    frames: "tuple[Frame, ...]" = ()
-
-
-class Frame(NamedTuple):
-    """A moving panel at one moment: its curves and arrows, in the order and with as many points as in the panel."""
-
-    curves: tuple[Curve, ...]
-    arrows: tuple[Arrow, ...]
+    frames: "tuple[Panel, ...]" = ()
 
 
 class Picture(NamedTuple):
@@ -138,9 +131,3 @@ class Picture(NamedTuple):
     def heading(self) -> str:
         """What stands over the picture."""
         return ". ".join(filter(None, (self.machine, f"{self.title}: {self.of}" if self.of else self.title)))
-
-
-def extent(pieces: Sequence[Any], part: str) -> tuple[float, float]:
-    """Return the smallest and the largest value of a part (x, y, low, high) of several pieces or shades."""
-    ends = [(float(values.min()), float(values.max())) for one in pieces if len(values := getattr(one, part))]
-    return min((low for low, _ in ends), default=0.0), max((high for _, high in ends), default=0.0)

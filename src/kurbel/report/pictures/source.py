@@ -11,7 +11,7 @@ import numpy as np
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
-from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Piece, Words, extent
+from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Piece, Words
 from kurbel.report.pictures.sampling import Samples, Values, pieces, sampled
 from kurbel.report.shown import too_large
 from kurbel.solver.figures import answered
@@ -128,12 +128,8 @@ def words(quantity: Quantity) -> Words:
     return Words(quantity.symbol, quantity.ascii_symbol)
 
 
-def level(name: Words, value: float, x: tuple[float, float]) -> Curve:
-    """Return a faint level line with its name."""
-    return Curve(name, (Piece(np.array(x), np.array([value, value])),), kind="faint")
-
-
-def zero_line(curves: Sequence[Curve], height: float = 0.0) -> Curve:
-    """Return the faint line y = 0, or of what else counts as nothing, as far as the curves reach."""
-    every = [piece for curve in curves for piece in curve.pieces]
-    return level(Words("", ""), height, extent(every, "x"))
+def level(curves: Sequence[Curve], height: float = 0.0, name: Words = Words("", "")) -> Curve:  # noqa: B008 (immutable)
+    """Return a faint level line, y = 0 if no other height is given, as far as the curves reach."""
+    every = [piece.x for curve in curves for piece in curve.pieces if len(piece.x)]
+    ends = min((x.min() for x in every), default=0.0), max((x.max() for x in every), default=0.0)
+    return Curve(name, (Piece(np.array(ends, dtype=float), np.array([height, height])),), kind="faint")

@@ -9,9 +9,9 @@ import numpy as np
 
 from kurbel.declared.unit_systems import convert
 from kurbel.report.pictures.cylinder import between
-from kurbel.report.pictures.picture import Axis, Curve, Figure, Panel, Piece, Shade, Words, extent
+from kurbel.report.pictures.picture import Axis, Curve, Figure, Panel, Piece, Shade, Words
 from kurbel.report.pictures.sampling import pieces
-from kurbel.report.pictures.source import PHI, Source, level, words, zero_line
+from kurbel.report.pictures.source import PHI, Source, level, words
 
 _MOST_NUMBERED = 24
 _HIGHEST = 12
@@ -34,8 +34,7 @@ def effort(source: Source) -> Iterator[Panel]:
 def _with_mean(source: Source, panel: Panel, id: str, mean: str) -> Panel:
     value = getattr(source.results, mean)
     quantity = source.results.lists.key_values("flywheel")[mean]
-    every = [piece for curve in panel.curves for piece in curve.pieces]
-    line = level(words(quantity), float(convert(value, source.quantity(id).kind, panel.y.unit)), extent(every, "x"))
+    line = level(panel.curves, float(convert(value, source.quantity(id).kind, panel.y.unit)), words(quantity))
     return panel._replace(curves=(*panel.curves, line))
 
 
@@ -115,7 +114,7 @@ def shaft_modes(source: Source) -> Iterator[Panel]:
         curves.append(Curve(Words(name, name), (Piece(np.arange(float(len(shape))), shape),)))
     if curves:
         names = tuple(mass.name[:_LONGEST_NAME] for mass in found.line.masses)
-        yield Panel(Axis(Words("", ""), "", names=names), Axis(Words("θ", "theta"), ""), (*curves, zero_line(curves)))
+        yield Panel(Axis(Words("", ""), "", names=names), Axis(Words("θ", "theta"), ""), (*curves, level(curves)))
 
 
 def _bars(

@@ -23,6 +23,9 @@ from kurbel.solver.figures import Columns, Results, passed_on
 from kurbel.solver.shaft.statics import FreeBody, Vector, equilibrium_residual, flywheel_weight, norm
 from kurbel.solver.strength.places import PARTS, Place, Stresses, places
 
+Asked = Callable[[FreeBody], dict[str, Any]]
+"""Jets by name that a body gives."""
+
 
 class Strained(NamedTuple):
     """One place under the forces at one crank angle in degrees: its stresses, and both combinations, in Pa."""
@@ -91,12 +94,12 @@ class CrankshaftStrength(Results):
     def _grid(self) -> Grid:
         """The cycle in smooth pieces, cut also where a stress changes its sign: its magnitude has a kink there."""
         grid = self.forces.grid
-        found = zeros(grid, self._on(grid, self._signed), self._evaluated(self._signed))
+        found = zeros(grid, self._on(grid, _with_kinks), self._evaluated(_with_kinks))
         return grid.split_at(np.concatenate(tuple(found.values())))
 
-    def _on(self, grid: Grid, asked: Callable[[State], dict[str, Sampled]]) -> dict[str, Sampled]:
-        """Return what is asked of the state, on a grid."""
-        samples = asked(self.forces.drive.jets_at(grid.degrees, grid.within, grid.beyond))
+    def _on(self, grid: Grid, asked: Asked) -> dict[str, Sampled]:
+        """Return what is asked of the body, on a grid."""
+        samples = self._sampled(asked, self.forces.drive.jets_at(grid.degrees, grid.within, grid.beyond))
         if not all(np.isfinite(sampled.value).all() for sampled in samples.values()):
             raise UsageError(
                 f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
@@ -104,19 +107,17 @@ class CrankshaftStrength(Results):
             )
         return samples
 
-    def _evaluated(self, asked: Callable[[State], dict[str, Sampled]]) -> Evaluate:
-        return lambda degrees, within: asked(self.forces.drive.jets_at(degrees, within))
+    def _evaluated(self, asked: Asked) -> Evaluate:
+        return lambda degrees, within: self._sampled(asked, self.forces.drive.jets_at(degrees, within))
 
-    def _signed(self, state: State) -> dict[str, Sampled]:
-        return _sampled(_with_kinks(self._running(state)), state)
+    def _sampled(self, asked: Asked, state: State) -> dict[str, Sampled]:
+        return {name: Sampled.of(jet, state.phi.shape) for name, jet in asked(self._running(state)).items()}
 
-    def _quantities(self, state: State) -> dict[str, Sampled]:
-        body = self._running(state)
+    def _quantities(self, body: FreeBody) -> dict[str, Any]:
         stresses = [place.stresses(body) for place in self.places]
         found = {f"combined {i}": one.combined(self.places[i].alpha) for i, one in enumerate(stresses)}
         found |= {f"von Mises {i}": one.von_mises() for i, one in enumerate(stresses)}
-        found |= {"pin": norm(*body.pin), "A": norm(*body.A), "B": norm(*body.B)}
-        return _sampled(found, state)
+        return found | {"pin": norm(*body.pin), "A": norm(*body.A), "B": norm(*body.B)}
 
     @cached_property
     def _samples(self) -> dict[str, Sampled]:
@@ -281,10 +282,6 @@ def _with_kinks(body: FreeBody) -> dict[str, Any]:
 
 def _largest(values: list[Any]) -> Any:
     return np.max(values, axis=0) if values else None
-
-
-def _sampled(found: dict[str, Any], state: State) -> dict[str, Sampled]:
-    return {name: Sampled.of(jet, state.phi.shape) for name, jet in found.items()}
 
 
 def _strained(place: Place, degrees: float, body: FreeBody) -> Strained:
