@@ -13,6 +13,7 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 from kurbel.machine_file import load
+from kurbel.render.charset import width as cells
 from kurbel.report.pictures import PICTURES
 from representative import CONFIGS, few
 
@@ -153,3 +154,12 @@ def test_a_machine_without_solution_ends_with_status_3() -> None:
 
 def test_the_decimal_comma_stands_in_pictures_too() -> None:
     assert "T_max 87,70 kN, 67,3°" in run(WATERWORKS, "effort", "--decimal", "comma", "--width", "100").stdout
+
+
+@pytest.mark.parametrize("width", [40, 80, 120])
+def test_letters_with_marks_take_one_place(width: int) -> None:
+    """The figures of θ̈, a letter with a mark on it, were written past the end of the line: a fault of kurbel."""
+    result = run(str(CONFIGS["crank-rocker"]), "motion", "--width", str(width))
+    assert result.exit_code == 0, result.output
+    assert "θ̈_max" in result.stdout
+    assert max(cells(line) for line in result.stdout.splitlines()) <= width

@@ -68,11 +68,16 @@ class Canvas:
 
     def write(self, column: int, row: int, text: str, role: str) -> None:
         """Write a text over what is drawn."""
-        for offset, letter in enumerate(text):
-            self._letters[row][column + offset] = letter
-            self._bits[row, column + offset] = 0
-            self._roles[row][column + offset] = role
-            self._written[row, column + offset] = True
+        end = column
+        for letter in text:
+            start, end = end, end + width(letter)
+            if start == end:  # a mark on the letter before it, as the dots of θ̈
+                self._letters[row][end - 1] += letter
+            for place in range(start, end):
+                self._letters[row][place] = letter if place == start else ""
+                self._bits[row, place] = 0
+                self._roles[row][place] = role
+                self._written[row, place] = True
 
     @property
     def used(self) -> tuple[int, int]:
