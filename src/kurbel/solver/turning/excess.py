@@ -37,7 +37,7 @@ class Excess:
     another mean is brought to that of the effort.
     """
 
-    def __init__(self, effort: Sum, given: Torque | None = None) -> None:
+    def __init__(self, effort: Torque, given: Torque | None = None) -> None:
         self.effort = effort
         self.grid = (effort.cuts if given is None else Sum((1.0, effort), (1.0, given)).cuts).grid()
         self.cycle = float(self.grid.breaks[-1])
@@ -69,7 +69,7 @@ class Excess:
     def effort_extremes(self) -> Extremes:
         """Largest and smallest turning effort in N m, one-sided values at jumps included."""
         sampled = Sampled.of(self._sampled_effort, self.grid.degrees.shape)
-        return extremes(self.grid, {"M": sampled}, _Evaluated(self.effort))["M"]
+        return extremes(self.grid, {"M": sampled}, _Evaluated(Sum((1.0, self.effort))))["M"]
 
     @cached_property
     def crossings(self) -> tuple[float, ...]:
