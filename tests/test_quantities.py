@@ -26,6 +26,7 @@ from kurbel.solver.bearings.bearing import Bearing
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.guide_load import GuideLoad
 from kurbel.solver.cylinder.indicated import Indicated
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.pin_works import PinWorks
@@ -39,7 +40,7 @@ from toy_mechanism import HarmonicCam
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
     "motion": (Motion,),
-    "forces": (CylinderForces, Motion, RodLoad, PinWorks, Indicated, Brake),
+    "forces": (CylinderForces, Motion, RodLoad, PinWorks, GuideLoad, Indicated, Brake),
     "flywheel": (MachineTurning, ElasticCoupling, Brake),
     "stress": (CrankshaftStrength,),
     "balance": (MachineBalance, LocomotiveBalance, BookBalance),

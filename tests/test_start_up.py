@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import ast
+import subprocess
+import sys
 from pathlib import Path
 
+import numpy as np
+import pytest
+
+from kurbel.machine_file import load
+from kurbel.report.warnings import cylinder_warnings
+from kurbel.solver.case import Case
 from representative import law_of_each
 
-HOUSE = Path(__file__).parent.parent / "src" / "kurbel"
+ROOT = Path(__file__).parent.parent
+HOUSE = ROOT / "src" / "kurbel"
+WATERWORKS, BOTH_CRANKS = (str(ROOT / "configs" / f"waterworks{name}.yaml") for name in ("", "-two-cranks"))
 DECLARING = [path for path in sorted(HOUSE.rglob("*.py")) if "(NamedTuple)" in path.read_text(encoding="utf-8")]
 
 
@@ -16,3 +26,69 @@ def test_where_named_tuples_are_declared_annotations_are_taken_as_they_stand(mod
     """NamedTuple compiles each postponed one at every start."""
     imported = (node for node in ast.parse(module.read_text(encoding="utf-8")).body if isinstance(node, ast.ImportFrom))
     assert "__future__" not in [node.module for node in imported]
+
+
+NEEDLESS = (
+    (["--help"], ("cli.table", "cli.output_options", "render", "report", "declared")),
+    (["table"], ("mechanisms", "declared.quantities", "declared.units", "declared.keys", "machine", "solver")),
+    (
+        ["forces", WATERWORKS, "-f", "csv"],
+        (
+            *("report.notes", "report.given", "report.left_out", "report.guide", "report.motion", "report.alike"),
+            *("solver.pressure.exponents", "mechanisms.sketch", "machine.turning", "machine.flywheel"),
+        ),
+    ),
+    (
+        ["balance", WATERWORKS],
+        (
+            "machine.turning",
+            "machine.flywheel",
+            "machine.balance",
+            "solver.balance.locomotive",
+            "solver.pressure.trace",
+        ),
+    ),
+    (["flywheel", BOTH_CRANKS], ("machine.turning", "solver.turning.coupling", "solver.strength", "solver.balance")),
+)
+
+
+@pytest.mark.parametrize(("arguments", "needless"), NEEDLESS, ids=[arguments[0] for arguments, _ in NEEDLESS])
+def test_a_command_imports_nothing_that_it_does_not_need(arguments: list[str], needless: tuple[str, ...]) -> None:
+    code = (
+        "import sys\nfrom kurbel.cli import kurbel\n"
+        "try:\n    kurbel.main(sys.argv[1:])\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
+        "print(*sys.modules, file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, encoding="utf-8", check=True)
+    assert {f"kurbel.{name}" for name in needless} & set(done.stderr.split()) == set()
+
+
+def test_the_end_loses_nothing_that_was_written_before() -> None:
+    code = (
+        "import sys\nfrom kurbel.__main__ import main\n"
+        "sys.stdout.write('before ')\nsys.argv[1:] = ['--version']\nmain()"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True)
+    assert done.stdout.startswith("before kurbel")
+
+
+def test_the_torque_at_given_angles_needs_no_search() -> None:
+    case = Case(load(WATERWORKS))
+    assert case.balance.at(np.array([10.0])).M_roll is not None
+    assert "grid" not in vars(case.cylinders[0])
+
+
+def test_no_reversal_of_the_rod_load_of_an_engine_is_searched() -> None:
+    forces = Case(load(WATERWORKS)).cylinders[0]
+    assert cylinder_warnings(forces) == ()
+    assert "phi_rod_reversal" not in vars(forces.rod_load)
+
+
+def test_what_no_flywheel_changes_is_found_once_for_all() -> None:
+    flywheel = Case(load(BOTH_CRANKS)).flywheel
+    lines = flywheel._lines
+    assert lines is not None
+    light, heavy = lines.rigid(1e4), lines.rigid(2e4)
+    assert light.delta > heavy.delta
+    assert light.course is heavy.course
+    assert light.grid is heavy.grid

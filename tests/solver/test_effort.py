@@ -56,6 +56,23 @@ def test_cylinders_that_work_alike_give_what_each_gives_by_itself() -> None:
     np.testing.assert_allclose(machine.at(ANGLES).M, 0.9 * sum(each), rtol=1e-13, atol=1e-9)
 
 
+def test_masses_alone_do_no_work_and_fluctuate_beside_none() -> None:
+    """∮ m x′ x″ dφ = 0: their mean torque is none, where its rounding once stood as a divisor under ΔE."""
+    moved = replace(ENGINE, pistons=())
+    machine = turning(moved, replace(moved, crank_position=140.0))
+    assert machine.M_mean == machine.work_shaft == 0.0
+    assert machine.dE > 100
+    assert machine.energy_fluctuation is None
+
+
+@pytest.mark.parametrize("rod", np.linspace(1.0, 3.0, 21))
+def test_of_two_peaks_that_are_alike_the_first_is_told(rod: float) -> None:
+    """T of masses alone is the same backwards with the other sign: which rounding is larger says nothing."""
+    alone = Case(Machine((replace(ENGINE, mechanism=SliderCrank(0.4, rod), pistons=()),), speed=1.0)).cylinders[0]
+    assert alone.T_max.degrees == pytest.approx(360 - alone.T_min.degrees, abs=1e-9)
+    assert alone.T_peak.degrees == min(alone.T_max.degrees, alone.T_min.degrees)
+
+
 def test_the_efficiency_scales_the_turning_effort_only() -> None:
     """R p. 611."""
     whole, less = turning(ENGINE), turning(ENGINE, efficiency=0.9)

@@ -114,7 +114,7 @@ def test_scipy_marches_to_the_same_state(slip: float, inertia: float) -> None:
 
     def kinetic(degrees: Any) -> Any:
         angles = np.atleast_1d(np.asarray(degrees, dtype=float))
-        return line.inertia.at(angles, angles).value / 2
+        return line.inertia.energy(line.course.at(angles, angles)).value / line.inertia.omega**2
 
     def slope(phi: float, energy: Any) -> Any:
         angle = np.array([min(max(math.degrees(phi), low), high)])

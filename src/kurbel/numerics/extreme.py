@@ -19,16 +19,17 @@ class Extreme(NamedTuple):
 def largest(first: Extreme, *others: Extreme) -> Extreme:
     """Return the one with the largest value, the first of equal ones; one that is nan counts for nothing."""
     for other in others:
-        first = _chosen(other.value > first.value, other, first)
+        first = chosen(other.value > first.value, other, first)
     return first
 
 
 def smallest(first: Extreme, *others: Extreme) -> Extreme:
     """Return the one with the smallest value, the first of equal ones; one that is nan counts for nothing."""
     for other in others:
-        first = _chosen(other.value < first.value, other, first)
+        first = chosen(other.value < first.value, other, first)
     return first
 
 
-def _chosen(condition: Any, extreme: Extreme, otherwise: Extreme) -> Extreme:
+def chosen(condition: Any, extreme: Extreme, otherwise: Extreme) -> Extreme:
+    """Return the one extreme where a condition holds, else the other."""
     return Extreme(*(where(condition, one, other) for one, other in zip(extreme, otherwise, strict=True)))

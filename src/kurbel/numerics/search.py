@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices
+from kurbel.numerics.arithmetic import where
 from kurbel.numerics.brackets import (
     Brackets,
     Worth,
@@ -17,7 +18,7 @@ from kurbel.numerics.brackets import (
 )
 from kurbel.numerics.brackets import Evaluate as Evaluate
 from kurbel.numerics.brackets import Sampled as Sampled
-from kurbel.numerics.extreme import Extreme, largest
+from kurbel.numerics.extreme import Extreme, chosen
 from kurbel.numerics.grid import Grid
 
 _ROUNDING = 8 * np.finfo(float).eps
@@ -70,8 +71,10 @@ class Extremes(NamedTuple):
 
     @property
     def peak(self) -> Extreme:
-        """The largest magnitude, whichever sign the quantity has there."""
-        return largest(self.largest, Extreme(-self.smallest.value, self.smallest.degrees))
+        """The largest magnitude, whichever sign it has; of two that are alike but for rounding the first."""
+        high, low = self.largest, Extreme(-self.smallest.value, self.smallest.degrees)
+        alike = abs(low.value - high.value) <= _REPEATED * abs(high.value)
+        return chosen(where(alike, low.degrees < high.degrees, low.value > high.value), low, high)
 
 
 def extremes(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dict[str, Extremes]:

@@ -1,4 +1,4 @@
-"""What a state of a cylinder tells of its chambers beside the pressure: volumes, and the rise of pressure."""
+"""What a state of a cylinder tells of its chambers beside the pressure; None where it has no such chamber."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ if TYPE_CHECKING:
     from kurbel.solver.cylinder.state import State
 
 
-def _head_volume(state: State) -> Any:
+def head_volume(state: State) -> Any:
     """Return the volume of the head-end chamber in m³, with its clearance where that is given."""
     gas = state.drive.own_gas
     return gas.piston.head_area * state.way + gas.clearance_volumes[0] if gas and gas.head else None
 
 
-def _crank_volume(state: State) -> Any:
+def crank_volume(state: State) -> Any:
     """Return the volume of the crank-end chamber in m³, with its clearance where that is given."""
     gas = state.drive.own_gas
     if not (gas and gas.crank):
@@ -24,23 +24,22 @@ def _crank_volume(state: State) -> Any:
     return gas.piston.crank_area * (state.drive.mechanism.stroke - state.way) + gas.clearance_volumes[1]
 
 
-def _volume_change(state: State) -> Any:
+def head_volume_change(state: State) -> Any:
     """Return the change of the volume of the head-end chamber in m³ per degree."""
     gas = state.drive.own_gas
     return gas.piston.head_area * np.radians(1.0) * state.slope if gas and gas.head else None
 
 
+def head_rise(state: State) -> Any:
+    """Return the rise of the head-end pressure in Pa per degree; None without a trace."""
+    return _rise(state, "head")
+
+
+def crank_rise(state: State) -> Any:
+    """Return the rise of the crank-end pressure in Pa per degree; None without a trace."""
+    return _rise(state, "crank")
+
+
 def _rise(state: State, end: str) -> Any:
-    """Return the rise of the pressure at an end in Pa per degree; None without a trace."""
     rise = getattr(getattr(state.drive.own_gas, end, None), "rise", None)
     return rise(state.phi) if rise else None
-
-
-OF_CHAMBERS = {
-    "V": _head_volume,
-    "V_crank": _crank_volume,
-    "dV": _volume_change,
-    "dp_head": lambda state: _rise(state, "head"),
-    "dp_crank": lambda state: _rise(state, "crank"),
-}
-"""Attribute of `State` -> what finds it; None where the cylinder has no such chamber."""

@@ -20,13 +20,13 @@ def _guide_load(state: State) -> Any:
     return weight if state.rod_side is None else weight - state.rod_side
 
 
-def _guide_sense(state: State) -> Any:
+def guide_sense(state: State) -> Any:
     """Return the force whose sign is that of N: P sin ψ + G cos ψ with the load G on the guide, in N."""
     sin_psi, cos_psi = state.rod_angle or (0.0, 1.0)
     return state.after_steady_friction * sin_psi + cos_psi * _guide_load(state)
 
 
-def _guide_force(state: State) -> Any:
+def guide_force(state: State) -> Any:
     """Return the force on the guide in N, D 3 with signs: N = (P sin ψ + G cos ψ)/(cos ψ + f sin ψ sgn c sgn N).
 
     With f = 0 and no weight this is R 301, N = P tan ψ. Raises NoSolutionError where the crosshead locks itself.
@@ -58,34 +58,23 @@ def _locks(drive: Drive, degrees: float) -> str:
     )
 
 
-def _drag(state: State) -> Any:
+def crosshead_drag(state: State) -> Any:
     """Return the crosshead friction f |N| in N, against the motion."""
     drive = state.drive
     return state.N * (state.inside.guide_side(state) * drive.crosshead_friction) if drive.rubs else 0.0
 
 
-def _shoe_pressure(state: State) -> Any:
+def shoe_pressure(state: State) -> Any:
     """Return |N| over the area of the shoe in Pa; None where its size is not given."""
     area = state.drive.guide_area
     return None if area is None or state.N is None else abs(state.N) / area
 
 
-def _wear(state: State) -> Any:
+def wear(state: State) -> Any:
     """Return f |N| |c| in W, the wear line of the guide (D); None without a shoe or a speed."""
     return None if state.p_guide is None or state.c is None else state.crosshead_drag * state.c * state.direction
 
 
-def _crosshead_power(state: State) -> Any:
+def crosshead_power(state: State) -> Any:
     """Return crosshead friction times way by crank angle in J per radian, positive."""
     return state.crosshead_drag * (state.slope * state.direction)
-
-
-OF_GUIDE = {
-    "guide_sense": _guide_sense,
-    "N": _guide_force,
-    "crosshead_drag": _drag,
-    "p_guide": _shoe_pressure,
-    "wear": _wear,
-    "crosshead_power": _crosshead_power,
-}
-"""Attribute of `State` -> what finds it."""

@@ -1,4 +1,4 @@
-"""What a state of a cylinder tells of a point of its connecting rod or coupler."""
+"""What a state of a cylinder tells of a point of its connecting rod or coupler; None where it names none."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ if TYPE_CHECKING:
     from kurbel.solver.cylinder.state import State
 
 
-def _point(state: State) -> PointMotion | None:
+def motion_of_point(state: State) -> PointMotion | None:
+    """Return how the point moves."""
     point, mechanism = state.drive.cylinder.point, state.drive.mechanism
     coupler = mechanism.coupler_at(state.angle) if point else None
     if point is None or coupler is None:
@@ -19,23 +20,22 @@ def _point(state: State) -> PointMotion | None:
     return point_motion(mechanism, coupler, state.angle, point.from_crank_pin(mechanism), point.across)
 
 
-def _speed(state: State) -> Any:
+def place_along(state: State) -> Any:
+    """Return the place of the point in m from the shaft axis, along φ = 0."""
+    return state.point and state.point.x
+
+
+def place_across(state: State) -> Any:
+    """Return its place in m along φ = 90°."""
+    return state.point and state.point.y
+
+
+def speed(state: State) -> Any:
     """Return its speed in m/s."""
     return None if state.point is None or state.omega is None else state.point.speed * state.omega
 
 
-def _acceleration(state: State) -> Any:
+def acceleration(state: State) -> Any:
     """Return the magnitude of its acceleration in m/s², at uniform rotation."""
     w = state.omega
     return None if state.point is None or w is None else state.point.acceleration * (w * w)
-
-
-OF_POINT = {
-    "point": _point,
-    "x_point": lambda state: state.point and state.point.x,
-    "y_point": lambda state: state.point and state.point.y,
-    "v_point": _speed,
-    "b_point": _acceleration,
-}
-"""Attribute of `State` -> what finds it; None where the cylinder names no point. x_point, y_point: its place in m from
-the shaft axis, along φ = 0 and along φ = 90°."""

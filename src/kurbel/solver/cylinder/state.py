@@ -13,19 +13,15 @@ from kurbel.declared.quantity import by_id
 from kurbel.mechanisms import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.jet import Jet, once_each
-from kurbel.solver.cylinder.chamber import OF_CHAMBERS
-from kurbel.solver.cylinder.guide import OF_GUIDE
+from kurbel.solver.cylinder import chamber, guide, rod_point
 from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.rod_load import rod_load
-from kurbel.solver.cylinder.rod_point import OF_POINT
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.solver.cylinder.drive import Drive
     from kurbel.solver.cylinder.pins import Rubbing
     from kurbel.solver.pressure import Pressure
-
-_ELSEWHERE = {**OF_GUIDE, **OF_CHAMBERS, **OF_POINT}
 
 
 class State:
@@ -44,11 +40,25 @@ class State:
             within = Inside(drive, angle)
         self.inside = within if isinstance(within, Inside) else Inside(drive, CrankAngle.of(once_each(within)))
 
+    guide_sense = cached_property(guide.guide_sense)
+    N = cached_property(guide.guide_force)
+    crosshead_drag = cached_property(guide.crosshead_drag)
+    crosshead_power = cached_property(guide.crosshead_power)
+    p_guide = cached_property(guide.shoe_pressure)
+    wear = cached_property(guide.wear)
+    V = cached_property(chamber.head_volume)
+    V_crank = cached_property(chamber.crank_volume)
+    dV = cached_property(chamber.head_volume_change)
+    dp_head = cached_property(chamber.head_rise)
+    dp_crank = cached_property(chamber.crank_rise)
+    point = cached_property(rod_point.motion_of_point)
+    x_point = cached_property(rod_point.place_along)
+    y_point = cached_property(rod_point.place_across)
+    v_point = cached_property(rod_point.speed)
+    b_point = cached_property(rod_point.acceleration)
+
     def __getattr__(self, id: str) -> Any:
-        """Return what is defined elsewhere, or a column that the mechanism offers; None for one that only others do."""
-        if id in _ELSEWHERE:
-            found = self.__dict__[id] = _ELSEWHERE[id](self)
-            return found
+        """Return a column that the mechanism offers; None for one that only others do."""
         offer = next((one for one in self.drive.mechanism.OFFERS if one.quantity.id == id), None)
         if offer is None:
             if id.startswith("_") or id not in by_id(every_quantity().all_columns):

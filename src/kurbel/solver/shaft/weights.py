@@ -1,12 +1,14 @@
 """What turns with the crank or on balance shafts: the masses of the cylinders, and the weights against them."""
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.balance import Counterweight, SharedCounterweights
+
+if TYPE_CHECKING:
+    from kurbel.machine.balance import Counterweight, SharedCounterweights
 
 
 class Weight(NamedTuple):
@@ -47,7 +49,7 @@ class OwnThrow:
         """Return the counterweight of what turns, and of a share of what goes to and fro."""
         return self.weight(-(self.rotating + share * self.mass))
 
-    def carrying(self, one: Counterweight, beside: float | None) -> Weight:
+    def carrying(self, one: "Counterweight", beside: float | None) -> Weight:
         """Return a counterweight whose angle counts from this throw; beside: its place where none is given."""
         product = one.product * unit_vector(self.bank - self.late + one.angle)
         return Weight(product, 1, beside if one.axial_position is None else one.axial_position, self.number)
@@ -86,7 +88,7 @@ def counterweights_of(machine: Machine, throws: Sequence[OwnThrow]) -> Iterator[
 
 
 def _given(
-    throws: Sequence[OwnThrow], given: SharedCounterweights | tuple[Counterweight, ...], wheels: tuple[float, ...]
+    throws: Sequence[OwnThrow], given: "SharedCounterweights | tuple[Counterweight, ...]", wheels: tuple[float, ...]
 ) -> Iterator[Weight]:
     if isinstance(given, tuple):
         # among several throws nobody knows beside which one a weight stands

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from kurbel.arrays import Array
     from kurbel.numerics.jet import Jet
 
+_ROUNDING = 1e-13
+"""Beside the largest torque: a mean that is less is none, as that of masses without gas, but rounding."""
 _BALANCED = 1e-9
 """Means of effort and resistance that differ by less, relatively, are equal."""
 
@@ -35,7 +37,7 @@ class Excess:
     another mean is brought to that of the effort.
     """
 
-    def __init__(self, effort: Sum, given: Torque | None = None) -> None:
+    def __init__(self, effort: Torque, given: Torque | None = None) -> None:
         self.effort = effort
         self.grid = (effort.cuts if given is None else Sum((1.0, effort), (1.0, given)).cuts).grid()
         self.cycle = float(self.grid.breaks[-1])
@@ -51,7 +53,8 @@ class Excess:
         return torque.torque(self.grid.degrees, self.grid.within)
 
     def _mean_of(self, sampled: Jet) -> float:
-        return self.grid.integral(sampled.value) / math.radians(self.cycle)
+        mean = self.grid.integral(sampled.value) / math.radians(self.cycle)
+        return mean if abs(mean) > _ROUNDING * float(np.abs(sampled.value).max()) else 0.0
 
     @cached_property
     def _sampled(self) -> Jet:
@@ -66,7 +69,7 @@ class Excess:
     def effort_extremes(self) -> Extremes:
         """Largest and smallest turning effort in N m, one-sided values at jumps included."""
         sampled = Sampled.of(self._sampled_effort, self.grid.degrees.shape)
-        return extremes(self.grid, {"M": sampled}, _Evaluated(self.effort))["M"]
+        return extremes(self.grid, {"M": sampled}, _Evaluated(Sum((1.0, self.effort))))["M"]
 
     @cached_property
     def crossings(self) -> tuple[float, ...]:

@@ -34,8 +34,7 @@ _DOUBLINGS = 30
 def speed_law(turned: MachineEffort) -> SpeedLaw | None:
     """Return how the load depends on the speed; None where it does not, or is nothing on the mean."""
     load, excess = turned.machine.load, turned.excess
-    largest = max(abs(extreme.value) for extreme in excess.effort_extremes)
-    if load is None or abs(excess.mean) <= 1e-12 * largest:
+    if load is None or not excess.mean:
         return None
     if load.slip is not None:
         return SlipLaw(excess.mean, load.slip)
