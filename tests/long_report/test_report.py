@@ -18,6 +18,7 @@ from kurbel.cli import kurbel
 from kurbel.cli.report import Progress
 from kurbel.machine_file import loads
 from kurbel.machine_file.given import given
+from kurbel.report.keys import every_place, meaning
 from kurbel.report.pictures import TERMINAL, Wish, pictures
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
@@ -146,6 +147,22 @@ def test_the_input_is_told_as_it_was_read() -> None:
     page = page_of_case(Case(machine))
     assert "set over it: bore=450 mm" in page
     assert "Diameter of the cylinder" in page
+
+
+@pytest.mark.parametrize(
+    ("path", "meant"),
+    [
+        ("name", "Name of the machine"),
+        ("cylinders[0].name", "Name of the cylinder"),
+        ("tandem[0].name", "Name of the piston"),
+        ("cylinders[1].tandem[0].name", "Name of the piston"),
+        ("cylinders[0].cycle", "Working cycle of this cylinder, among others"),
+        ("cylinders.each.rod_ratio", "L/R; or give rod"),
+        ("kein", ""),
+    ],
+)
+def test_a_key_means_what_it_means_where_it_stands(path: str, meant: str) -> None:
+    assert meaning(path, every_place()) == meant
 
 
 def test_a_long_list_is_shortened() -> None:
