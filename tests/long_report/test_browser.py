@@ -40,7 +40,8 @@ for (const one of document.querySelectorAll('h1,h2,h3,h4,p,li,td,th,a,caption,fi
   const [high, low] = [light(own), light(ground(one))].sort((a, b) => b - a);
   least = Math.min(least, (high + 0.05) / (low + 0.05));
 }
-const found = {wide: document.documentElement.scrollWidth, beyond, unseen, tallest, least, ground: ground(document.body)};
+const found = {wide: document.documentElement.scrollWidth,
+  beyond, unseen, tallest, least, ground: ground(document.body)};
 parent.postMessage(JSON.stringify(found), '*');
 </script>"""
 FRAME = """<!DOCTYPE html><body style="margin:0">
