@@ -26,6 +26,9 @@ const beyond = [...document.querySelectorAll('body *')].filter(one => {
   const box = one.getBoundingClientRect();
   return box.width && box.right > WIDTH + 1 && !(SCROLLED && one.closest('.wide'));
 }).map(one => one.tagName + ' ' + (one.textContent || '').slice(0, 40));
+const unseen = [...document.querySelectorAll('#input tr > :nth-child(2)')].filter(one =>
+  one.getBoundingClientRect().right > WIDTH + 1).map(one => one.textContent);
+const tallest = Math.max(0, ...[...document.querySelectorAll('.pair')].map(one => one.getBoundingClientRect().height));
 const channels = colour => (colour.match(/[0-9.]+/g) || []).map(Number);
 const light = colour => { const [r, g, b] = channels(colour).map(c => (c /= 255) <= 0.04045 ? c / 12.92
   : ((c + 0.055) / 1.055) ** 2.4); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
@@ -37,7 +40,8 @@ for (const one of document.querySelectorAll('h1,h2,h3,h4,p,li,td,th,a,caption,fi
   const [high, low] = [light(own), light(ground(one))].sort((a, b) => b - a);
   least = Math.min(least, (high + 0.05) / (low + 0.05));
 }
-const found = {wide: document.documentElement.scrollWidth, beyond, least, ground: ground(document.body)};
+const found = {wide: document.documentElement.scrollWidth,
+  beyond, unseen, tallest, least, ground: ground(document.body)};
 parent.postMessage(JSON.stringify(found), '*');
 </script>"""
 FRAME = """<!DOCTYPE html><body style="margin:0">
@@ -79,9 +83,11 @@ def test_the_console_stays_silent(names: tuple[str, ...], tmp_path: Path) -> Non
 
 @browser
 @pytest.mark.parametrize("names", PAGES, ids=" and ".join)
-@pytest.mark.parametrize("width", [360, 768, 1280])
+@pytest.mark.parametrize("width", [360, 500, 768, 1280])
 def test_nothing_overflows(names: tuple[str, ...], width: int, tmp_path: Path) -> None:
+    """Nor has a reader to scroll from a key to its value."""
     found = measured(page_of(*names), width, tmp_path)
+    assert found["unseen"] == []
     assert found["beyond"] == []
     assert found["wide"] == width
 
@@ -102,6 +108,14 @@ def test_print_stays_within_the_sheet(sheet: str, inner: float, tmp_path: Path) 
     page = page_of("gas-engine").replace("@media print", "@media all")
     found = measured(page, int(inner / 25.4 * 96), tmp_path, scrolled=False)
     assert found["beyond"] == []
+
+
+@browser
+def test_two_pictures_to_compare_stand_on_one_sheet(tmp_path: Path) -> None:
+    page = page_of("waterworks", "compressor").replace("@media print", "@media all")
+    found = measured(page, int((210 - 28) / 25.4 * 96), tmp_path, scrolled=False)
+    assert found["beyond"] == []
+    assert 0 < found["tallest"] <= (297 - 28) / 25.4 * 96
 
 
 @browser

@@ -18,6 +18,7 @@ from kurbel.cli import kurbel
 from kurbel.cli.report import Progress
 from kurbel.machine_file import loads
 from kurbel.machine_file.given import given
+from kurbel.report.keys import every_place, meaning
 from kurbel.report.pictures import TERMINAL, Wish, pictures
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
@@ -148,6 +149,22 @@ def test_the_input_is_told_as_it_was_read() -> None:
     assert "Diameter of the cylinder" in page
 
 
+@pytest.mark.parametrize(
+    ("path", "meant"),
+    [
+        ("name", "Name of the machine"),
+        ("cylinders[0].name", "Name of the cylinder"),
+        ("tandem[0].name", "Name of the piston"),
+        ("cylinders[1].tandem[0].name", "Name of the piston"),
+        ("cylinders[0].cycle", "Working cycle of this cylinder, among others"),
+        ("cylinders.each.rod_ratio", "L/R; or give rod"),
+        ("kein", ""),
+    ],
+)
+def test_a_key_means_what_it_means_where_it_stands(path: str, meant: str) -> None:
+    assert meaning(path, every_place()) == meant
+
+
 def test_a_long_list_is_shortened() -> None:
     points = ", ".join(f"[{angle}, {angle / 100}]" for angle in range(0, 361, 10))
     machine = loads(f"{{speed: 50 rpm, effort: {{unit: N m, points: [{points}]}}}}")
@@ -160,6 +177,17 @@ def test_two_machines_side_by_side() -> None:
     assert page.count('<div class="pair">') >= 6
     assert "What was given differently" in page
     html5lib.HTMLParser(strict=True).parse(page)
+
+
+def test_equal_cylinders_are_told_once_side_by_side() -> None:
+    """The pins of the crossheads, too: each shell has two equal pieces that no load reaches, and all tell the same."""
+    names = re.findall("<caption>(.*?)</caption>", page_of("v8-cross-plane", "v8-cross-plane"))
+    every = "left 1, right 1, left 2, right 2, left 3, right 3, left 4, right 4"
+    assert names[:2] == [every, every]
+    assert [name for name in names if "crosshead" in name] == [
+        "crosshead pin of left 1–4",
+        "crosshead pin of right 1–4",
+    ]
 
 
 def test_differences_are_in_percent(tmp_path: Path) -> None:

@@ -60,9 +60,9 @@ def test_all_are_drawn_where_all_are_asked_for() -> None:
 
 def test_a_mechanism_at_chosen_angles(tmp_path: Path) -> None:
     file = tmp_path / "m.svg"
-    assert run(WATERWORKS, "mechanism", "--angles", "0,45,90", "-o", str(file)).exit_code == 0
+    assert run(WATERWORKS, "mechanism", "--angles", "0,45,123.4567", "-o", str(file)).exit_code == 0
     text = file.read_text(encoding="utf-8")
-    assert all(f"φ = {angle}°" in text for angle in (0, 45, 90))
+    assert all(f"φ = {angle}°" in text for angle in (0, 45, 123.4567))
     assert "animate" not in text
 
 

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 import pytest
 from drawn import drawn, ids_of, named
 
+from kurbel.machine_file import loads
 from kurbel.render import Look
 from kurbel.render.html import BAD, GOOD, LINK
 from kurbel.render.html import FAINT as PAGE_FAINT
@@ -19,10 +20,11 @@ from kurbel.render.html import SHADE as PAGE_SHADE
 from kurbel.render.pictures.drawing import draw_file
 from kurbel.render.pictures.labels import CHARACTER, Box
 from kurbel.render.pictures.layout import scene
-from kurbel.render.pictures.scene import Text, levels, thinned
+from kurbel.render.pictures.scene import Text, thinned
 from kurbel.render.pictures.style import FAINT, GAIN, INK, LOOKS, LOSS, PAPER, css
 from kurbel.render.pictures.svg import svg_file
 from kurbel.report.pictures import Wish, pictures
+from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 
 LARGEST = 60_000
@@ -199,7 +201,23 @@ def test_a_long_name_takes_several_lines() -> None:
     ],
 )
 def test_subscripts_stand_lower(text: str, typeset: list[str]) -> None:
-    assert levels(text) == typeset
+    assert Text(0, 0, text).levels == typeset
+
+
+def test_names_are_no_symbols() -> None:
+    """Neither those of pistons over their panels nor those of masses along an axis."""
+    text = CONFIGS["waterworks"].read_text(encoding="utf-8").replace("name: pump", "name: A_1")
+    (picture,) = pictures(Case(loads(text)), ("card",), Wish())
+    assert ">A_1</text>" in "".join(svg_file([picture], Look()))
+    text = CONFIGS["marine-diesel"].read_text(encoding="utf-8").replace("name: propeller", "name: G_2")
+    (picture,) = pictures(Case(loads(text)), ("modes",), Wish())
+    assert ">G_2</text>" in "".join(svg_file([picture], Look()))
+
+
+def test_what_is_nought_at_every_angle_is_said() -> None:
+    """Four cylinders in line have no free moment."""
+    (picture,) = drawn("four-in-line", "free-angle")
+    assert [panel.title for panel in picture.panels] == ["", "0 at every angle", ""]
 
 
 def test_subscripts_of_a_file() -> None:

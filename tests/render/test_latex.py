@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-import pytest
+import re
+import shutil
+import subprocess
+from pathlib import Path
 
+import pytest
+from click.testing import CliRunner
+
+from kurbel.cli import kurbel
 from kurbel.mechanisms import every_quantity
 from kurbel.render import Look, render
 from kurbel.render.latex import symbol, text
 from render.sample_report import REPORT
+from representative import CONFIGS
 
 
 @pytest.mark.parametrize(
@@ -40,3 +48,21 @@ def test_equal_cylinders_are_told_once() -> None:
     twice = REPORT._replace(parts=(part, part._replace(name="cylinder 2")), whole=None)
     assert "".join(render(twice, Look("latex"))).count("Key values") == 1
     assert "".join(render(twice, Look("html"))).count("<caption>Key values") == 1
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex on this machine")
+@pytest.mark.parametrize(
+    "words",
+    ["forces waterworks", "forces waterworks --key-values", "stress gas-engine", "torsion marine-diesel", "table"],
+)
+def test_an_article_takes_it_in_and_nothing_is_too_wide(words: str, tmp_path: Path) -> None:
+    command = [str(CONFIGS.get(word, word)) for word in words.split()]
+    done = CliRunner().invoke(kurbel, [*command, "-f", "latex", "-o", str(tmp_path / "tables.tex")])
+    assert done.exit_code == 0
+    body = "\\usepackage{booktabs,longtable}\\begin{document}\\input{tables}\\end{document}"
+    (tmp_path / "article.tex").write_text(f"\\documentclass{{article}}{body}", encoding="utf-8")
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "article"]
+    for _ in range(2):  # longtable knows the widths of its columns from the second run on
+        said = subprocess.run(command, cwd=tmp_path, capture_output=True, timeout=60, check=True).stdout
+    assert not re.search(b"Overfull|Missing character", said)

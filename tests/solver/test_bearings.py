@@ -201,6 +201,12 @@ def test_arcs_join_round_the_circle() -> None:
     assert unloaded(np.array([0.0, 100.0, 200.0, 300.0]), np.zeros(3, bool)).arc == 0
 
 
+def test_rounding_does_not_choose_between_equal_arcs() -> None:
+    """Loads to and fro leave 60° on either side; a thousand-millionth of a degree decides nothing."""
+    for tilt in (-1e-9, 0.0, 1e-9):
+        assert unloaded(np.array([0.0, 180.0 + tilt]), np.array([False])).middle == pytest.approx(90)
+
+
 def test_means_against_scipy() -> None:
     pin = Case(loads(ENGINE)).bearings.parts[0]
     bends = sorted({float(one) for one in pin._grid.breaks})

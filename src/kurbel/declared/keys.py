@@ -91,12 +91,12 @@ class Form(ABC):
         inner = f"{path}.{name}" if path else name
         yield from self.places(inner, f"under '{inner}'")
 
-    def meant(self, name: str, key: "Key") -> dict[str, str]:
-        """Return what people try for what a key of this form stands for, each with the key that is meant.
+    def meant(self, name: str, key: "Key") -> "dict[str, tuple[str, Form]]":
+        """Return what people try for what a key of this form stands for, each with the key that is meant and its form.
 
         Such are other words for it, and the symbol with which the books write it.
         """
-        return dict.fromkeys(filter(None, (*key.also, key.symbol)), name) | {
+        return dict.fromkeys(filter(None, (*key.also, key.symbol)), (name, self)) | {
             word: inner
             for record in self.inline()
             for other, one in record.keys.items()

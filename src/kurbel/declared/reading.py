@@ -65,10 +65,12 @@ class Reading:
     def where_it_belongs(self, key: str, path: Path) -> str:
         """Return where near a path a key may stand, such as "it belongs under 'friction.rings'", or ''.
 
-        Near are the mappings above it and those right below: a key of that name elsewhere means something else.
+        Near are the mappings above it and those right below, or any below where none is near: a key of that name
+        elsewhere means something else.
         """
-        found = dict.fromkeys(words for words, name in self._places() if name == key and _near(words, path))
-        return "it belongs " + " or ".join(list(found)[:3]) if found else ""
+        named = list(dict.fromkeys(words for words, name in self._places() if name == key))
+        found = [words for words in named if _near(words, path)] or [words for words in named if _below(words, path)]
+        return "it belongs " + " or ".join(found[:3]) if found else ""
 
     def note(self, fault: Fault) -> Any:
         """Keep a fault and return REFUSED, which stands for the value that could not be read.
@@ -106,10 +108,24 @@ class Reading:
 
 def _near(words: str, path: Path) -> bool:
     """Return whether words for a mapping, such as "under 'friction.rings'", are for one near the mapping at a path."""
-    there = words.split("'")[1].split(".") if words.startswith("under '") else []
-    here = [step for step in path if isinstance(step, str)]
-    here = here[2:] if here[:2] == ["cylinders", "each"] else here[here[:1] == ["cylinders"] :]
+    there, here = _steps(words), _within_cylinder(path)
     return here[: len(there)] == there or there[:-1] == here
+
+
+def _below(words: str, path: Path) -> bool:
+    """Return whether words for a mapping are for one somewhere below the mapping at a path."""
+    here = _within_cylinder(path)
+    return _steps(words)[: len(here)] == here
+
+
+def _steps(words: str) -> list[str]:
+    return words.split("'")[1].split(".") if words.startswith("under '") else []
+
+
+def _within_cylinder(path: Path) -> list[str]:
+    """Return the keys on the way to a mapping, from its cylinder on where it is in one."""
+    here = [step for step in path if isinstance(step, str)]
+    return here[2:] if here[:2] == ["cylinders", "each"] else here[here[:1] == ["cylinders"] :]
 
 
 def shown(text: str, most: int = 60) -> str:

@@ -100,6 +100,7 @@ class Masses(Described):
             OneOf(Physical("mass", least=0), Record("kurbel.machine.masses:ConnectingRod")),
             "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
             instead="reciprocating",
+            also=("con_rod", "conrod"),
         ),
         "rotating": not_negative(
             "mass", "Unbalanced mass of the crank, as one at its pin, without the connecting rod", "m_rot", absent="0"

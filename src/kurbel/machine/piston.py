@@ -29,7 +29,9 @@ class Piston(Described):
         "name": Key(Text(), "Name of the piston", absent="piston"),
         "bore": positive("length", "Diameter of the cylinder", "d", required=True),
         "head_end_rod": not_negative("length", "Diameter of the rod through the head end", absent="0"),
-        "crank_end_rod": not_negative("length", "Diameter of the rod through the crank end", absent="0"),
+        "crank_end_rod": not_negative(
+            "length", "Diameter of the rod through the crank end", absent="0", also=("piston_rod", "rod_diameter")
+        ),
         "indicator": Key(
             Record("kurbel.machine.indicator:Indicator"),
             "Pressures on the two sides",

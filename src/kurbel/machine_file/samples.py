@@ -33,7 +33,10 @@ def layout_keys(what: str) -> Keys:
         f"{what}_column": Key(Count(), f"Column of the {what}s, counted from 1", absent="2"),
         "skip_rows": Key(Count(least=0), "Number of lines above the first figures", absent="0"),
         "delimiter": Key(
-            Choice((*DELIMITERS, *DELIMITERS.values())), "What stands between two columns", absent="comma"
+            Choice((*DELIMITERS, *DELIMITERS.values())),
+            "What stands between two columns",
+            absent="comma",
+            also=("separator", "sep"),
         ),
         "decimal": Key(Choice(tuple(_DECIMALS)), "Decimal point or decimal comma", absent="point"),
         "angle_zero": Key(

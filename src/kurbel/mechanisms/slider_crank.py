@@ -85,6 +85,7 @@ class SliderCrank(Mechanism):
             "Length of the connecting rod, or `infinite`; or give `rod_ratio`",
             "L",
             required=True,
+            also=("con_rod", "conrod", "connecting_rod"),
         ),
         "rod_ratio": Key(Number(above=1, words=_INFINITE), "L/R; or give `rod`", "L/R", instead="rod", example="5"),
         "offset": Key(

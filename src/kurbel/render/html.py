@@ -56,7 +56,7 @@ def style() -> str:
         "table{border-collapse:collapse;font-variant-numeric:tabular-nums}"
         "caption{text-align:left;font-weight:600;padding:.3rem 0}\n"
         "th,td{padding:.12rem .5rem;text-align:left;vertical-align:top;overflow-wrap:normal}"
-        "td.r,th.r{text-align:right;white-space:nowrap}\n"
+        "td.r,th.r{text-align:right}td.r,tbody th.r,thead small{white-space:nowrap}\n"
         "thead th{border-top:2px solid var(--ink);border-bottom:1px solid var(--ink);vertical-align:bottom}"
         "tbody tr:last-child>*{border-bottom:2px solid var(--ink)}tbody th{font-weight:400}\n"
         "@media screen and (max-width:40rem){.wide td:not(.r):last-child{min-width:12rem}}\n"
@@ -134,7 +134,10 @@ def _cells(row: Sequence[str], of_row: int, numbers: Collection[int]) -> Iterato
         text = text.strip()
         shown = f"<b>{escape(text[:-1])}</b>" if text.endswith(MARK) else escape(text)
         right = _RIGHT if k in numbers else ""
-        yield f'<th scope="row"{right}>{shown}</th>' if k < of_row else f"<td{right}>{shown}</td>"
+        if k < of_row:
+            yield f'<th scope="row"{right}>{shown if right else shown.replace(".", ".<wbr>")}</th>'  # long keys fold
+        else:
+            yield f"<td{right}>{shown}</td>"
 
 
 def item_list(title: str, lines: Iterable[str], level: int) -> str:

@@ -81,8 +81,13 @@ def places_at(path: str) -> list[Place]:
 def meaning(path: str, places: dict[str, list[Place]]) -> str:
     """Return what the key at the end of a path as the file has it means; '' of one that is not known."""
     steps = _steps(path)
-    found = next((places[end] for k in range(len(steps)) if (end := ".".join(steps[k:])) in places), None)
-    return found[0].key.text.replace("`", "") if found else ""
+    above = next((k for k in range(len(steps)) if ".".join(steps[k:]) in places), None)
+    if above is None:
+        return ""
+    found = places[".".join(steps[above:])]
+    every = [one for one in found if not one.beside] or found  # of the machine, of a cylinder, of a piston
+    record = 2 if "tandem" in steps[:above] else min(above, 1)
+    return every[min(record, len(every) - 1)].key.text.replace("`", "")
 
 
 def _steps(path: str) -> list[str]:

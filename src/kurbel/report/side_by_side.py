@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import zip_longest
+from operator import itemgetter
 from typing import Any, TypeVar
 
 import numpy as np
@@ -13,6 +14,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import Extreme
+from kurbel.report.alike import grouped, together
 from kurbel.report.document import Document, Grid, Pair, Section
 from kurbel.report.frame import Subject, subjects_of
 from kurbel.report.pictures import PICTURES, Wish, pictures_if_any
@@ -50,15 +52,14 @@ def _given(given: Sequence[Given], first: str, second: str) -> Iterator[Grid | s
 
 
 def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterator[Grid | Pair]:
-    """Yield the key values of both machines, cylinder beside cylinder, and then the pictures."""
+    """Yield the key values of both machines, cylinder beside cylinder, equal ones once, and then the pictures."""
     both = [_had(partial(subjects_of, case, command.word)) for case in cases]
-    first, second = _names(cases)
-    for left, right in zip_longest(*both):
-        rows = tuple(_rows(left, right, command.word, system))
+    heads = ("Symbol", *_names(cases), "Unit", "Difference", "Meaning")
+    told = [((one or other).name, tuple(_rows(one, other, command.word, system))) for one, other in zip_longest(*both)]
+    for equal in grouped(told, itemgetter(1)):
+        names, (rows, *_) = zip(*equal)
         if rows:
-            title = (left or right).name if max(map(len, both)) > 1 else "Key values"
-            heads = ("Symbol", first, second, "Unit", "Difference", "Meaning")
-            yield Grid(title, heads, rows, (1, 2, 4), (3,))
+            yield Grid(together(names) if len(told) > 1 else "Key values", heads, rows, (1, 2, 4), (3,))
     for declared in PICTURES:
         if declared.command == command.word:
             drawn = [_had(partial(pictures_if_any, case, declared, Wish(system))) for case in cases]

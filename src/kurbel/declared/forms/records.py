@@ -136,14 +136,15 @@ class Record(Form):
     ) -> Iterator[str]:
         """Note a fault for each unknown key and yield the known ones that were probably meant."""
         elsewhere: dict[str, str] = {}
-        other_words: dict[str, str] = {}
+        other_words: dict[str, tuple[str, Form]] = {}
         for name, key in self.keys.items() if unknown else ():
             elsewhere |= key.form.moved(name, mapping)
             other_words |= key.form.meant(name, key)
         listed = False
         for name in unknown:
-            meant = "" if name in elsewhere else _near(name, known, other_words)
-            message = elsewhere.get(name) or _unknown_message(reading, name, meant, path)
+            home = reading.where_it_belongs(name, path)
+            meant = "" if name in elsewhere else _meant(name, mapping[name], known, other_words, home)
+            message = elsewhere.get(name) or _unknown_message(name, meant, home)
             if not message:
                 message = "unknown key" if listed else f"unknown key; known here are {', '.join(known)}"
                 listed = True
@@ -188,19 +189,24 @@ def _missing(name: str, key: Key, beside: str) -> str:
     return f"'{name}' is missing{' beside it' if beside else ''}: {meaning}; {key.write(name)}"
 
 
-def _near(name: str, known: tuple[str, ...], other_words: dict[str, str]) -> str:
-    """Return the key that was probably meant, by another word for it or by its own name misspelt; or ''."""
-    meant = other_words.get(name, "")
-    return meant if meant in known else near(name, known)
+def _meant(name: str, value: Any, known: tuple[str, ...], other_words: dict[str, tuple[str, Form]], home: str) -> str:
+    """Return the key that was probably meant, by another word for it or by its own name misspelt; or ''.
+
+    home: where a key of this name belongs, if there is one; then the word means a key of a single value only with
+    one that suits it, such as a piston rod in mm, which is no mass.
+    """
+    meant, form = other_words.get(name, ("", None))
+    if form and meant in known and not (home and form.shape is str and form.read(Reading(), value, ()) is REFUSED):
+        return meant
+    return near(name, known)
 
 
-def _unknown_message(reading: Reading, name: str, meant: str, path: Path) -> str:
+def _unknown_message(name: str, meant: str, home: str) -> str:
     """Return what was probably meant by an unknown key, or an empty text where nothing is like it."""
     if meant:
         return f"unknown key; did you mean '{meant}'?"
     if name == "<<":
         return "merging is not supported; write the keys themselves; a cylinder may be 'like: NAME' of another"
-    home = reading.where_it_belongs(name, path)
     return f"does not belong here; {home}" if home else ""
 
 

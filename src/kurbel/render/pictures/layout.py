@@ -28,7 +28,7 @@ SECONDS = 6.0
 def scene(picture: Picture, look: Look, width: float = WIDTH) -> Scene:
     """Return a picture laid out on this width, in points."""
     heading = folded(look.charset.text(picture.heading), int((width - 16) / _BOLD))
-    items: list[Item] = [Text(8.0, 16.0 + 17.0 * number, text, "h") for number, text in enumerate(heading)]
+    items: list[Item] = [Text(8.0, 16.0 + 17.0 * number, text, "h", plain=True) for number, text in enumerate(heading)]
     top = _TITLE + 17.0 * (len(heading) - 1)
     rows = [picture.panels[i : i + picture.across] for i in range(0, len(picture.panels), picture.across)]
     for row in rows:

@@ -80,7 +80,7 @@ def _along(places: list[float], texts: Sequence[str], edge: float, base: float) 
         middle = min(place, edge - half)
         if all(middle + half <= left or middle - half >= right for left, right in taken):
             taken.append((middle - half, middle + half))
-            yield Text(middle, base, text, "t", "middle")
+            yield Text(middle, base, text, "t", "middle", plain=True)
 
 
 def _shade(shade: Shade, scales: Scales) -> Iterator[Item]:
@@ -122,9 +122,10 @@ def _heading(panel: Panel, frame: Box, scales: Scales, looks: list[int], look: L
     """Yield what stands above a panel: its title, what runs upward, and which stroke is which quantity."""
     x, base = scales[0], frame.top + (13 if panel.plain else 24)
     left = x.start if panel.plain else 12.0 + frame.left
-    for text in (look.charset.text(panel.title), "" if panel.plain else axis_text(panel.y.name, panel.y.unit, look)):
+    axis = "" if panel.plain else axis_text(panel.y.name, panel.y.unit, look)
+    for text, title in ((look.charset.text(panel.title), True), (axis, False)):
         if text:
-            yield Text(left, base, text, still=bool(panel.frames))
+            yield Text(left, base, text, still=bool(panel.frames), plain=title)
             left += CHARACTER * cells(text) + 20
     lines = [(curve, one) for curve, one in zip(panel.curves, looks) if curve.kind == "line"]
     for curve, one in lines if len(lines) > 1 else ():

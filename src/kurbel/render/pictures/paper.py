@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-from kurbel.render.pictures.scene import Dots, Item, Line, Text, levels
+from kurbel.render.pictures.scene import Dots, Item, Line, Text
 from kurbel.render.pictures.style import FAINT, GAIN, GRID, INK, LOOKS, LOSS, PAPER
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def _text(axes: Any, item: Text, top: float, order: int) -> None:
 
     anchor = {"start": "left", "middle": "center", "end": "right"}[item.anchor]
     size, weight = (13, "bold") if item.look == "h" else (10, "normal")
-    text = item.text if item.look == "h" else _mathtext(item.text)
+    text = _mathtext(item)
     drawn = axes.text(
         item.x,
         item.y + top,
@@ -74,11 +74,11 @@ def _text(axes: Any, item: Text, top: float, order: int) -> None:
         drawn.set_path_effects([Stroke(linewidth=3 * _POINT, foreground=PAPER[0]), Normal()])
 
 
-def _mathtext(text: str) -> str:
+def _mathtext(item: Text) -> str:
     """Return a text with its subscripts as matplotlib sets them; one without any as it is."""
-    first, *following = levels(text)
+    first, *following = item.levels
     if not following:
-        return text
+        return first
     below = [re.sub("([,=/])", r"{\1}", one) for one in following[::2]]
     return first + "".join(rf"$_{{\mathregular{{{one}}}}}${rest}" for one, rest in zip(below, following[1::2]))
 

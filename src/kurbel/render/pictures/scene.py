@@ -5,9 +5,12 @@ from typing import NamedTuple, Union
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, ComplexArray
 
 Places = tuple[tuple[float, float], ...]
+
+
+_SUBSCRIPT = re.compile(r"(?:(?<=\b\w)|(?<=Δ\w))_([^\s|]+?)(?=,?\s|,?$|\|)")
 
 
 class Line(NamedTuple):
@@ -22,7 +25,8 @@ class Line(NamedTuple):
 class Text(NamedTuple):
     """A text at a place, by its start, middle or end; halo: it may stand on lines; frames: where it moves to.
 
-    still: it is of one moment, and stands only where nothing moves.
+    still: it is of one moment, and stands only where nothing moves; plain: it is a name or a
+    number, of which nothing is lowered.
     """
 
     x: float
@@ -33,6 +37,18 @@ class Text(NamedTuple):
     halo: bool = False
     frames: Places = ()
     still: bool = False
+    plain: bool = False
+
+    @property
+    def levels(self) -> list[str]:
+        """What stands on the line and what below it as subscripts, in turn.
+
+        >>> Text(0, 0, "T_max 5.1 kN").levels, Text(0, 0, "F_x, F_y in N").levels
+        (['T', 'max', ' 5.1 kN'], ['F', 'x', ', F', 'y', ' in N'])
+        >>> Text(0, 0, "my_engine").levels, Text(0, 0, "A_1", plain=True).levels
+        (['my_engine'], ['A_1'])
+        """
+        return [self.text] if self.plain else _SUBSCRIPT.split(self.text)
 
 
 class Dots(NamedTuple):
@@ -47,17 +63,6 @@ class Dots(NamedTuple):
 
 Item = Union[Line, Text, Dots]
 
-_SUBSCRIPT = re.compile(r"(?:(?<=\b\w)|(?<=Δ\w))_([^\s|]+?)(?=,?\s|,?$|\|)")
-
-
-def levels(text: str) -> list[str]:
-    """Return what of a text stands on the line and what below it as subscripts, in turn.
-
-    >>> levels("T_max 5.1 kN"), levels("F_x, F_y in N"), levels("my_engine")
-    (['T', 'max', ' 5.1 kN'], ['F', 'x', ', F', 'y', ' in N'], ['my_engine'])
-    """
-    return _SUBSCRIPT.split(text)
-
 
 class Scene(NamedTuple):
     """A laid out picture: its size, what stands on it, the later over the earlier, and what it says in words."""
@@ -71,6 +76,7 @@ class Scene(NamedTuple):
 
 def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
     """Return places x, y (n,) without those that lie on a straight line between others, but for `within`."""
+    places = x + 1j * y
     keep = np.zeros(len(x), dtype=bool)
     keep[[0, -1]] = True
     spans = [(0, len(x) - 1)]
@@ -78,7 +84,7 @@ def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
         start, end = spans.pop()
         if end - start < 2:
             continue
-        far = _distances(x[start : end + 1], y[start : end + 1])
+        far = _distances(places[start : end + 1])
         most = int(np.argmax(far))
         if far[most] > within:
             keep[start + most] = True
@@ -86,11 +92,8 @@ def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
     return tuple(zip(x[keep].tolist(), y[keep].tolist()))
 
 
-def _distances(x: Array, y: Array) -> Array:
-    """Return how far places (n,) lie from the chord between the first and the last."""
-    along, across = x[-1] - x[0], y[-1] - y[0]
-    length = float(np.hypot(along, across))
-    if not length:
-        return np.asarray(np.hypot(x - x[0], y - y[0]))
-    inner = np.clip(((x - x[0]) * along + (y - y[0]) * across) / length**2, 0.0, 1.0)
-    return np.asarray(np.hypot(x - x[0] - inner * along, y - y[0] - inner * across))
+def _distances(places: ComplexArray) -> Array:
+    """Return how far places x + iy (n,) lie from the chord between the first and the last."""
+    chord, reached = places[-1] - places[0], places - places[0]
+    along = np.minimum(np.maximum((reached / chord).real, 0.0), 1.0) if chord else 0.0
+    return np.asarray(np.abs(reached - along * chord))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from html import escape
 from typing import TYPE_CHECKING
 
-from kurbel.render.pictures.scene import Dots, Item, Places, Scene, Text, levels
+from kurbel.render.pictures.scene import Dots, Item, Places, Scene, Text
 from kurbel.render.pictures.style import css
 
 if TYPE_CHECKING:
@@ -79,8 +79,8 @@ def _text(item: Text, seconds: float) -> str:
 
 
 def _typeset(item: Text) -> str:
-    """Return the words of a text with their subscripts lowered; a title is a name, and has none."""
-    first, *following = [item.text] if item.look == "h" else levels(item.text)
+    """Return the words of a text with their subscripts lowered."""
+    first, *following = item.levels
     text = escape(first)
     for below, rest in zip(following[::2], following[1::2]):
         text += f'<tspan dy="2" font-size="80%">{escape(below)}</tspan>'

@@ -58,7 +58,7 @@ def _drawn(source: Source, degrees: Array) -> list[Panel]:
         lines = (_curve("guide", [end[k] for end in guide]) for guide in guides)
         curves = (_path(here["shaft"], crank), *lines, *_members(sketch, here, 0.09 * crank))
         panel = Panel(axis, axis, curves, arrows=tuple(one[k] for one in arrows), equal=True, plain=True)
-        panels.append(panel._replace(title=f"φ = {angle:.4g}°"))
+        panels.append(panel._replace(title=f"φ = {round(angle, 2 if source.angles is None else 6):.9g}°"))
     return panels
 
 

@@ -103,6 +103,7 @@ class Source:
         )
         marks = tuple(mark for id in ids for mark in self.marks(id, unit, over, run.unit))
         name = Words(*(", ".join(symbols) for symbols in zip(*map(self.words, ids))))
+        title = title or ("" if samples.values[1:].any() else "0 at every angle")
         return Panel(run, Axis(name, unit), curves, marks=marks, title=title)
 
     def axis(self, id: str, values: Array) -> Axis:

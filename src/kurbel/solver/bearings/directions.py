@@ -41,8 +41,14 @@ class Plane(NamedTuple):
         return bearing(self.across + self.along * 0.0, self.along + self.across * 0.0)
 
 
+_EQUAL = 1e-6  # degrees; by which rounding may part two pieces that are equally wide
+
+
 class Unloaded(NamedTuple):
-    """What of a surface no load reaches, in degrees: all of it, and the middle of its widest piece, if any."""
+    """What of a surface no load reaches, in degrees: all of it, and the middle of its widest piece, if any.
+
+    Of pieces equally wide it is the first from 0° on.
+    """
 
     arc: float
     middle: float | None
@@ -65,5 +71,5 @@ def unloaded(direction: Array, joined: Flags) -> Unloaded:
     free = (gaps > 0) & (begins[1:] > 0) & (begins[1:] <= 360.0)
     if not free.any():
         return Unloaded(0.0, None)
-    widest = int(np.argmax(np.where(free, gaps, 0.0)))
+    widest = int(np.argmax(free & (gaps > gaps[free].max() - _EQUAL)))
     return Unloaded(float(gaps[free].sum()), math.remainder(begins[1 + widest] - gaps[widest] / 2, 360.0))
