@@ -176,3 +176,8 @@ def test_notebooks_show_tables_that_are_escaped() -> None:
     assert "&lt; 10⁻¹⁴</td>" in page
     locked = kurbel.loads((PLAIN % PRESSURE)[:-1] + ", friction: {crosshead: 20}}")
     assert "<p>" in kurbel.solve(locked).cylinders[0]._repr_html_()
+
+
+def test_a_record_tells_what_was_given_to_it() -> None:
+    cylinder = kurbel.Cylinder(kurbel.SliderCrank(crank=0.4, rod=2.0), name="HP")
+    assert repr(cylinder) == "Cylinder(mechanism=SliderCrank(crank=0.4, rod=2.0), name='HP')"

@@ -83,7 +83,7 @@ def _shaft_line(parts: tuple[ShaftPart | str, ...], cylinders: list[str]) -> Sha
         raise RuleError(*(fault.below(("shaft",)) for fault in error.faults)) from None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Machine(Described):
     """A whole machine.
 

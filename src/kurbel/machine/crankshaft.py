@@ -19,7 +19,7 @@ def _length(text: str, symbol: str, required: bool = True, absent: str = "") -> 
     return positive("length", text, symbol, required=required, absent=absent)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Crankshaft(Described):
     """A crank throw between bearing A and bearing B, the one on the side of the flywheel; lengths in m.
 

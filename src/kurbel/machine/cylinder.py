@@ -47,7 +47,7 @@ COUNTERWEIGHTS = Key(
 """Of a cylinder beside its throw, or of the whole machine."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Cylinder(Described):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 

@@ -11,7 +11,7 @@ from kurbel.declared.units import Factor
 from kurbel.machine.rectangle import Rectangle
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Drawn(Described):
     """The paper of a card: its length in m, and the scale of the spring in m/Pa."""
 

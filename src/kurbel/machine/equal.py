@@ -13,7 +13,7 @@ from kurbel.errors import Fault, Path, refuse
 from kurbel.machine.cylinder import Cylinder
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EqualCylinders(Described):
     """Cylinders that differ in name, crank position and place only.
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Rings(Described):
     """Piston rings: their number, height in m, pressure on the wall in Pa, and coefficient of friction."""
 
@@ -31,7 +31,7 @@ class Rings(Described):
     }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Guide(Described):
     """The shoe with which a crosshead presses on its guide: length along the stroke and width in m."""
 
@@ -56,7 +56,7 @@ def _diameter(of: str, text: str, symbol: str, absent: str = "") -> Key:
     return positive("length", text, symbol, absent=absent, needs=of)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Friction(Described):
     """Coefficient f of the crosshead, None where it is left out, rings, a force in N against the motion, the shoe.
 

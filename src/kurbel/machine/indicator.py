@@ -54,7 +54,7 @@ STROKES = {"two-stroke": ("expansion", "compression"), "four-stroke": ("expansio
 """Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Card(Described):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
@@ -239,7 +239,7 @@ _CHAMBER = Keyed(
 _ONE_PRESSURE = Rectangular("level")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Indicator(Described):
     """The pressures in the two ends of a cylinder; an end that is None is open to the ambient.
 

@@ -17,7 +17,7 @@ def _part(text: str) -> Key:
     return Key(_ONE_OR_MORE, text, instead="reciprocating")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ConnectingRod(Described):
     """The connecting rod's mass in kg and how it moves.
 
@@ -73,7 +73,7 @@ class ConnectingRod(Described):
         return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Masses(Described):
     """Moving masses in kg: the sum of piston, piston rod, crosshead and others, the connecting rod, and what turns.
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kurbel.machine.indicator import Indicator
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Piston(Described):
     """A piston: bore and rod diameters in m, and what the indicator shows on its two sides."""
 

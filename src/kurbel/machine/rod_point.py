@@ -12,7 +12,7 @@ from kurbel.errors import Fault
 from kurbel.mechanisms import Mechanism
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RodPoint(Described):
     """A point `along` the rod in m from one of its pins toward the other, or beyond it, and `across` from its line.
 

@@ -23,7 +23,7 @@ _OF_MASS = ("inertia", "cylinder", "load")
 _OF_PIECE = ("stiffness", "diameter", "length", "bore", "shear_modulus", "loss_factor")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ShaftPart(Described):
     """One item of the list: a mass, a piece of shaft, or a pair of gears; what is not given is None."""
 

@@ -69,7 +69,7 @@ class Harmonics:
         return ""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Load(Described):
     """The resistance at the shaft, in exactly one of three forms.
 
@@ -106,7 +106,7 @@ class Load(Described):
         return self.diagram.cycle_fault(cycle) if self.diagram else ""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Coupling(Described):
     """An elastic coupling: stiffness in N m/rad, damping in N m s/rad, and the driven moment of inertia in kg m²."""
 

@@ -42,7 +42,7 @@ COUPLER_OFFERS = turning_offers(
 )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FourBar(Mechanism):
     """A crank that turns fully and through a coupler swings a rocker, or, where the frame is shortest, turns it too.
 

@@ -40,7 +40,7 @@ _B_COUPLER = Quantity("b_coupler", "b_K", "acceleration", _ACCELERATION, "", _BO
 _INERTIA = Quantity("coupler_inertia", "F_b", "force", _FORCE, commands=("forces",), after="T_min")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ParallelCrank(Mechanism):
     """Two equal cranks, joined by a coupler of the length of the frame: the coupled wheels of a locomotive.
 

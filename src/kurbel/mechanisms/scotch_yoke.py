@@ -21,7 +21,7 @@ _CALLED = "force on each of the two guides of a yoke"
 _N_PAIR = own_force("N_pair", "N_2", "force", f"{_CALLED.capitalize()}, opposite to one another", _CALLED)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ScotchYoke(Mechanism):
     """A crank pin whose block slides in a yoke square to the stroke line.
 

@@ -63,7 +63,7 @@ ROD_OFFERS = (
 )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 

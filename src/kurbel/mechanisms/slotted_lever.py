@@ -26,7 +26,7 @@ class _Lever(NamedTuple):
     reach: Any
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SlottedLever(Mechanism):
     """A crank pin that slides in a slotted lever, whose end drives a ram square to the line of the two pivots.
 

@@ -22,7 +22,7 @@ _TEXT, _CALLED = "Bending moment of N on the piston rod at its stuffing box", "b
 _M_BEND = own_force("M_bend", "M_b", "torque", _TEXT, _CALLED)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class YokeFrame(SliderCrank):
     """A slider-crank whose crosshead pin is held by the piston rod alone.
 
