@@ -117,7 +117,7 @@ def test_resuming_ends_in_the_same_file(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_an_interrupt_leaves_whole_rows(tmp_path: Path) -> None:
     file = tmp_path / "rows.csv"
-    asked = ["--vary", "rod_ratio=3:6:0.0002", "--columns", "T_max", "-o", str(file)]
+    asked = ["--vary", "rod_ratio=3:6:0.00002", "--columns", "T_max", "-o", str(file)]
     process = subprocess.Popen([sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *asked], env=dict(os.environ))
     while not (file.exists() and file.stat().st_size):
         time.sleep(0.05)
