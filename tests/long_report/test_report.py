@@ -179,6 +179,7 @@ def test_two_machines_side_by_side() -> None:
     html5lib.HTMLParser(strict=True).parse(page)
 
 
+@pytest.mark.slow
 def test_equal_cylinders_are_told_once_side_by_side() -> None:
     """The pins of the crossheads, too: each shell has two equal pieces that no load reaches, and all tell the same."""
     names = re.findall("<caption>(.*?)</caption>", page_of("v8-cross-plane", "v8-cross-plane"))
