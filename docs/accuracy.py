@@ -84,7 +84,7 @@ def explanation(report: Report) -> str:
 
 The picture shows, for every quantity, time over error for all machines below, with lines between the answers of one
 method for one machine: the error falls to the right, the grey line is 2⁻⁵³, the rounding of one float. A method
-further right *and* lower than the black dot of the same machine would be better than kurbel's own; the last sentence of the
+further right *and* lower than the dot of the same machine would be better than kurbel's own; the last sentence of the
 report says whether there is one. References have 40 digits and come from other methods than kurbel's: textbook formulas
 in decimal arithmetic, areas as fractions, golden sections for extremes, Gauss rules halved until 22 digits agree, and
 Lobatto IIIC in 40 digits for the speed line."""

@@ -7,7 +7,7 @@ from kurbel.declared.forms.column_range import ColumnRange
 from kurbel.declared.forms.figures import Expectations, Limits
 from kurbel.declared.forms.firing_order import FiringOrder
 from kurbel.declared.forms.points import Points
-from kurbel.declared.forms.records import Inline, Record, Variant
+from kurbel.declared.forms.records import Record, Variant
 from kurbel.declared.forms.scalars import (
     Choice,
     Count,
@@ -20,7 +20,7 @@ from kurbel.declared.forms.scalars import (
     not_negative,
     positive,
 )
-from kurbel.declared.forms.structures import Keyed, Listing, OneOf
+from kurbel.declared.forms.structures import Inline, Keyed, Listing, OneOf
 from kurbel.declared.forms.uncertainties import Uncertainties
 
 __all__ = [

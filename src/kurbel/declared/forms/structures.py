@@ -1,4 +1,4 @@
-"""Forms made of others: lists, alternatives, mappings with one telling key."""
+"""Forms made of others: lists, alternatives, mappings with one telling key, records whose keys stand among others."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from kurbel.declared.bounds import MOST_ITEMS
-from kurbel.declared.forms.records import Record, no_mapping
+from kurbel.declared.forms.records import Record, demands, no_mapping
 from kurbel.declared.forms.scalars import Choice, refused
-from kurbel.declared.keys import Form, Schema
+from kurbel.declared.keys import ABSENT, Form, Key, Schema, none_of, required
 from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of
-from kurbel.errors import Path
+from kurbel.errors import Fault, Path
 from kurbel.near_words import near
 
 
@@ -138,3 +138,71 @@ class Keyed(Form):
 
     def records(self, word: str) -> Iterator[tuple[str, Record]]:
         return super().records("card")
+
+
+class Inline(Form):
+    """Keys of another record that stand in the same mapping: those of the piston in its cylinder.
+
+    With the key `unless`, a list of such records, they stand in its items instead, or of equal ones below its `each`;
+    rules of the outer record speak of an inline record as an item of that list.
+    """
+
+    shared = True
+
+    def __init__(self, record: Record, unless: str = "") -> None:
+        self.record, self.unless = record, unless
+
+    @property
+    def _item(self) -> str:
+        return f"to a {self.unless.removesuffix('s')}"
+
+    def expected(self) -> str:
+        return self.record.expected()
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read the record out of the mapping."""
+        return self.record.build(reading, value, path, inline=True)
+
+    def find(self, reading: Reading, name: str, mapping: Tree, rest: Tree, path: Path) -> Any:
+        """Read the record where any of its keys is given."""
+        return self.read(reading, rest, path) if rest.keys() & set(self.names(name, mapping)) else ABSENT
+
+    def names(self, name: str, mapping: Tree) -> Iterable[str]:
+        return () if self.unless in mapping else self.record.all_names(mapping)
+
+    def moved(self, name: str, mapping: Tree) -> dict[str, str]:
+        if self.unless not in mapping:
+            return {}
+        there = f"'{self.unless}.each'" if isinstance(mapping[self.unless], dict) else f"the items of '{self.unless}'"
+        message = f"belongs {self._item}; move it into {there}"
+        return dict.fromkeys(self.record.all_names(mapping), message)
+
+    def flat(self, fault: Fault, mapping: Tree) -> Fault:
+        if len(fault.path) < 2 or fault.path[0] != self.unless or not isinstance(fault.path[1], int):
+            return fault
+        listed = mapping.get(self.unless)
+        head = () if listed is None else (self.unless, "each") if isinstance(listed, dict) else fault.path[:2]
+        return fault._replace(path=(*head, *fault.path[2:]))
+
+    def inline(self) -> Iterable[Record]:
+        return (self.record,)
+
+    def places_of(self, name: str, path: str, words: str) -> Iterator[tuple[str, str]]:
+        return self.record.places(path, self._item if self.unless else words)
+
+    def records(self, word: str) -> Iterator[tuple[str, Record]]:
+        yield word, self.record
+
+    def schema(self, definitions: Schema) -> Schema:
+        return self.record.schema(definitions)
+
+    def describe(self, name: str, key: Key, properties: Schema, rules: list[Schema], definitions: Schema) -> None:
+        """Add the keys of the record, and that they do not stand beside the list."""
+        before = set(properties)
+        self.record.describe_all(properties, rules, definitions)
+        added = [[inner] for inner in properties if inner not in before]
+        if required(self.record.keys):
+            given = {"anyOf": [{"required": group} for group in added]}
+            rules.append({"if": given, "then": demands(self.record.keys)})
+        if self.unless:
+            rules.append({"if": {"required": [self.unless]}, "then": none_of(added)})
