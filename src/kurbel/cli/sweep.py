@@ -1,5 +1,6 @@
 """`kurbel sweep`: key values over a grid, a list or a sample of machines."""
 
+import gc
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from types import SimpleNamespace
@@ -119,6 +120,8 @@ class _Asked(SimpleNamespace):
 
     def run(self) -> None:
         """Compute and write the rows."""
+        gc.freeze()
+        gc.enable()  # what thousands of machines leave behind in circles would fill the memory
         from kurbel.designs.chosen import read_aim, read_condition, summary
         from kurbel.designs.plan import MOST_ROWS, shard
         from kurbel.designs.sweep import Sweep
