@@ -127,8 +127,12 @@ class Binder:
 def written_texts(source: Source, overrides: Sequence[str], keys: Sequence[str]) -> list[str]:
     """Return what a file has under these dotted keys; raises UsageError for a key under which no value stands."""
     tree = tree_of(source, overrides)
+    return [_named(tree, key) for key in keys]
+
+
+def _named(tree: Tree, key: str) -> str:
     try:
-        return [written(tree, key := one) for one in keys]
+        return written(tree, key)
     except UsageError as error:
         raise UsageError(f"{shown(key)}: {error}") from None
 
