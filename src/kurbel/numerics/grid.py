@@ -95,14 +95,24 @@ class Grid(Pieces):
         """The largest distance between two nodes of a piece, over half its width."""
         return float(np.diff(self.nodes).max())
 
-    def slopes(self, value: Array, rows: Indices) -> Array:
+    def slopes(self, value: Array, rows: Any = np.s_[:]) -> Array:
         """Return the derivatives by φ of the polynomials through values (k, nodes) on these pieces (k,)."""
+        return np.asarray((self._differences @ value.T / self.half_widths[rows]).T)
+
+    @cached_property
+    def _differences(self) -> Array:
+        """What turns values at the nodes into slopes over half a piece, (nodes, nodes)."""
         gaps = self.nodes[:, None] - self.nodes + np.eye(len(self.nodes))
         products = gaps.prod(axis=1)
         matrix = products[:, None] / products / gaps
         np.fill_diagonal(matrix, 0.0)
         np.fill_diagonal(matrix, -matrix.sum(axis=1))
-        return np.asarray((value @ matrix.T) / self.half_widths[rows, None])
+        return np.asarray(matrix)
+
+    @cached_property
+    def coefficients(self) -> Array:
+        """What turns values at the nodes into coefficients of their polynomial on −1 … 1, from the highest power on."""
+        return np.linalg.inv(np.vander(self.nodes))
 
     def other(self) -> "Grid":
         """Return the same cycle in other pieces: each cut in two unequal ones."""

@@ -217,10 +217,10 @@ class Drive:
         return State(self, jet_angle(degrees, beyond), within)
 
     def on(self, grid: Grid, rows: Any = np.s_[:]) -> State:
-        """Return the state with slopes at the nodes of a grid, or of these pieces of it."""
+        """Return the state at the nodes of a grid, or of these pieces of it."""
         drive = self if grid.variant is None else self.taken(grid.variant[rows][:, None])
         within = np.broadcast_to(grid.within[rows, :1], grid.degrees[rows].shape)
-        return drive.jets_at(np.asfortranarray(grid.degrees[rows]), within, grid.beyond[rows])
+        return State(drive, CrankAngle.of(np.asfortranarray(grid.degrees[rows]), grid.beyond[rows]), within)
 
     @cached_property
     def cuts(self) -> Cuts:
