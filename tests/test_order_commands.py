@@ -101,6 +101,20 @@ def test_what_lies_beside_the_working_speed_is_told() -> None:
     assert any(line.split()[:4] == ["near", "3", "1", "108"] for line in result.stdout.splitlines())
 
 
+@pytest.mark.parametrize(
+    ("asked", "orders"),
+    [("0.5:48:0.5", [i / 2 for i in range(1, 97)]), ("12", [12]), ("0.5,1,6", [0.5, 1, 6]), ("1:6:2", [1, 3, 5])],
+)
+def test_orders_by_steps(asked: str, orders: list[float]) -> None:
+    generator = str(CONFIGS / "four-cylinder-generator.yaml")
+    assert table(parsed("harmonics", generator, "--orders", asked), "orders")["order"] == orders
+
+
+def test_angles_by_steps_are_decimal_fractions() -> None:
+    cylinder = parsed("motion", BLOWER, "--angles", "0:1:0.1")["cylinders"][0]
+    assert cylinder["columns"][0]["values"] == [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1]
+
+
 def test_without_damping_it_says_so() -> None:
     result = run("torsion", BLOWER, "--set", "coupling.damping=0 N m s/rad")
     assert "no damping given; at resonance nothing but damping bounds a vibration" in " ".join(result.stdout.split())
@@ -138,7 +152,10 @@ REFUSED = [
     ("torsion", BLOWER, ("--speeds", "x rpm"), "expected a number with its unit"),
     ("torsion", BLOWER, ("--speeds", "0 rpm"), "a speed is more than 0"),
     ("torsion", BLOWER, ("--speeds", "200:100:5 rpm"), "write from, to and step as '300:1500:10 rpm'"),
-    ("torsion", BLOWER, ("--speeds", "1:2:1e-9 rpm"), "more than 10000 speeds; take a larger step"),
+    ("torsion", BLOWER, ("--speeds", "1:2:1e-9 rpm"), "more than 10000 steps; take larger ones"),
+    ("torsion", BLOWER, ("--orders", "1:12"), "'1:12': write from, to and step as '0.5:12:0.5'"),
+    ("torsion", BLOWER, ("--orders", "1:12:-1"), "'1:12:-1': write from, to and step as '0.5:12:0.5'"),
+    ("motion", BLOWER, ("--angles", "0:360:1e-9"), "more than 10000 steps; take larger ones"),
     ("torsion", BLOWER, ("--speeds", "1e200 rpm"), "is too large to compute with"),
     ("torsion", BLOWER, ("--columns", "tau"), "'tau' is left out for this machine"),
     ("torsion", str(CONFIGS / "waterworks.yaml"), (), "no 'shaft' is given; write its masses"),
