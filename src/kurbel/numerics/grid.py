@@ -1,4 +1,4 @@
-"""A cycle cut into smooth pieces: samples for searches, Gauss points for integrals, each on its side of every jump."""
+"""A cycle cut into smooth pieces: nodes for searches and integrals, each on its side of every jump."""
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
@@ -144,7 +144,7 @@ def integral(grid: Grid, function: Callable[[Pieces], Array]) -> Array:
     piece is cut, and cut again until whole and parts agree, so that nothing need be known of kinks, or of poles beside
     the real axis. The nodes, those of Lobatto, are none of a grid's; being at the ends, they see a kink just there.
     """
-    rule = LOBATTO_16 if grid.rule is GAUSS else LOBATTO_4
+    rule = LOBATTO_4 if grid.rule is LOBATTO_4 else LOBATTO_16
     pieces = _inside(grid.low, grid.high, rule)
     value = function(pieces)
     settled = np.zeros(value.shape[:-2])
@@ -183,8 +183,9 @@ def _interpolation(nodes: Array, at: Array) -> Array:
 class Cuts(NamedTuple):
     """Where a cycle is cut into smooth pieces, both in degrees from 0 to its end.
 
-    smooth: ascending, so dense, toward a pole beside the real axis too, that sixteen points of Gauss resolve every
-    piece. jumps: further angles at which something bends or jumps, be they thousands.
+    smooth: ascending, so dense, toward a pole beside the real axis too, that on every piece the polynomial through
+    sixteen points is exact, and the integral of that through twelve. jumps: further angles at which something bends or
+    jumps, be they thousands.
     """
 
     smooth: Array
@@ -209,10 +210,10 @@ class Cuts(NamedTuple):
         smooth, jumps = (np.mod(np.add.outer(turns, part + by).ravel(), cycle) for part in self)
         return Cuts(_cycle(np.array([0.0, cycle]), smooth), jumps)
 
-    def grid(self) -> Grid:
+    def grid(self, rule: Rule = GAUSS) -> Grid:
         """Return the pieces. Between many jumps they have four points, and the smooth pieces are cut to suit them."""
         if len(self.jumps) <= _MANY:
-            return Grid(_cycle(self.smooth, self.jumps))
+            return Grid(_cycle(self.smooth, self.jumps), rule)
         parts = self.smooth[:-1, None] + np.diff(self.smooth)[:, None] * (np.arange(_PARTS) / _PARTS)
         return Grid(_cycle(self.smooth[[0, -1]], parts.ravel(), self.jumps), LOBATTO_4)
 
