@@ -22,8 +22,11 @@ cylinders:
   bank_angles: [0 deg, 60 deg]
   spacing: 200 mm
   each:
-    {crank: 90 mm, rod_ratio: 3.9, bore: 170 mm, indicator: {pressures: absolute, head_end: {otto: {intake: 1 bar,
-    exhaust: 1 bar, peak: 60 bar, compression_ratio: 11}}}, masses: {piston: 6 kg, rotating: 2 kg, connecting_rod: 7 kg}}
+    crank: 90 mm
+    rod_ratio: 3.9
+    bore: 170 mm
+    indicator: {pressures: absolute, head_end: {otto: {intake: 1 bar, exhaust: 1 bar, peak: 60 bar, compression_ratio: 11}}}
+    masses: {piston: 6 kg, rotating: 2 kg, connecting_rod: 7 kg}
 """
 
 

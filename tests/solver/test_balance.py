@@ -110,6 +110,21 @@ def test_orders_of_one_cylinder(ratio: float, series: dict[int, float]) -> None:
     assert not force.forward[2::2].any()
 
 
+def test_a_rod_hardly_longer_than_the_crank_has_few_orders_that_are_told() -> None:
+    """L/R = 1.00001: what is told and the rest make up the whole, which is −1 + λ in the outer dead centre."""
+    free = balance_of(single(1.00001)).free
+    assert free.orders == (1, *range(2, 48, 2))
+    assert free.higher[0] == 48
+    assert len(free.higher) > 1000
+    # in the outer dead centre the even orders have alternating signs; b/(R ω²) there is −1 + λ by the closed formula
+    signs = (-1.0) ** np.arange(1, len(free.force.forward) + 1)
+    whole = 2 * float((free.force.forward.real * signs).sum()) / 0.1
+    assert whole == pytest.approx(-1 + 1 / 1.00001, abs=1e-11)
+    sizes = np.abs(free.force.forward)
+    assert free.at_most(free.force) == pytest.approx(2 * (sizes.sum() - sizes[:46].sum()), rel=1e-12)
+    assert balance_of(single(3)).free.higher == ()
+
+
 # against the forces inside
 
 INSIDE = """
