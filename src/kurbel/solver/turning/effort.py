@@ -21,6 +21,9 @@ from kurbel.solver.cylinder.state import State
 if TYPE_CHECKING:
     from kurbel.arrays import Array
 
+_SAME_PLACE = 1e-12
+"""Degrees by which cranks at equal distances, as of a firing order, stand elsewhere by rounding."""
+
 
 class CylinderEffort:
     """The sum of a torque of cylinders that work alike, at the angles φ of crank 1: one cylinder, asked at all angles.
@@ -41,6 +44,14 @@ class CylinderEffort:
         cuts = own_cuts(self._alike[0])
         return Cuts.joined([cuts.shifted(behind, self._cycle) for behind in self._positions.tolist()])
 
+    @cached_property
+    def repeats(self) -> int:
+        """How often it comes back in the cycle: as often as the cranks stand alike over that of a cylinder."""
+        own = self._drive.cycle
+        stand = np.sort(np.mod(self._positions, own))
+        parts = (each for each in range(len(stand), 0, -1) if len(stand) % each == 0)
+        return next(each for each in parts if _same_places(stand, own / each, own)) * round(self._cycle / own)
+
     def torque(self, degrees: Array, within: Array | Inside) -> Jet:
         """Return the torque; see `Torque`."""
         angles = degrees - self._behind(degrees)
@@ -54,6 +65,12 @@ class CylinderEffort:
 
     def _behind(self, degrees: Array) -> Array:
         return self._positions.reshape(-1, *(1 for _ in degrees.shape))
+
+
+def _same_places(places: Array, turn: float, cycle: float) -> bool:
+    """Return whether places (n,) in degrees over a cycle are the same ones, but for rounding, when each is turned."""
+    apart = np.subtract.outer(places + turn, places)
+    return bool((np.abs(apart - cycle * np.rint(apart / cycle)).min(axis=1) <= _SAME_PLACE).all())
 
 
 def efforts(

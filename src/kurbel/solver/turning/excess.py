@@ -20,6 +20,7 @@ from kurbel.solver.turning.torques import Sum, Torque, Uniform
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.numerics.grid import Grid
     from kurbel.numerics.jet import Jet
 
 _ROUNDING = 1e-13
@@ -68,8 +69,7 @@ class Excess:
     @cached_property
     def effort_extremes(self) -> Extremes:
         """Largest and smallest turning effort in N m, one-sided values at jumps included."""
-        sampled = Sampled.of(self._sampled_effort, self.grid.degrees.shape)
-        return extremes(self.grid, {"M": sampled}, _Evaluated(Sum((1.0, self.effort))))["M"]
+        return torque_extremes(Sum((1.0, self.effort)), self.grid, self._sampled_effort)
 
     @cached_property
     def crossings(self) -> tuple[float, ...]:
@@ -123,6 +123,14 @@ class Excess:
     def dE(self) -> float:
         """ΔE in J, the largest swing of the excess work."""
         return self.largest.value - self.smallest.value if self.largest and self.smallest else 0.0
+
+
+def torque_extremes(torque: Sum, grid: Grid, sampled: Jet) -> Extremes:
+    """Return largest and smallest value in N m of a torque, one-sided values at jumps included.
+
+    sampled: the torque on the grid, which is the cycle or a part of it that comes back.
+    """
+    return extremes(grid, {"M": Sampled.of(sampled, grid.degrees.shape)}, _Evaluated(torque))["M"]
 
 
 class _Evaluated:
