@@ -1,7 +1,5 @@
 """`kurbel plot`: the pictures of a machine, in the terminal or in a file."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.completion import complete_cylinder, complete_picture
