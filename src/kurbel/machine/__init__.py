@@ -28,7 +28,9 @@ from kurbel.declared.forms import (
     Uncertainties,
     not_negative,
 )
+from kurbel.declared.forms.figures import Expected
 from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder, crowded
@@ -36,8 +38,6 @@ from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder, crowded
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kurbel.declared.forms.figures import Expected
-    from kurbel.declared.quantity import Quantity
     from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.equal import EqualCylinders

@@ -1,7 +1,5 @@
 """Equal cylinders described at once, and cranks that follow from a firing order."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
@@ -53,7 +51,7 @@ class EqualCylinders(Described):
         firing_order: tuple[int, ...] | None = None,
         spacing: float | None = None,
         bank_angles: tuple[float, ...] = (0.0,),
-    ) -> EqualCylinders:
+    ) -> "EqualCylinders":
         """Return the cylinders that these keys of a machine file describe; raises RuleError."""
         if count % len(bank_angles):
             message = f"{len(bank_angles)} angles for {count} cylinders; give one for each bank or for each cylinder"

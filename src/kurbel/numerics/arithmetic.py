@@ -1,7 +1,5 @@
 """The few operations beside + − × ÷ that the formulas need, for floats, arrays, jets and high-precision numbers."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from typing import Any

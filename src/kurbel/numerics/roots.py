@@ -1,15 +1,11 @@
 """Bracketed roots of many functions at once, after Chandrupatla (1997): inverse quadratic steps, safe as bisection."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
+from kurbel.arrays import Array
 
 
 def bracketed_roots(function: Callable[[Array], Array], low: Array, high: Array, f_low: Array, f_high: Array) -> Array:

@@ -1,7 +1,5 @@
 """The report of `kurbel balance`: free forces and moments over the crank angle, their orders, the best weights."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Iterable, Iterator, Sequence

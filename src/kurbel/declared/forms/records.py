@@ -1,7 +1,5 @@
 """Forms of mappings: a mapping becomes a record once all of its keys could be read."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from typing import Any, NoReturn
@@ -44,7 +42,7 @@ class Record(Form):
     def expected(self) -> str:
         return f"a mapping with the keys {', '.join(self.keys)}"
 
-    def records(self, word: str) -> Iterator[tuple[str, Record]]:
+    def records(self, word: str) -> "Iterator[tuple[str, Record]]":
         yield word, self
 
     def parts(self) -> Iterable[tuple[str, Form]]:

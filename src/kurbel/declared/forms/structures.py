@@ -1,7 +1,5 @@
 """Forms made of others: lists, alternatives, mappings with one telling key, records whose keys stand among others."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import Any
 

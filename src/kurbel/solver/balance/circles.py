@@ -1,19 +1,14 @@
 """A vector in the plane that returns after a turn, as a sum of circles that it runs through in either sense."""
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import roots_by_slope
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
 
 _ALIKE = 64 * np.finfo(float).eps
 """By which summits of one height differ by rounding, relatively."""
@@ -34,14 +29,14 @@ class Circles:
         self.forward, self.backward = forward, backward
         self._orders = np.flatnonzero((forward != 0) | (backward != 0)) + 1
 
-    def turned_by(self, weight: complex) -> Circles:
+    def turned_by(self, weight: complex) -> "Circles":
         """Return the sum of this and a vector that turns once with φ."""
         forward = self.forward.copy()
         forward[0] += weight
         return Circles(forward, self.backward)
 
     @property
-    def along(self) -> Circles:
+    def along(self) -> "Circles":
         """The component along the real axis alone."""
         half = (self.forward + self.backward.conj()) / 2
         return Circles(half, half.conj())

@@ -1,7 +1,5 @@
 """What `kurbel balance` answers for the whole machine: free forces and moments, their orders, and the best weights."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable, Sequence
@@ -10,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
@@ -25,7 +24,6 @@ from kurbel.solver.shaft.weights import OwnThrow, Weight, counterweights_of, mid
 from kurbel.solver.turning.torques import Sum
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
     from kurbel.solver.balance.locomotive import LocomotiveBalance
 
 _REAL = 1e-12
@@ -269,7 +267,7 @@ class MachineBalance(Results):
         return shafts(self.bare.force, self.bare.moment, self.z_0)
 
     @cached_property
-    def locomotive(self) -> LocomotiveBalance | None:
+    def locomotive(self) -> "LocomotiveBalance | None":
         """What of it concerns the wheels of a locomotive; None of another machine."""
         given = self.machine.locomotive
         if given is None:

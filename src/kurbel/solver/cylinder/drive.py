@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle, jet_angle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
@@ -17,13 +18,12 @@ from kurbel.mechanisms import fan
 from kurbel.numerics.arithmetic import some, sqrt, where
 from kurbel.numerics.gauss import LOBATTO_12
 from kurbel.numerics.grid import Cuts, Grid
+from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
     from kurbel.machine.resistance import RamForce
     from kurbel.solver.cylinder.gas import PistonGas
-    from kurbel.solver.cylinder.inside import Inside
     from kurbel.solver.cylinder.pins import PinFriction
     from kurbel.solver.cylinder.rod import ExactRod
 

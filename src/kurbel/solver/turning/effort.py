@@ -1,13 +1,12 @@
 """What cylinders give to the shaft, over the angle of crank 1: its torque, that of its masses, their inertia."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.numerics.brackets import Sampled
@@ -17,9 +16,6 @@ from kurbel.solver.cylinder.following import own_cuts, position
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.state import State
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _SAME_PLACE = 1e-12
 """Degrees by which cranks at equal distances, as of a firing order, stand elsewhere by rounding."""

@@ -3,25 +3,21 @@
 One sampling of both torques on the grid of their common pieces serves the mean, the extremes, the crossings and E.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.jet import Jet
 from kurbel.numerics.piecewise import Piecewise
 from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
 from kurbel.solver.turning.torques import Sum, Torque, Uniform
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
-    from kurbel.numerics.grid import Grid
-    from kurbel.numerics.jet import Jet
 
 _ROUNDING = 1e-13
 """Beside the largest torque: a mean that is less is none, as that of masses without gas, but rounding."""

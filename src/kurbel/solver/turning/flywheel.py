@@ -1,12 +1,11 @@
 """What `kurbel flywheel` answers for the whole machine: turning effort, excess work, flywheel, coupling, speed line."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError
 from kurbel.machine import Machine
@@ -23,7 +22,6 @@ from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedLine, floquet
 from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law, turning
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.machine.flywheel import Rim
     from kurbel.numerics.where import Where
     from kurbel.solver.turning.coupling import ElasticCoupling
@@ -63,7 +61,7 @@ class MachineTurning(Results):
         """The crank angles in degrees between which every quantity is smooth."""
         return self.excess.grid.breaks
 
-    def angles_where(self, column: str, value: float) -> Where | None:
+    def angles_where(self, column: str, value: float) -> "Where | None":
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         from kurbel.numerics.where import where
 
@@ -152,7 +150,7 @@ class MachineTurning(Results):
         return self.machine.flywheel.inertia if self.machine.flywheel else None
 
     @property
-    def _rim(self) -> Rim | None:
+    def _rim(self) -> "Rim | None":
         return self.machine.flywheel.rim if self.machine.flywheel else None
 
     @property
@@ -210,7 +208,7 @@ class MachineTurning(Results):
         return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
 
     @cached_property
-    def elastic(self) -> ElasticCoupling | None:
+    def elastic(self) -> "ElasticCoupling | None":
         """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
 
         Raises NoSolutionError where no motion of it repeats.
@@ -236,7 +234,7 @@ class MachineTurning(Results):
         return self.J == self.J_needed == 0 and not self.dE and not self.turned.masses
 
     @cached_property
-    def speed(self) -> SpeedLine | ElasticCoupling | None:
+    def speed(self) -> "SpeedLine | ElasticCoupling | None":
         """The speed of the crank shaft over the turn; None without a flywheel or a speed.
 
         Raises NoSolutionError where the machine stalls.

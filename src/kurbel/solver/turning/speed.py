@@ -5,15 +5,14 @@ z changes by the excess of the turning effort at uniform rotation, inertia force
 speed. Nothing cancels, whether the flywheel is heavy or the load stiff.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.errors import UsageError
 from kurbel.numerics.collocation import Periodic, Standstill, periodic
 from kurbel.numerics.elements import Elements
@@ -21,9 +20,6 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import Extremes, Sampled, extremes
 from kurbel.solver.turning.course import Course, Inertia, Place
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 
 class SpeedLaw(Protocol):
@@ -227,7 +223,7 @@ class SpeedEquation:
         place = self.course.at(degrees, within)
         return np.stack((place.torque.value, self.inertia.energy(place).value + self._more))
 
-    def eased(self, by: float) -> SpeedEquation:
+    def eased(self, by: float) -> "SpeedEquation":
         """See `collocation.Equation`: so much more inertia, as ½ J ω_n² in J."""
         return SpeedEquation(self.course, self.law, self.inertia, self.noise, by)
 

@@ -1,7 +1,5 @@
 """The speed line of a machine with any flywheel: rigid or elastic, under a load that minds the speed or does not."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cached_property
@@ -60,7 +58,7 @@ class SpeedLines:
 
         return float(Modes(coupled(self._coupling, own)).omegas[1]) / self.omega
 
-    def elastic(self, flywheel: float) -> ElasticCoupling | None:
+    def elastic(self, flywheel: float) -> "ElasticCoupling | None":
         """Return the line on an elastic coupling; None where there is none, or one as good as rigid."""
         if self._coupling is None or (self.natural_order(flywheel) or 0.0) > RIGID_ABOVE:
             return None
@@ -88,7 +86,7 @@ class SpeedLines:
             angle = float(moving.grid.degrees.ravel()[np.argmin(moving.values)])
             raise UsageError(f"nothing that turns has any inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
 
-    def line(self, flywheel: float) -> SpeedLine | ElasticCoupling:
+    def line(self, flywheel: float) -> "SpeedLine | ElasticCoupling":
         """Return the speed line; raises Standstill, Unsettled, NoSolutionError, UsageError."""
         return turning(self.elastic(flywheel) or self.rigid(flywheel))
 
@@ -109,7 +107,7 @@ class SpeedLines:
         return _smallest(lambda inertia: math.isfinite(self.delta(inertia)), least, start, exact=bool(more))
 
 
-def turning(line: SpeedLine | ElasticCoupling) -> SpeedLine | ElasticCoupling:
+def turning(line: "SpeedLine | ElasticCoupling") -> "SpeedLine | ElasticCoupling":
     """Return the line if it never stands still; raises Standstill."""
     if not line.omega_min.value > 0:
         raise Standstill(line.omega_min.degrees)
