@@ -78,6 +78,15 @@ class Grid(Pieces):
         """The first piece of every variant, (v,)."""
         return np.zeros(1, dtype=np.intp)
 
+    @property
+    def counts(self) -> Indices:
+        """How many pieces every variant has, (v,)."""
+        return np.diff(np.append(self.first, len(self.low)))
+
+    def of_each(self, found: Array) -> Array:
+        """Return what was found of every variant, (v,), spread over its pieces, (pieces,)."""
+        return np.repeat(found, self.counts)
+
     def told(self, values: Array) -> Any:
         """Return what was found of every variant (v,), or of the only machine as a number."""
         return float(values[0])
@@ -91,9 +100,9 @@ class Grid(Pieces):
         return np.sort(angles)
 
     @property
-    def widest(self) -> float:
-        """The largest distance between two nodes of a piece, over half its width."""
-        return float(np.diff(self.nodes).max())
+    def gaps(self) -> Array:
+        """The distances between the nodes of a piece, over half its width, (nodes − 1,)."""
+        return np.diff(self.nodes)
 
     def slopes(self, value: Array, rows: Any = np.s_[:]) -> Array:
         """Return the derivatives by φ of the polynomials through values (k, nodes) on these pieces (k,)."""
