@@ -237,7 +237,8 @@ def kurbel() -> None:
       kurbel forces engine.yaml                 forces and key values
       kurbel flywheel engine.yaml               turning effort, flywheel, speed
       kurbel balance engine.yaml                free forces and moments, counterweights
-      kurbel plot engine.yaml                   a picture; --list says which there are
+      kurbel plot --list                        the pictures that there are
+      kurbel plot engine.yaml                   the one that says most
       kurbel report engine.yaml -o report.html  everything on one page
 
     Results go to standard output, everything else to standard error.

@@ -16,6 +16,13 @@ def complete_key(ctx: click.Context, param: click.Parameter, incomplete: str) ->
     return _beginning(every_place(), incomplete)
 
 
+def complete_kind(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the kinds of quantities that begin like this."""
+    from kurbel.declared.units import kinds
+
+    return _beginning(kinds(), incomplete)
+
+
 def complete_override(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
     """Return the keys for `KEY=VALUE`, each with its equals sign; of a value nothing."""
     return [] if "=" in incomplete else [f"{key}=" for key in complete_key(ctx, param, incomplete)]

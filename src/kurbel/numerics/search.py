@@ -9,7 +9,6 @@ from kurbel.numerics.arithmetic import where
 from kurbel.numerics.brackets import (
     Brackets,
     Worth,
-    at_brackets,
     may_be_extreme,
     may_be_zero,
     roots,
@@ -31,7 +30,8 @@ class Curve(NamedTuple):
     """One quantity over the cycle, each (n,): nodes of a grid, and every angle between them where it turns round.
 
     They stand in order; between neighbouring angles of one piece, told by its row, it only rises or only falls.
-    first: (v,) where each variant begins; turning: (k,) which of them are no nodes.
+    first: (v,) where each variant begins; turning: (k,) which of them are no nodes; at_nodes: (pieces, nodes) values at
+    all nodes of the grid.
     """
 
     degrees: Array
@@ -40,6 +40,11 @@ class Curve(NamedTuple):
     first: Indices
     grid: Grid
     turning: Indices
+    at_nodes: Array
+
+    def less(self, value: float) -> "Curve":
+        """Return the curve of what is less by this value."""
+        return self._replace(value=self.value - value, at_nodes=self.at_nodes - value)
 
     @property
     def within(self) -> Array:
@@ -101,8 +106,7 @@ def curves(
     """
     asked = [slopes_worth(grid, sampled, worth[name] if worth else None) for name, sampled in samples.items()]
     brackets = slope_brackets(grid, asked, evaluate)
-    peaks = roots(grid, brackets, evaluate, "slope")
-    heights = at_brackets(grid, brackets, evaluate, "value")(peaks) if len(peaks) else peaks
+    peaks, heights = roots(grid, brackets, evaluate, "slope", [sampled.slope for sampled in samples.values()])
     return {
         name: _with_peaks(grid, sampled.value, asked[k].rows, brackets, peaks, heights, brackets.owner == k)
         for k, (name, sampled) in enumerate(samples.items())
@@ -130,7 +134,8 @@ def _with_peaks(
 
     pieces = whole(row, brackets.row)
     degrees, values = whole(grid.degrees[row, node], peaks), whole(value[row, node], heights)
-    return Curve(degrees, pieces, values, np.searchsorted(pieces, grid.first), grid, into + np.arange(len(into)))
+    turning = into + np.arange(len(into))
+    return Curve(degrees, pieces, values, np.searchsorted(pieces, grid.first), grid, turning, value)
 
 
 def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
@@ -141,7 +146,7 @@ def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: 
     """
     parts = [_turns(k, curve, size) for k, curve in enumerate(found.values())]
     brackets = Brackets.joined(part for part, _ in parts)
-    zeros_inside = roots(grid, brackets, evaluate, "value")
+    zeros_inside, _ = roots(grid, brackets, evaluate, "value", [curve.at_nodes for curve in found.values()])
     changes = {}
     for k, name in enumerate(found):
         own, jumped = brackets.owner == k, parts[k][1]
@@ -159,7 +164,7 @@ def _turns(owner: int, curve: Curve, size: float | None) -> tuple[Brackets, Indi
     kept = np.flatnonzero(magnitude > curve.of_each(noise))
     beginning = np.searchsorted(kept, curve.first)
     begun = beginning[np.diff(np.append(beginning, len(kept))) > 0]  # of what has any sign at all
-    signed = Curve(curve.degrees[kept], curve.row[kept], curve.value[kept], begun, curve.grid, kept[:0])
+    signed = curve._replace(degrees=curve.degrees[kept], row=curve.row[kept], value=curve.value[kept], first=begun)
     value, row, following = signed.value, signed.row, signed.following
     last = np.flatnonzero(value * value[following] < 0)
     first = following[last]

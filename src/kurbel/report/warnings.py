@@ -28,7 +28,7 @@ def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
         yield from _reversal_warnings(forces)
         yield from guide_warnings(forces)
 
-    return _as_far_as_solved(found, "forces")
+    return as_far_as_solved(found, "forces")
 
 
 def turning_warnings(case: Case) -> tuple[str, ...]:
@@ -36,7 +36,7 @@ def turning_warnings(case: Case) -> tuple[str, ...]:
     machine = case.machine
     if machine.efficiency == 1 and not any((machine.flywheel, machine.load, machine.coupling)):
         return ()
-    return _as_far_as_solved(lambda: _of_turning(case.flywheel), "flywheel")
+    return as_far_as_solved(lambda: _of_turning(case.flywheel), "flywheel")
 
 
 def strength_warnings(case: Case) -> tuple[str, ...]:
@@ -48,10 +48,10 @@ def strength_warnings(case: Case) -> tuple[str, ...]:
         cool, verdict = shell_verdict(case.strength)
         return () if cool else verdict
 
-    return _as_far_as_solved(found, "stress")
+    return as_far_as_solved(found, "stress")
 
 
-def _as_far_as_solved(found: Callable[[], Iterable[str]], command: str) -> tuple[str, ...]:
+def as_far_as_solved(found: Callable[[], Iterable[str]], command: str) -> tuple[str, ...]:
     """Return the warnings; where there is no solution, why; what a command refuses is for that command to tell."""
     try:
         return tuple(found())

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 _V, _P, _P_0 = Words("V", "V"), Words("P", "P"), Words("P_0", "P_0")
 _INERTIA_LINE = Words("−P_b", "-P_b")
 _REVERSAL = Words("Druckwechsel", "Druckwechsel")
+_MET = 1e-9
+"""Of the largest distance between two lines: where they cross, rounding alone is between them."""
 
 
 def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
@@ -141,7 +143,8 @@ def _panel_of_rest(source: Source, samples: Samples, over: str) -> Panel:
 
 def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
     """Yield what lies between two lines, cut where they cross."""
-    above = np.sign(line - base)
+    apart = line - base
+    above = np.where(np.abs(apart) > _MET * np.abs(apart).max(), np.sign(apart), 0.0)
     # a point on the base belongs to the surface before it, and to the next one, too
     turns = [i for i in range(1, len(x) - 1) if above[i] == 0 or above[i] * above[i + 1] < 0]
     cuts = [0, *turns, len(x) - 1]

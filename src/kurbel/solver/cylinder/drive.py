@@ -16,6 +16,7 @@ from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.variants import taken
 from kurbel.mechanisms import fan
 from kurbel.numerics.arithmetic import some, sqrt, where
+from kurbel.numerics.gauss import LOBATTO_12
 from kurbel.numerics.grid import Cuts, Grid
 from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.state import State
@@ -217,10 +218,10 @@ class Drive:
         return State(self, jet_angle(degrees, beyond), within)
 
     def on(self, grid: Grid, rows: Any = np.s_[:]) -> State:
-        """Return the state with slopes at the nodes of a grid, or of these pieces of it."""
+        """Return the state at the nodes of a grid, or of these pieces of it."""
         drive = self if grid.variant is None else self.taken(grid.variant[rows][:, None])
         within = np.broadcast_to(grid.within[rows, :1], grid.degrees[rows].shape)
-        return drive.jets_at(np.asfortranarray(grid.degrees[rows]), within, grid.beyond[rows])
+        return State(drive, CrankAngle.of(np.asfortranarray(grid.degrees[rows]), grid.beyond[rows]), within)
 
     @cached_property
     def cuts(self) -> Cuts:
@@ -231,7 +232,7 @@ class Drive:
     def pieces(self) -> Grid:
         """The cycle in smooth pieces, or the cycles of all variants."""
         if self.count is None:
-            return self.cuts.grid()
+            return self.cuts.grid(LOBATTO_12)
         from kurbel.numerics.cycles import cycles_of_turns
 
         return cycles_of_turns(self._smooth, self.cycle, self._jumps, self.count)

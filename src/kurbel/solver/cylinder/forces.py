@@ -231,7 +231,7 @@ class CylinderForces(Searched, Results):
             return 0.0 if self._has_crosshead else None
         if self.drive.pin_friction:  # whose couple bends N where a load all but vanishes
             return float(integral(self.grid, lambda pieces: np.asarray(self._on(pieces).crosshead_power)))
-        return self.grid.integral(self.samples.crosshead_power.value)
+        return self.grid.integral(self.samples.crosshead_power)
 
     @property
     def _has_crosshead(self) -> bool:
@@ -327,7 +327,7 @@ class CylinderForces(Searched, Results):
         """
         if self.work_left is None:
             return None
-        turnover = self.grid.integral(np.abs(self.samples.M.value))
+        turnover = self.grid.integral(np.abs(self.samples.M))
         pieces = self.drive.pieces.other()
         if self._is_cut:
             pieces = self.cut_at_bends(pieces, self.drive.on(pieces))

@@ -47,15 +47,16 @@ class Quantities:
 
     def __call__(self, degrees: Array, within: Array | Inside) -> dict[str, Sampled]:
         state = self.drive.jets_at(degrees, within)
-        return self.of_state(state if self.rubs else state.unrubbed)
+        state = state if self.rubs else state.unrubbed
+        return {name: Sampled.of(getattr(state, name), degrees.shape) for name in self.names}
 
     def inside(self, within: Array) -> Inside:
         """Return what all angles in the pieces share that hold these."""
         return Inside(self.drive, CrankAngle.of(within))
 
-    def of_state(self, state: Any) -> dict[str, Sampled]:
-        """Return them in a state."""
-        return {name: Sampled.of(getattr(state, name), state.phi.shape) for name in self.names}
+    def on(self, grid: Grid, state: State | Assembled) -> dict[str, Sampled]:
+        """Return them in the state at the nodes of a grid."""
+        return {name: Sampled.on(grid, getattr(state, name)) for name in self.names}
 
     def of(self, variant: Indices) -> "Quantities":
         """Return the same of these variants (n,)."""
@@ -88,7 +89,7 @@ class Searched:
         pins = self.drive.pin_friction
         if self.drive.rubs:
             sense = self.quantities("guide_sense")
-            sampled = sense.of_state(samples)
+            sampled = sense.on(grid, samples)
             if pins:
                 # what makes pins rub bends where N changes sides without them; only beside that true turns are exact
                 without = Quantities(self.drive, ("guide_sense",), rubs=False)
@@ -118,16 +119,16 @@ class Searched:
     def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
         """Return the extremes in SI of these columns, as far as there are any."""
         asked = self.quantities(*(name for name in columns if getattr(self.samples, name) is not None))
-        return extremes(self.grid, asked.of_state(self.samples), asked) if asked.names else {}
+        return extremes(self.grid, asked.on(self.grid, self.samples), asked) if asked.names else {}
 
     def _whole(self, column: str) -> Curve:
         asked = self.quantities(column)
-        return curves(self.grid, asked.of_state(self.samples), asked)[column]
+        return curves(self.grid, asked.on(self.grid, self.samples), asked)[column]
 
     def _changes(self, column: str) -> Any:
         """The crank angles in degrees at which a column takes the other sign."""
         asked = self.quantities(column)
-        return zeros(self.grid, asked.of_state(self.samples), asked)[column]
+        return zeros(self.grid, asked.on(self.grid, self.samples), asked)[column]
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
@@ -158,7 +159,7 @@ class Searched:
         from kurbel.numerics.where import where
 
         asked = self.quantities(column)
-        samples = asked.of_state(self.samples)[column]
+        samples = asked.on(self.grid, self.samples)[column]
         return where(self.grid, samples, lambda *place: asked(*place)[column], value)
 
     @cached_property
