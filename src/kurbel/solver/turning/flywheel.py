@@ -18,7 +18,7 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Columns, Results, passed_on
 from kurbel.solver.turning.columns import OF_SPEED, TurningCurves
 from kurbel.solver.turning.machine_effort import MachineEffort
-from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedLine, floquet
+from kurbel.solver.turning.speed import SpeedLine
 from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law, turning
 
 if TYPE_CHECKING:
@@ -270,10 +270,12 @@ class MachineTurning(Results):
 
     @property
     def multiplier(self) -> float | None:
-        """Floquet multiplier per cycle; None where the load does not depend on the speed."""
-        if self.elastic:
-            return floquet(self.elastic.growth) if self._lines and self._lines.law else None
-        return self.speed.multiplier if isinstance(self.speed, SpeedDependentLoad) else None
+        """Floquet multiplier: what is left of a small disturbance after one cycle; stable below 1.
+
+        μ = exp(−∮ ∂M_load/∂ω/(J ω) dφ), or the largest float; None where the load does not depend on the speed.
+        """
+        minds = self._lines is not None and self._lines.law is not None
+        return math.exp(min(self.speed.growth, 709.7)) if minds and self.speed else None
 
     # the wanted δ, held against the speed line
 

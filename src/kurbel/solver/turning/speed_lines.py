@@ -13,11 +13,11 @@ from kurbel.solver.turning.course import Course, Inertia
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed import (
     ConstantLoad,
-    PowerLaw,
-    SlipLaw,
     SpeedDependentLoad,
     SpeedLaw,
     SpeedLine,
+    power_law,
+    slip_law,
 )
 
 if TYPE_CHECKING:
@@ -35,8 +35,8 @@ def speed_law(turned: MachineEffort) -> SpeedLaw | None:
     if load is None or not excess.mean:
         return None
     if load.slip is not None:
-        return SlipLaw(excess.mean, load.slip)
-    return PowerLaw(excess.mean, load.power) if load.power else None
+        return slip_law(excess.mean, load.slip)
+    return power_law(excess.mean, load.power) if load.power else None
 
 
 class SpeedLines:
