@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.piecewise import Piecewise
 from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
@@ -86,7 +87,13 @@ class Excess:
         """Return E in J at crank angles (…,) in degrees, counted from φ = 0; an angle's E hangs on no other one."""
         if not self.crossings:
             return np.zeros_like(degrees)
-        return self.line.integral_to(np.mod(degrees, self.cycle))
+        found = self.line.integral_to(np.mod(degrees, self.cycle))
+        return np.asarray(unless_cancelled(found, self._to_and_fro))
+
+    @cached_property
+    def _to_and_fro(self) -> float:
+        """The works in J that speed up and slow down, all counted positive: what E is the difference of."""
+        return self.grid.integral(np.abs(self._sampled.value))
 
     @cached_property
     def _heights(self) -> Array:
