@@ -25,7 +25,9 @@ cylinders:
     crank: 90 mm
     rod_ratio: 3.9
     bore: 170 mm
-    indicator: {pressures: absolute, head_end: {otto: {intake: 1 bar, exhaust: 1 bar, peak: 60 bar, compression_ratio: 11}}}
+    indicator:
+      pressures: absolute
+      head_end: {otto: {intake: 1 bar, exhaust: 1 bar, peak: 60 bar, compression_ratio: 11}}
     masses: {piston: 6 kg, rotating: 2 kg, connecting_rod: 7 kg}
 """
 

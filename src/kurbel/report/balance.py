@@ -90,8 +90,8 @@ def _higher(free: Free, square: float) -> str:
     if free.moment is not None:
         most += f", of the moment {show(free.at_most(free.moment) * square, 'torque')}"
     return (
-        f"{len(free.higher)} more orders follow, n = {free.higher[0]} to {free.higher[-1]}, which the rod brings, hardly "
-        f"longer than the crank: of the force they are at most {most}, together."
+        f"{len(free.higher)} more orders follow, n = {free.higher[0]} to {free.higher[-1]}, which the rod brings, "
+        f"hardly longer than the crank: of the force they are at most {most}, together."
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.alike import gathered, work_alike
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.brackets import Sampled
 from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
@@ -53,7 +54,8 @@ class CylinderEffort:
         angles = degrees - self._behind(degrees)
         inside = within if isinstance(within, Inside) else (within - self._behind(within)).ravel()
         every = Sampled.of(self._torque_in(self._drive.jets_at(angles.ravel(), inside)), (angles.size,))
-        return Jet(*(part.reshape(angles.shape).sum(axis=0) for part in every))
+        values, slopes = (part.reshape(angles.shape) for part in every)
+        return Jet(unless_cancelled(values.sum(axis=0), np.abs(values).sum(axis=0)), slopes.sum(axis=0))
 
     def inside(self, within: Array) -> Inside:
         """Return what all angles in the pieces share that hold these (n,)."""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
@@ -82,7 +83,13 @@ class Excess:
         """Return E in J at crank angles (…,) in degrees, counted from φ = 0; an angle's E hangs on no other one."""
         if not self.crossings:
             return np.zeros_like(degrees)
-        return self.line.integral_to(np.mod(degrees, self.cycle))
+        found = self.line.integral_to(np.mod(degrees, self.cycle))
+        return np.asarray(unless_cancelled(found, self._to_and_fro))
+
+    @cached_property
+    def _to_and_fro(self) -> float:
+        """The works in J that speed up and slow down, all counted positive: what E is the difference of."""
+        return self.grid.integral(np.abs(self._sampled.value))
 
     @cached_property
     def _heights(self) -> Array:
