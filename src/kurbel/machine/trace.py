@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -11,6 +11,7 @@ import numpy as np
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, refuse
+from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ _EVEN = 1e-3  # of a step: what rounded angles may miss
 _ROUNDING = 1e-9  # of a period
 
 
-@dataclass(frozen=True)
+@frozen
 class Pegging(Described):
     """Where the level of a trace is known: angle in degrees from the (firing) dead centre, pressure in Pa.
 
@@ -38,7 +39,7 @@ class Pegging(Described):
     }
 
 
-@dataclass(frozen=True, eq=False)
+@frozen
 class Trace:
     """A measured trace over one whole cycle, or over many.
 

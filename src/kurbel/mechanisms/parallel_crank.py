@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.declared.forms import not_negative, positive
 from kurbel.declared.keys import Keys, check
 from kurbel.declared.quantity import Quantity
+from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_motion
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
@@ -40,7 +40,7 @@ _B_COUPLER = Quantity("b_coupler", "b_K", "acceleration", _ACCELERATION, "", _BO
 _INERTIA = Quantity("coupler_inertia", "F_b", "force", _FORCE, commands=("forces",), after="T_min")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class ParallelCrank(Mechanism):
     """Two equal cranks, joined by a coupler of the length of the frame: the coupled wheels of a locomotive.
 

@@ -6,11 +6,11 @@ slider-crank; the side force N of the rod finds no guide and bends the piston ro
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
+from kurbel.frozen import frozen
 from kurbel.mechanisms import Offer, check_lengths, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 
@@ -22,7 +22,7 @@ _TEXT, _CALLED = "Bending moment of N on the piston rod at its stuffing box", "b
 _M_BEND = own_force("M_bend", "M_b", "torque", _TEXT, _CALLED)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class YokeFrame(SliderCrank):
     """A slider-crank whose crosshead pin is held by the piston rod alone.
 

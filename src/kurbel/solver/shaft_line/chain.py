@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.frozen import frozen
 from kurbel.machine.shaft_line import ShaftLine
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _ARRAYS = ("inertias", "stiffnesses", "piece_damping", "mass_damping", "loss")
 
 
-@dataclass(frozen=True, eq=False)
+@frozen
 class Chain:
     """n masses with the pieces between them, one more where an end is fixed: `ground` is `before`, `after` or empty.
 
