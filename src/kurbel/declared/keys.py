@@ -211,13 +211,6 @@ class Described:
         """Return the record; its fields are the keys, where it does not say otherwise."""
         return cls(*args, **values)
 
-    def __repr__(self) -> str:
-        """Return what was given to the record; one that is generated for each class costs at every start."""
-        from dataclasses import fields
-
-        given = [one.name for one in fields(self) if getattr(self, one.name) is not one.default]  # type: ignore[arg-type]
-        return f"{type(self).__name__}({', '.join(f'{name}={getattr(self, name)!r}' for name in given)})"
-
     @staticmethod
     def faults_of_keys(values: Mapping[str, Any]) -> Iterable[Fault]:
         """Return what is wrong with the values that could be read, where others could not be."""
