@@ -86,6 +86,8 @@ def test_throws_that_do_not_fit_their_bearings_are_told() -> None:
     assert (
         "throws 300 mm apart along the shaft do not fit bearings between them, by which they are a + b = 800 mm" in text
     )
+    checked = " ".join(run("check", "-", file=spaced + SHAFT).stdout.split())
+    assert "note throws 300 mm apart along the shaft do not fit bearings between them" in checked
 
 
 def test_without_a_crankshaft_there_are_pins_only() -> None:

@@ -63,7 +63,10 @@ angle_options = stacked(
         help="Step of the crank angle; 10 if not given.",
     ),
     click.option(
-        "--angles", type=readings.numbers, metavar="A,B,...", help="These crank angles in degrees instead of a step."
+        "--angles",
+        type=readings.numbers,
+        metavar="A,B,...",
+        help="These crank angles in degrees instead of a step; or FROM:TO:STEP.",
     ),
 )
 """`--step` and `--angles`: see `crank_angles`."""
@@ -125,7 +128,7 @@ orders_option = click.option(
     "--orders",
     type=readings.numbers,
     metavar="A,B,...",
-    help="Only these orders, periods per turn of the shaft; all up to 24 if not given.",
+    help="Only these orders, periods per turn of the shaft, or FROM:TO:STEP; all up to 24 if not given.",
 )
 speeds_option = click.option(
     "--speeds", type=readings.speeds, metavar="'A,B,... rpm'", help="Also at these speeds; or 'FROM:TO:STEP rpm'."

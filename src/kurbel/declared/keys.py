@@ -170,10 +170,11 @@ def check(keys: Keys, values: Mapping[str, Any]) -> None:
     What holds for a machine file holds for records that are made in Python. None is a value that is not given.
     """
     given = {name: value for name, value in values.items() if value is not None}
-    refuse(*_contradictions(keys, given), *_beyond(keys, given))
+    refuse(*contradictions(keys, given), *_beyond(keys, given))
 
 
-def _contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
+def contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield which keys say the same thing, or lack one another."""
     for name, key in keys.items():
         other = key.instead
         if name in given and other in given:

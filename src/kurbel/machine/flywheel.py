@@ -1,7 +1,5 @@
 """The flywheel, and the rim that is to be built for it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -81,7 +79,7 @@ class Flywheel(Described):
     }
 
     @classmethod
-    def of_keys(cls, **keys: Any) -> Flywheel:
+    def of_keys(cls, **keys: Any) -> "Flywheel":
         """Return the flywheel with J = inertia, GD²/4 or m k²."""
         mass, radius, gd2 = (keys.pop(name, None) for name in ("mass", "radius_of_gyration", "gd2"))
         if gd2 is not None:

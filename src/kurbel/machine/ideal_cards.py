@@ -4,8 +4,6 @@ Fractions are fractions of the stroke from the chamber's smallest volume, as on 
 the stroke volume. Exponents are those of p V^n.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Union
@@ -160,7 +158,7 @@ _ENGINE_KEYS: Keys = {
 """What every combustion engine gives."""
 
 
-def _peak_fault(peak: float | None, card: _Engine, lift: float) -> str:
+def _peak_fault(peak: float | None, card: "_Engine", lift: float) -> str:
     """Return what to say of a peak below the end of the compression; lift makes the pressures absolute."""
     compressed = after_polytrope(card.intake + lift, 1 + card.clearance, card.clearance, card.exponent) - lift
     # as much as rounding of the clearance may take from a peak that is just that pressure

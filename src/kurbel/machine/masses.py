@@ -1,7 +1,5 @@
 """Masses of the moving parts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import ClassVar
@@ -113,7 +111,7 @@ class Masses(Described):
         connecting_rod: float | ConnectingRod | None = None,
         rotating: float | None = None,
         **parts: float | tuple[float, ...],
-    ) -> Masses:
+    ) -> "Masses":
         """Return the masses that these keys of a machine file describe."""
         sums = {name: math.fsum(part) if isinstance(part, tuple) else part for name, part in parts.items()}
         if not sums and connecting_rod is None and rotating is None:

@@ -1,7 +1,5 @@
 """Rectangular cards: one pressure on every stroke, or an indicated mean pressure and nothing more."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

@@ -1,16 +1,14 @@
 """Where the labels of a picture stand: beside what they name, and not on one another."""
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from kurbel.arrays import Array
 from kurbel.render import Look
 from kurbel.render.charset import width
 from kurbel.render.numbers import angle, single
 from kurbel.render.pictures.scale import tick_text
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
-    from kurbel.report.pictures.picture import Axis, Figure, Shade, Words
+from kurbel.report.pictures.picture import Axis, Figure, Shade, Words
 
 CHARACTER, LINE = 5.8, 11.0
 """Width and height of a character of a label, in points."""
@@ -34,7 +32,7 @@ class Box(NamedTuple):
 class Taken:
     """The places that labels have taken within a frame; where they can they stand on no place (n, 2) of a curve."""
 
-    def __init__(self, frame: Box, curves: "Array") -> None:
+    def __init__(self, frame: Box, curves: Array) -> None:
         self._frame, self._curves = frame, curves
         self._boxes: list[Box] = []
 
@@ -77,7 +75,7 @@ class Taken:
             yield left, base, Box(left, base - LINE + 2, left + wide, base + 2)
 
 
-def symbol(words: "Words", look: Look) -> str:
+def symbol(words: Words, look: Look) -> str:
     """Return a symbol in the characters of the output; what no character must do in it, does nothing."""
     return look.charset.text(look.charset.symbol(words.symbol, words.ascii_symbol))
 
@@ -87,7 +85,7 @@ def signed(number: str, look: Look) -> str:
     return f"−{number[1:]}" if number.startswith("-") and look.charset.has("−") else number
 
 
-def tick_texts(axis: "Axis", values: list[float], look: Look) -> list[str]:
+def tick_texts(axis: Axis, values: list[float], look: Look) -> list[str]:
     """Return what stands at the ticks of an axis."""
     if axis.names:
         return [axis.names[int(value)] for value in values]
@@ -96,12 +94,12 @@ def tick_texts(axis: "Axis", values: list[float], look: Look) -> list[str]:
     return [signed(tick_text(value, values, look.comma), look) for value in values]
 
 
-def axis_text(words: "Words", unit: str, look: Look) -> str:
+def axis_text(words: Words, unit: str, look: Look) -> str:
     """Return what stands at the end of an axis."""
     return " in ".join(filter(None, (symbol(words, look), look.charset.unit(unit))))
 
 
-def figure_text(figure: "Figure", look: Look) -> str:
+def figure_text(figure: Figure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and where it stands."""
     text = symbol(figure.name, look)
     if figure.value is not None:
@@ -113,7 +111,7 @@ def figure_text(figure: "Figure", look: Look) -> str:
     return text
 
 
-def shade_texts(shades: "Sequence[Shade]", look: Look, room: "Callable[[Shade], float]") -> "list[tuple[Shade, str]]":
+def shade_texts(shades: Sequence[Shade], look: Look, room: Callable[[Shade], float]) -> list[tuple[Shade, str]]:
     """Return what is written into shades: their figures, or the names alone where not each figure has the room.
 
     room: how many characters fit between the ends of a shade.
