@@ -11,6 +11,7 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parent.parent / "configs"
 V90 = """
 speed: 600 rpm
