@@ -61,7 +61,7 @@ class Rim(Described):
     @classmethod
     def of_keys(
         cls, outer_diameter: float | None = None, inner_diameter: float = 0.0, depth: float = 0.0, **keys: Any
-    ) -> Rim:
+    ) -> "Rim":
         """Return the rim with D = (D_a + D_i)/2 and h = (D_a − D_i)/2; raises RuleError."""
         if outer_diameter is None:
             return cls(depth=depth, **keys)
@@ -148,8 +148,6 @@ class Flywheel(Described):
 
     @classmethod
     def of_keys(cls, **keys: Any) -> "Flywheel":
-        """Return the flywheel with J = inertia, GD²/4 or m k²."""
-    def of_keys(cls, **keys: Any) -> Flywheel:
         """Return the flywheel with J = inertia, GD²/4, m k², or that of its rim; raises RuleError."""
         mass, radius, gd2 = (keys.pop(name, None) for name in ("mass", "radius_of_gyration", "gd2"))
         if gd2 is not None:
