@@ -24,10 +24,9 @@ def _message(name: str, monkeypatch: pytest.MonkeyPatch) -> str:
     return str(caught.value)
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_message(name: str, monkeypatch: pytest.MonkeyPatch, kept: Callable[[Path, str], str]) -> None:
-    message = _message(name, monkeypatch) + "\n"
-    assert message == kept(FOLDER / f"{name}.expected", message)
+def test_messages(monkeypatch: pytest.MonkeyPatch, kept: Callable[[Path, str], str]) -> None:
+    told = {name: _message(name, monkeypatch) + "\n" for name in FILES}
+    assert told == {name: kept(FOLDER / f"{name}.expected", message) for name, message in told.items()}
 
 
 @pytest.mark.parametrize("name", few(FILES, ["deep_nesting", *FILES[::8]]))

@@ -5,8 +5,6 @@ legal: `12 kg` is no force. Two bases are not plain SI, both to keep exact what 
 degrees (a dead centre is at 180, not near pi) and speeds of rotation in revolutions per second.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable

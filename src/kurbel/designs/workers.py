@@ -1,7 +1,5 @@
 """Who computes the chunks of a sweep: this process, others on this machine, or a cluster; the order stays."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
