@@ -39,6 +39,14 @@ def answers_of(machines: Sequence[Machine], asked: Sequence[Answer]) -> list[Val
     return [_merged(first, second, side_by_side) for first, second in zip(together, alone)]
 
 
+def stands_beside(machine: Machine, asked: Answer) -> bool:
+    """Return whether many such machines answer this side by side, in little more time than one of them."""
+    if not (asked.of_cylinder and _stands_beside(asked.quantity)):
+        return False
+    cylinder = next(one for one in machine.cylinders if one.name == asked.subject)
+    return Kinds().of(machine, cylinder) is not None
+
+
 def _stands_beside(quantity: Quantity) -> bool:
     """Return whether a key value is one of forces, guide or motion themselves, whose formulas take many machines."""
     name = quantity.asks[0] if quantity.asks else quantity.id
