@@ -7,18 +7,19 @@ from typing import Any, NamedTuple
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import answers_of
-from kurbel.designs.binding import Binder, Unbound
+from kurbel.designs.answers import AT_ONCE, Values, answers_of
+from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, asked_answers, subjects
 from kurbel.designs.inputs import Input, read_input
 from kurbel.designs.plan import Fixed, Plan
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine.variants import Lot
 from kurbel.machine_file.source import Source
 from kurbel.numerics.extreme import Extreme
 
 CHUNK = 1000
-"""Rows that are computed together: what memory holds at once."""
+"""Rows that are computed and handed over together: what memory holds at once."""
 _FIRST = 20
 """Rows of the first chunk, so that a reader sees something at once."""
 _STARTS = 100
@@ -126,41 +127,44 @@ class Sweep:
         """Units of the answers, from the sizes that the first machine has."""
         if self.spec.system == "si":
             return tuple(SI[one.quantity.kind] for one in self.asked)
-        (first,) = answers_of([self._binder.machine], self.asked)
+        first = answers_of([Lot(self._binder.machine, (0,))], self.asked)[0]
         sizes = [0.0] * len(self.asked) if isinstance(first, str) else map(_size, first)
         return tuple(
             shown_unit(one.quantity.kind, self.spec.system, size) for one, size in zip(self.asked, sizes, strict=True)
         )
 
-    def chunk(self, start: int, stop: int) -> list[Row]:
-        """Return the rows with these indices from 0 on."""
-        texts = [self.plan.texts(row) for row in range(start, stop)]
-        machines: list[Machine | str] = [self._bound(one) for one in texts]
-        whole = [one for one in machines if isinstance(one, Machine)]
-        answers = iter(answers_of(whole, (*self.asked, *(answer for answer, _ in self._limits))))
-        found = [one if isinstance(one, str) else next(answers) for one in machines]
-        values = iter(self._values([one for one in found if not isinstance(one, str)]))
-        return [self._row(row, own, one, values) for row, own, one in zip(range(start, stop), texts, found)]
+    def chunk(self, start: int, stop: int) -> Iterator[Row]:
+        """Yield the rows with these indices from 0 on."""
+        while start < stop:
+            block = _block_of(start)
+            yield from self._rows(range(block.start, min(block.stop, self.rows)), range(start, min(block.stop, stop)))
+            start = block.stop
 
-    def _bound(self, texts: tuple[str, ...]) -> Machine | str:
-        try:
-            return self._binder.bound(texts)
-        except (Unbound, KurbelError) as error:
-            return str(error)
+    def _rows(self, block: range, wanted: range) -> Iterator[Row]:
+        """Yield the wanted rows of a block."""
+        texts = [self.plan.texts(row) for row in block]
+        bound = self._binder.bound(texts)
+        own = range(wanted.start - block.start, wanted.stop - block.start)
+        found = bound.failures | answers_of(bound.lots, (*self.asked, *(answer for answer, _ in self._limits)), own)
+        inputs = list(zip(*(self._input_values(*one) for one in enumerate(zip(*texts)))))
+        values = iter(self._values([found[row] for row in own if not isinstance(found[row], str)]))
+        for row, number in zip(own, wanted):
+            yield self._row(number + 1, inputs[row], found[row], values)
 
-    def _row(
-        self, row: int, texts: Sequence[str], found: Sequence[Any] | str, values: Iterator[tuple[Any, ...]]
-    ) -> Row:
-        inputs = [self._input_value(number, text) for number, text in enumerate(texts)]
+    def _row(self, number: int, inputs: tuple[Any, ...], found: Values, values: Iterator[tuple[Any, ...]]) -> Row:
         if isinstance(found, str):
-            return Row(row + 1, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=found)
+            return Row(number, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=found)
         broken = self._broken(found[len(self.asked) :])
-        return Row(row + 1, (*inputs, *next(values)), not broken if self.limited else None, broken)
+        return Row(number, (*inputs, *next(values)), not broken if self.limited else None, broken)
 
-    def _input_value(self, number: int, text: str) -> Any:
+    def _input_values(self, number: int, texts: Sequence[str]) -> list[Any]:
+        """Return what stands under the head of an input in these rows."""
         head = self.heads[number]
-        value = _in_base(text, head.kind)
-        return text if value is None else convert(value, head.kind, head.unit) + 0.0
+        known = dict.fromkeys(texts)
+        for text in known:
+            value = _in_base(text, head.kind)
+            known[text] = text if value is None else convert(value, head.kind, head.unit) + 0.0
+        return [known[text] for text in texts]
 
     def _values(self, found: Sequence[Sequence[Any]]) -> Iterable[tuple[Any, ...]]:
         """Return what stands under the heads of the answers, row by row, of the answers (rows, asked) in SI."""
@@ -186,9 +190,15 @@ class Sweep:
         """Yield the ends of the chunks in which rows are computed, the first one short."""
         start = rows.start
         while start < rows.stop:
-            stop = min(start + (_FIRST if start == rows.start else CHUNK), rows.stop)
-            yield start, stop
-            start = stop
+            end = _block_of(start).stop if start == rows.start else (start // CHUNK + 1) * CHUNK
+            yield start, min(end, rows.stop)
+            start = end
+
+
+def _block_of(row: int) -> range:
+    """Return the rows in whose company a row is answered: always the same, since some libraries round by length."""
+    start = row - row % AT_ONCE
+    return range(_FIRST) if row < _FIRST else range(max(start, _FIRST), start + AT_ONCE)
 
 
 _AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")
@@ -242,4 +252,4 @@ def _sweep(spec: Spec) -> Sweep:
 
 def computed(spec: Spec, start: int, stop: int) -> list[Row]:
     """Return rows of a sweep, in whatever process; a sweep is made once in each."""
-    return _sweep(spec).chunk(start, stop)
+    return list(_sweep(spec).chunk(start, stop))

@@ -18,6 +18,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.declared.units import example, parse_quantity, unit_example, unit_factor, unit_names
 from kurbel.errors import Fault, Path, RuleError, UnitError
 from kurbel.near_words import did_you_mean
+from kurbel.numerics.arithmetic import is_number
 
 Words = tuple[tuple[str, float], ...]
 
@@ -111,7 +112,7 @@ class _Bounded(Scalar):
             (self.below, lt, "is too large; it must be less than"),
             (self.most, le, "is too large; it must be at most"),
         ):
-            if bound is not None and isinstance(value, (int, float)) and not holds(value, bound):
+            if bound is not None and is_number(value) and not holds(value, bound):
                 return f"{wrong} {show(bound, self.kind) if bound else '0'}"
         return ""
 
