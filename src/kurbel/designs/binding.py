@@ -12,16 +12,13 @@ from kurbel.declared.keys import Form
 from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, shown
 from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
 from kurbel.machine import Machine
-from kurbel.machine.variants import Lot, one_kind
+from kurbel.machine.variants import Lot, joined, one_kind, sort_of
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.overrides import overridden, read_override
 from kurbel.machine_file.reader import read_machine, reading_of
 from kurbel.machine_file.source import Source
 from kurbel.near_words import did_you_mean
-from kurbel.numerics.varied import Parted, Varied
-
-_MOST_KNOWN = 10_000
-"""Values of keys that are kept beside their texts."""
+from kurbel.numerics.varied import Parted
 
 
 class Unbound(Exception):
@@ -50,15 +47,34 @@ class _Slot(NamedTuple):
     name: str
     varied: list[tuple[int, Path]]
 
-    def read(self, texts: Sequence[str], folder: str) -> Any:
-        """Return what the record gets for these texts, one of each varied key there; raises Unbound."""
+    def column(self, rows: Sequence[Sequence[str]], folder: str) -> list[Any]:
+        """Return what the record gets in these rows of texts; Unbound, unraised, where it gets nothing."""
+        texts = [tuple([row[number] for number, _ in self.varied]) for row in rows]
+        different = list(dict.fromkeys(texts))
+        known = dict(zip(different, self._numbers(different) or [self._read(one, folder) for one in different]))
+        return [known[one] for one in texts]
+
+    @property
+    def _form(self) -> Form:
+        return self.birth.form.keys[self.name].form  # type: ignore[no-any-return]
+
+    def _numbers(self, texts: Sequence[tuple[str, ...]]) -> Sequence[Any] | None:
+        """Return what texts become if one varied key is all that stands here, and all are plain numbers."""
+        single = len(self.varied) == 1 and not self.varied[0][1]
+        return self._form.numbers([text for (text,) in texts]) if single else None
+
+    def _read(self, texts: Sequence[str], folder: str) -> Any:
+        """Return what the record gets for texts of its varied keys, or Unbound."""
         tree = self.birth.mapping[self.name]
-        for (_, inner), text in zip(self.varied, texts):
-            tree = _with(tree, inner, Plain(text)) if inner else Plain(text)
         reading = Reading(folder)
-        value = self.birth.form.keys[self.name].form.read(reading, tree, (self.name,))
+        try:
+            for (_, inner), text in zip(self.varied, texts):
+                tree = _with(tree, inner, Plain(text)) if inner else Plain(text)
+        except Unbound as error:
+            return error
+        value = self._form.read(reading, tree, (self.name,))
         if value is REFUSED or reading.faults:
-            raise Unbound(_told([fault.below(self.birth.path) for fault in reading.faults]))
+            return Unbound(_told([fault.below(self.birth.path) for fault in reading.faults]))
         return value
 
 
@@ -87,7 +103,6 @@ class Binder:
         for number, key in enumerate(keys):
             self._place(number, read_override(f"{key}=0").path, births)
         self._steps = self._planned(births)
-        self._known: dict[tuple[int, tuple[str, ...]], Any] = {}
 
     def _place(self, number: int, path: Path, births: list[Birth]) -> None:
         """Note in which slots a key stands: that of its record, and those of what is `like` that."""
@@ -119,25 +134,26 @@ class Binder:
     def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
         """Return the machines of rows of texts, those of one kind in one record, and why the other rows make none."""
         found = Bound([], {})
-        read: dict[int, list[Any]] = {}
-        for row, texts in enumerate(rows):
-            try:
-                read[row] = [self._value(number, slot, texts) for number, slot in enumerate(self._slots)]
-            except Unbound as error:
-                found.failures[row] = str(error)
+        columns = [slot.column(rows, self._reading.folder) for slot in self._slots]
+        read: dict[int, tuple[Any, ...]] = {}
+        for row, values in enumerate(zip(*columns)):
+            if failed := next((one for one in values if isinstance(one, Unbound)), None):
+                found.failures[row] = str(failed)
+            else:
+                read[row] = values
         with np.errstate(all="ignore"):  # as floats do; what is beyond them is refused
             for part in _of_one_sort(read):
                 self._bind(part, found)
         return found
 
-    def _bind(self, part: dict[int, list[Any]], found: Bound) -> None:
+    def _bind(self, part: dict[int, tuple[Any, ...]], found: Bound) -> None:
         """Make the machines of these values of rows at once; where a rule holds for some only, of those by themselves.
 
         Where a rule is broken each row is left to itself, to tell why; so it is where one is written for floats alone,
         and asks for what `Varied` has not.
         """
         try:
-            machine = self._made([_joined(values) for values in zip(*part.values())])
+            machine = self._made(joined(list(part.values())))
             one_kind(machine)
         except Parted as parted:
             for side in (parted.holds, ~parted.holds):
@@ -174,29 +190,13 @@ class Binder:
             raise Unbound(_told(reading.faults))
         return found[-1] if found else self.machine
 
-    def _value(self, number: int, slot: _Slot, texts: Sequence[str]) -> Any:
-        """Return what stands in a slot in a row of texts; texts that come again are read once."""
-        key = number, tuple([texts[place] for place, _ in slot.varied])
-        if key not in self._known:
-            if len(self._known) >= _MOST_KNOWN:
-                self._known.clear()
-            self._known[key] = slot.read(key[1], self._reading.folder)
-        return self._known[key]
 
-
-def _of_one_sort(read: dict[int, list[Any]]) -> list[dict[int, list[Any]]]:
+def _of_one_sort(read: dict[int, tuple[Any, ...]]) -> list[dict[int, tuple[Any, ...]]]:
     """Return the rows with their values in parts that differ in numbers only."""
-    parts: dict[Any, dict[int, list[Any]]] = {}
+    parts: dict[Any, dict[int, tuple[Any, ...]]] = {}
     for row, values in read.items():
-        sort = tuple([None if type(one) in (float, int) else id(one) for one in values])
-        parts.setdefault(sort, {})[row] = values
+        parts.setdefault(sort_of(values), {})[row] = values
     return list(parts.values())
-
-
-def _joined(values: Sequence[Any]) -> Any:
-    """Return what stands for the values of many rows, which are numbers where they differ."""
-    first = values[0]
-    return first if all(one is first for one in values) else Varied(np.array(values))
 
 
 def written_texts(source: Source, overrides: Sequence[str], keys: Sequence[str]) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -55,3 +56,6 @@ class Rectangular(Physical):
         if self.field == "level" and not NUMBER.match(plain(text)):
             refused(f"expected {self.expected()}, or a card below it, got '{shown(text)}'")
         return Rectangle(**{self.field: super().parse(text, folder)})
+
+    def numbers(self, texts: Sequence[str]) -> None:
+        """Return nothing: each becomes a card."""

@@ -1,13 +1,13 @@
 """Records of many variants of a machine: what differs among them is `Varied`, or, for the solver, an array (v,)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import is_dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Indices
-from kurbel.numerics.varied import Varied
+from kurbel.numerics.varied import Varied, varied
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
@@ -22,6 +22,32 @@ class Lot(NamedTuple):
     def one(self, place: int) -> "Machine":
         """Return one of them, counted from 0, alone."""
         return one_of(self.machine, place)  # type: ignore[no-any-return]
+
+
+def sort_of(value: Any) -> Hashable:
+    """Return what values must have in common to differ in numbers only, and to be joined."""
+    if type(value) in (float, int):
+        return type(value).__name__
+    if isinstance(value, (tuple, list)):
+        return (type(value), *map(sort_of, value))
+    if is_dataclass(value):
+        return (type(value), *map(sort_of, vars(value).values()))
+    return value if isinstance(value, str) else id(value)
+
+
+def joined(values: Sequence[Any]) -> Any:
+    """Return values of one sort as one of many variants, in which numbers are `Varied` where they differ."""
+    first = values[0]
+    if all(one is first for one in values):
+        return first
+    if isinstance(first, (float, int)):
+        return varied(values)
+    if isinstance(first, (tuple, list)):
+        parts = map(joined, zip(*values))
+        return type(first)(*parts) if hasattr(first, "_fields") else type(first)(parts)
+    if is_dataclass(first):
+        return _like(first, {name: joined([vars(one)[name] for one in values]) for name in vars(first)})
+    return first
 
 
 def one_of(record: Any, place: int) -> Any:

@@ -21,6 +21,11 @@ class Parted(Exception):
         self.holds = holds
 
 
+def varied(numbers: Sequence[float]) -> Varied:
+    """Return numbers of many variants."""
+    return Varied(np.array(numbers))
+
+
 def _done(operate: Callable[[Any, Any], Any], reflected: bool = False) -> Callable[[Varied, Any], Any]:
     def method(self: Varied, other: Any) -> Any:
         if not isinstance(other, (float, int, Varied)):
