@@ -282,7 +282,7 @@ def plain_quantities(texts: Iterable[str], kind: str) -> list[float] | None:
         if factor is None or not NUMBER.fullmatch(number):
             return None
         values.append(float(number) * factor[0] / factor[1])
-    return values
+    return values if all(map(math.isfinite, values)) else None
 
 
 def _refuse_more_figures(text: str, rest: str, kind: str) -> None:

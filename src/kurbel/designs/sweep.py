@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.unit_systems import SI, convert, shown_unit
-from kurbel.declared.units import parse_quantity
+from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import AT_ONCE, Values, answers_of
 from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, asked_answers, subjects
@@ -160,10 +160,12 @@ class Sweep:
     def _input_values(self, number: int, texts: Sequence[str]) -> list[Any]:
         """Return what stands under the head of an input in these rows."""
         head = self.heads[number]
-        known = dict.fromkeys(texts)
-        for text in known:
-            value = _in_base(text, head.kind)
-            known[text] = text if value is None else convert(value, head.kind, head.unit) + 0.0
+        different = list(dict.fromkeys(texts))
+        found = plain_quantities(different, head.kind) if head.kind else None
+        known = {
+            text: text if value is None else convert(value, head.kind, head.unit) + 0.0
+            for text, value in zip(different, found or [_in_base(text, head.kind) for text in different])
+        }
         return [known[text] for text in texts]
 
     def _values(self, found: Sequence[Sequence[Any]]) -> Iterable[tuple[Any, ...]]:
