@@ -116,7 +116,7 @@ class Sweep:
 
     def _input_head(self, number: int, one: Input) -> Head:
         kind = kind_of_form(self._binder.form(number))
-        first = _in_base(self.plan.texts(0)[number], kind) or 0.0
+        first = _in_base([self.plan.texts(0)[number]], kind)[0] or 0.0
         return Head(one.key, shown_unit(kind, self.spec.system, first) if kind else "", True, kind)
 
     def _has_angle(self, one: Answer) -> bool:
@@ -161,10 +161,9 @@ class Sweep:
         """Return what stands under the head of an input in these rows."""
         head = self.heads[number]
         different = list(dict.fromkeys(texts))
-        found = plain_quantities(different, head.kind) if head.kind else None
         known = {
             text: text if value is None else convert(value, head.kind, head.unit) + 0.0
-            for text, value in zip(different, found or [_in_base(text, head.kind) for text in different])
+            for text, value in zip(different, _in_base(different, head.kind))
         }
         return [known[text] for text in texts]
 
@@ -206,8 +205,13 @@ def _block_of(row: int) -> range:
 _AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")
 
 
-def _in_base(text: str, kind: str) -> float | None:
-    """Return the value of a text in the base of its kind; None for a word, or what a row fails for."""
+def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
+    """Return the values of texts in the base of their kind; None for a word, or what a row fails for."""
+    plain = plain_quantities(texts, kind) if kind else None
+    return plain or [_one_in_base(text, kind) for text in texts]
+
+
+def _one_in_base(text: str, kind: str) -> float | None:
     if not kind:
         return None
     try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,6 +12,10 @@ from typing import Any
 from kurbel.designs.sweep import Row, Spec, Sweep, computed
 from kurbel.errors import UsageError
 
+_FOR_ONE = 5_000
+"""Rows that one process should have at least: about so many are computed while another one starts."""
+_MOST_JOBS = 4
+"""Processes that are started unasked: the machine may have other work, and each holds the library."""
 _AHEAD = 3
 """Chunks per worker that are on their way: what is computed and not yet read stays little."""
 _RETRIES = 5
@@ -34,6 +40,13 @@ def rows_of(sweep: Sweep, rows: range, jobs: int = 1, dask: str = "") -> Iterato
             yield from sweep.chunk(start, stop)
 
 
+def likely_jobs(rows: int) -> int:
+    """Return how many processes of this machine so many rows are worth."""
+    # a scheduler may have left this process fewer cores than the machine has
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(min(cores, _MOST_JOBS, rows // _FOR_ONE), 1)
+
+
 def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: int) -> Iterator[Row]:
     """Yield the rows of chunks that others compute, in order, with few of them ahead."""
     waiting: deque[Any] = deque()
@@ -48,11 +61,24 @@ def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: in
 @contextmanager
 def _processes(jobs: int) -> Iterator[Callable[..., Any]]:
     from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
+    from multiprocessing import active_children, get_context
 
     pool = ProcessPoolExecutor(jobs, get_context("spawn"))
+
+    def submit(*task: Any) -> Any:
+        # an interrupt is for this process alone: those that are started here inherit that they are to overlook it
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        try:
+            return pool.submit(*task)
+        finally:
+            signal.signal(signal.SIGINT, before)
+
     try:
-        yield pool.submit
+        yield submit
+    except BaseException:  # nobody waits for what they still compute
+        for worker in active_children():
+            worker.terminate()
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 

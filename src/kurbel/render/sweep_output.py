@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import Any, NamedTuple
 
+from kurbel.designs.chosen import Unit
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.csv_text import _harmless, _quoted
@@ -101,6 +102,8 @@ def _cell(value: Any, look: Look, in_full: bool = False) -> str:
     """Return a value as text, its number to four digits, or in full as csv has it."""
     if value is None:
         return ""
+    if isinstance(value, Unit) and not in_full:
+        return look.charset.unit(value)
     if isinstance(value, str):
         return _harmless(look.charset.text(value)) if in_full else look.charset.text(value)
     if isinstance(value, tuple):
