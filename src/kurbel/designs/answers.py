@@ -1,7 +1,5 @@
 """The answers of many machines: those of one kind side by side, the others one after another."""
 
-from __future__ import annotations
-
 from collections.abc import Container, Sequence
 from typing import Any, Union
 

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity, plain_quantities
-from kurbel.designs.answers import AT_ONCE, Values, answers_of
+from kurbel.designs.answers import Values, answers_of
 from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, asked_answers, subjects
 from kurbel.designs.inputs import Input, read_input
@@ -18,8 +19,8 @@ from kurbel.machine.variants import Lot
 from kurbel.machine_file.source import Source
 from kurbel.numerics.extreme import Extreme
 
-CHUNK = 1000
-"""Rows that are computed and handed over together: what memory holds at once."""
+CHUNK = 200
+"""Rows that are computed together: what memory holds at once, and what a run computes anew that begins amid them."""
 _FIRST = 20
 """Rows of the first chunk, so that a reader sees something at once."""
 _STARTS = 100
@@ -133,29 +134,26 @@ class Sweep:
             shown_unit(one.quantity.kind, self.spec.system, size) for one, size in zip(self.asked, sizes, strict=True)
         )
 
-    def chunk(self, start: int, stop: int) -> Iterator[Row]:
-        """Yield the rows with these indices from 0 on."""
-        while start < stop:
-            block = _block_of(start)
-            yield from self._rows(range(block.start, min(block.stop, self.rows)), range(start, min(block.stop, stop)))
-            start = block.stop
-
-    def _rows(self, block: range, wanted: range) -> Iterator[Row]:
-        """Yield the wanted rows of a block."""
-        texts = [self.plan.texts(row) for row in block]
+    def chunk(self, company: range, wanted: range) -> list[Row]:
+        """Return the wanted rows of a chunk, counted from 0."""
+        texts = [self.plan.texts(row) for row in company]
         bound = self._binder.bound(texts)
-        own = range(wanted.start - block.start, wanted.stop - block.start)
+        own = range(wanted.start - company.start, wanted.stop - company.start)
         found = bound.failures | answers_of(bound.lots, (*self.asked, *(answer for answer, _ in self._limits)), own)
         inputs = list(zip(*(self._input_values(*one) for one in enumerate(zip(*texts)))))
         values = iter(self._values([found[row] for row in own if not isinstance(found[row], str)]))
-        for row, number in zip(own, wanted):
-            yield self._row(number + 1, inputs[row], found[row], values)
+        return [self._row(number + 1, inputs[row], found[row], values) for row, number in zip(own, wanted)]
 
     def _row(self, number: int, inputs: tuple[Any, ...], found: Values, values: Iterator[tuple[Any, ...]]) -> Row:
         if isinstance(found, str):
             return Row(number, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=found)
         broken = self._broken(found[len(self.asked) :])
         return Row(number, (*inputs, *next(values)), not broken if self.limited else None, broken)
+
+    def unanswered(self, row: int) -> Row:
+        """Return the row with this index from 0 on without its answers: what varies is known unsolved."""
+        inputs = [self._input_values(number, [text])[0] for number, text in enumerate(self.plan.texts(row))]
+        return Row(row + 1, (*inputs, *[None] * (len(self.heads) - len(inputs))))
 
     def _input_values(self, number: int, texts: Sequence[str]) -> list[Any]:
         """Return what stands under the head of an input in these rows."""
@@ -187,19 +185,16 @@ class Sweep:
                 return answer.quantity.id
         return ""
 
-    def chunks(self, rows: range) -> Iterator[tuple[int, int]]:
-        """Yield the ends of the chunks in which rows are computed, the first one short."""
-        start = rows.start
-        while start < rows.stop:
-            end = _block_of(start).stop if start == rows.start else (start // CHUNK + 1) * CHUNK
-            yield start, min(end, rows.stop)
-            start = end
+    def chunks(self, rows: range) -> Iterator[tuple[range, range]]:
+        """Yield the chunks that these rows are computed in, each with those rows that are wanted of it.
 
-
-def _block_of(row: int) -> range:
-    """Return the rows in whose company a row is answered: always the same, since some libraries round by length."""
-    start = row - row % AT_ONCE
-    return range(_FIRST) if row < _FIRST else range(max(start, _FIRST), start + AT_ONCE)
+        A row has the same company in every run, since its last digits may hang on how many are computed with it.
+        """
+        for start in range(rows.start - rows.start % CHUNK, rows.stop, CHUNK):
+            cuts = (start, start + CHUNK) if start else (0, _FIRST, CHUNK)
+            for low, high in pairwise(cuts):
+                if low < rows.stop and rows.start < high:
+                    yield range(low, min(high, self.rows)), range(max(low, rows.start), min(high, rows.stop))
 
 
 _AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")
@@ -256,6 +251,6 @@ def _sweep(spec: Spec) -> Sweep:
     return Sweep(spec)
 
 
-def computed(spec: Spec, start: int, stop: int) -> list[Row]:
+def computed(spec: Spec, company: range, wanted: range) -> list[Row]:
     """Return rows of a sweep, in whatever process; a sweep is made once in each."""
-    return list(_sweep(spec).chunk(start, stop))
+    return _sweep(spec).chunk(company, wanted)

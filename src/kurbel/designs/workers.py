@@ -1,7 +1,5 @@
 """Who computes the chunks of a sweep: this process, others on this machine, or a cluster; the order stays."""
 
-from __future__ import annotations
-
 import os
 import signal
 from collections import deque
@@ -29,6 +27,12 @@ def rows_of(sweep: Sweep, rows: range, jobs: int = 1, dask: str = "") -> Iterato
 
     Raises UsageError for an address that does not answer.
     """
+    for chunk in _chunks(sweep, rows, jobs, dask):
+        yield from chunk
+
+
+def _chunks(sweep: Sweep, rows: range, jobs: int, dask: str) -> Iterator[list[Row]]:
+    """Yield the chunks of rows in which these stand, in order."""
     if dask:
         with _cluster(dask) as (submit, workers):
             yield from _gathered(sweep, rows, submit, workers)
@@ -36,8 +40,7 @@ def rows_of(sweep: Sweep, rows: range, jobs: int = 1, dask: str = "") -> Iterato
         with _processes(jobs) as submit:
             yield from _gathered(sweep, rows, submit, jobs)
     else:
-        for start, stop in sweep.chunks(rows):
-            yield from sweep.chunk(start, stop)
+        yield from (sweep.chunk(company, wanted) for company, wanted in sweep.chunks(rows))
 
 
 def likely_jobs(rows: int) -> int:
@@ -47,15 +50,15 @@ def likely_jobs(rows: int) -> int:
     return max(min(cores, _MOST_JOBS, rows // _FOR_ONE), 1)
 
 
-def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: int) -> Iterator[Row]:
-    """Yield the rows of chunks that others compute, in order, with few of them ahead."""
+def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: int) -> Iterator[list[Row]]:
+    """Yield the chunks that others compute, in order, with few of them ahead."""
     waiting: deque[Any] = deque()
-    for start, stop in sweep.chunks(rows):
-        waiting.append(submit(computed, sweep.spec, start, stop))
+    for company, wanted in sweep.chunks(rows):
+        waiting.append(submit(computed, sweep.spec, company, wanted))
         if len(waiting) > _AHEAD * workers:
-            yield from waiting.popleft().result()
+            yield waiting.popleft().result()
     while waiting:
-        yield from waiting.popleft().result()
+        yield waiting.popleft().result()
 
 
 @contextmanager
@@ -94,8 +97,9 @@ def _cluster(address: str) -> Iterator[tuple[Callable[..., Any], int]]:
     except (OSError, ValueError) as error:  # what is no address, and what does not answer in time
         raise UsageError(f"--dask {address}: no scheduler answers there ({str(error).splitlines()[0]})") from None
 
-    def submit(function: Callable[..., Any], spec: Spec, start: int, stop: int) -> Any:
-        return client.submit(function, spec, start, stop, retries=_RETRIES, key=f"kurbel-{hash(spec)}-{start}")
+    def submit(function: Callable[..., Any], spec: Spec, company: range, wanted: range) -> Any:
+        key = f"kurbel-{hash(spec)}-{wanted}"
+        return client.submit(function, spec, company, wanted, retries=_RETRIES, key=key)
 
     try:
         yield submit, max(len(client.scheduler_info()["workers"]), 1)

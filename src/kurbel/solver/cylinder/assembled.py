@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from kurbel.numerics.grid import Grid
-from kurbel.numerics.jet import Jet
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.state import State
 
@@ -35,6 +34,4 @@ class Assembled:
     def _joined(self, coarser: Any, finer: Any) -> Any:
         if coarser is None:
             return None
-        if isinstance(coarser, Jet):
-            return Jet(self._joined(coarser.value, finer.value), self._joined(coarser.slope, finer.slope))
         return np.concatenate((coarser.T, finer.T), axis=1).take(self._place, axis=1).T
