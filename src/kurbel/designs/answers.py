@@ -23,7 +23,7 @@ _ALONE = ("energy_residual",)
 """Key values whose quadrature cuts the pieces of each machine until they agree, and answers one machine at a time."""
 _FEWEST = 3
 """Machines of one kind; fewer are answered as quickly alone."""
-AT_ONCE = 200
+AT_ONCE = 1000
 """Machines side by side: enough to share the overhead of one run, few enough for the cache of a processor."""
 
 Values = Union[Sequence[Any], str]

@@ -25,7 +25,7 @@ class Sampled(NamedTuple):
     @classmethod
     def on(cls, grid: Grid, value: Any) -> "Sampled":
         """Return values at the nodes of a grid with the slopes of the polynomials through them."""
-        value = np.broadcast_to(value, grid.degrees.shape)
+        value = np.broadcast_to(value, grid.shape)
         return cls(value, grid.slopes(value))
 
 
