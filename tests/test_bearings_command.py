@@ -13,6 +13,7 @@ from click.testing import CliRunner, Result
 from kurbel.cli import kurbel
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parents[1] / "configs"
 ENGINE = (CONFIGS / "gas-engine.yaml").read_text("utf-8")
 THREE = """
@@ -85,6 +86,8 @@ def test_throws_that_do_not_fit_their_bearings_are_told() -> None:
     assert (
         "throws 300 mm apart along the shaft do not fit bearings between them, by which they are a + b = 800 mm" in text
     )
+    checked = " ".join(run("check", "-", file=spaced + SHAFT).stdout.split())
+    assert "note throws 300 mm apart along the shaft do not fit bearings between them" in checked
 
 
 def test_without_a_crankshaft_there_are_pins_only() -> None:

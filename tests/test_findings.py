@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,8 @@ from kurbel.declared.quantity import by_id
 from kurbel.errors import UsageError
 from kurbel.report.check import checked
 from kurbel.report.compared import Unjudged, compared
+from kurbel.report.frame import Frame, report_of
+from kurbel.report.whole import COMMANDS
 from representative import few, shipped
 
 ENDLESS = "{constant: {expansion: 1e300 at, compression: 1e300 at}}"
@@ -56,6 +59,20 @@ def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
         assert isinstance(found, Unjudged)
         assert isinstance(found.error, UsageError)
         assert f"{key}.{name} (cylinder 1): {name} is too large to compute with" in str(found.error)
+
+
+@pytest.mark.parametrize("path", shipped("marine-diesel", "gas-engine", "coupled-blower"))
+def test_check_shows_the_warnings_of_every_command(path: Path) -> None:
+    machine = load(path)
+    shown = {one.text for section in checked(machine).sections for one in section.entries if one.what == "note"}
+    frames = [Frame(command.word, (0.0,), None, "metric") for command in COMMANDS]
+    for frame in frames:
+        with suppress(UsageError):
+            parts = report_of(solve(machine), frame).all_parts
+            warned = {one for part in parts for one in part.warnings}
+            assert {one for one in warned if not any(one.endswith(text) for text in shown)} == set()
+    if path.stem == "marine-diesel":
+        assert any(one.startswith("mode 1: critical speed of order 3 (-1.78 %)") for one in shown)
 
 
 # by the trapezoid rule the work of a sawtooth of four samples is far from that between them

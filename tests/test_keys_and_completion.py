@@ -89,6 +89,7 @@ def test_every_key_says_what_it_means() -> None:
     [
         ("kurbel fly", ["flywheel"]),
         ("kurbel example wat", ["waterworks", "waterworks-two-cranks"]),
+        ("kurbel units press", ["pressure", "pressure_rise", "pressure_velocity"]),
         ("kurbel keys masses.connecting_rod.s", ["masses.connecting_rod.share"]),
         ("kurbel motion engine.yaml --columns x,theta_d", ["x,theta_dot", "x,theta_ddot"]),
         ("kurbel forces engine.yaml --set bo", ["bore="]),

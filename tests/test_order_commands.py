@@ -15,6 +15,7 @@ from kurbel.machine.shaft_line import ShaftPart
 from kurbel.machine.shaft_list import line_of
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parent.parent / "configs"
 BLOWER, SHIP = (str(CONFIGS / f"{name}.yaml") for name in ("coupled-blower", "marine-diesel"))
 TWO = "shaft: [{inertia: 2 kg m2}, {stiffness: 50 N m/rad}, {inertia: 2 kg m2}]\n"
@@ -101,6 +102,62 @@ def test_what_lies_beside_the_working_speed_is_told() -> None:
     assert any(line.split()[:4] == ["near", "3", "1", "108"] for line in result.stdout.splitlines())
 
 
+@pytest.mark.parametrize(
+    ("asked", "orders"),
+    [("0.5:48:0.5", [i / 2 for i in range(1, 97)]), ("12", [12]), ("0.5,1,6", [0.5, 1, 6]), ("1:6:2", [1, 3, 5])],
+)
+def test_orders_by_steps(asked: str, orders: list[float]) -> None:
+    generator = str(CONFIGS / "four-cylinder-generator.yaml")
+    assert table(parsed("harmonics", generator, "--orders", asked), "orders")["order"] == orders
+
+
+def test_angles_by_steps_are_decimal_fractions() -> None:
+    cylinder = parsed("motion", BLOWER, "--angles", "0:1:0.1")["cylinders"][0]
+    assert cylinder["columns"][0]["values"] == [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1]
+
+
+def test_a_critical_speed_without_a_torque_is_said_to_be_beyond_the_machine() -> None:
+    result = parsed("torsion", SHIP)
+    critical, notes = table(result, "critical_speeds"), " ".join(result["notes"])
+    beyond = [speed > 1.2 * 110 / 60 for speed in critical["speed"]]
+    assert [torque is None for torque in critical["M_vibratory"]] == beyond
+    assert "– stands where the machine does not come, beyond 1.2 times the working speed" in notes
+    within = parsed("torsion", SHIP, "--orders", "6", "--modes", "1")
+    assert "– stands" not in " ".join(within["notes"])
+
+
+def test_what_hardly_excites_a_mode_is_no_danger() -> None:
+    """Of six equal cranks 60° apart on stiff pieces the vectors of all orders but the sixth nearly cancel."""
+    text = """
+speed: {speed} rpm
+cylinders:
+  count: 6
+  firing_order: 1-5-3-6-2-4
+  each: {crank: 100 mm, rod: 400 mm, bore: 200 mm, masses: {piston: 9 kg}, indicator: {head_end: {trace: CARD}}}
+""".replace("CARD", "{unit: bar, points: [[0, 9], [90, 3], [180, 0], [270, 1], [360, 9]]}")
+    text += "shaft:\n" + "  - {stiffness: 1000 MN m/rad}\n".join(
+        f"  - {{cylinder: cylinder {number}, inertia: 1 kg m2}}\n" for number in range(1, 7)
+    )
+    text += "  - {stiffness: 1 MN m/rad}\n  - {name: load, inertia: 9 kg m2, load: true}\n"
+    (speed,) = table(
+        parsed("torsion", "-", "--orders", "6", "--modes", "1", text=text.replace("{speed}", "60")), "critical_speeds"
+    )["speed"]
+    near = {}
+    for order in (5, 6):
+        found = parsed("torsion", "-", text=text.replace("{speed}", str(speed * 60 * 6 / order)))
+        rows = next(one["rows"] for one in found["machine_place_tables"] if one["id"] == "critical_speeds")
+        near[order] = [row["note"] for row in rows[:12]]
+        warned = [one for one in found["machine_warnings"] if "mode 1" in one]
+        assert len(warned) == (order == 6)
+    assert near[5] == [""] * 12
+    assert near[6] == [*[""] * 5, "near", *[""] * 6]
+
+
+def test_a_bound_has_two_figures() -> None:
+    """Orders beyond the 24th add about 17.689 kN m or less: nobody knows a bound to five figures."""
+    assert "(higher ones add about 18 kN m or less)" in " ".join(parsed("torsion", SHIP)["notes"])
+
+
 def test_without_damping_it_says_so() -> None:
     result = run("torsion", BLOWER, "--set", "coupling.damping=0 N m s/rad")
     assert "no damping given; at resonance nothing but damping bounds a vibration" in " ".join(result.stdout.split())
@@ -138,7 +195,10 @@ REFUSED = [
     ("torsion", BLOWER, ("--speeds", "x rpm"), "expected a number with its unit"),
     ("torsion", BLOWER, ("--speeds", "0 rpm"), "a speed is more than 0"),
     ("torsion", BLOWER, ("--speeds", "200:100:5 rpm"), "write from, to and step as '300:1500:10 rpm'"),
-    ("torsion", BLOWER, ("--speeds", "1:2:1e-9 rpm"), "more than 10000 speeds; take a larger step"),
+    ("torsion", BLOWER, ("--speeds", "1:2:1e-9 rpm"), "more than 10000 steps; take larger ones"),
+    ("torsion", BLOWER, ("--orders", "1:12"), "'1:12': write from, to and step as '0.5:12:0.5'"),
+    ("torsion", BLOWER, ("--orders", "1:12:-1"), "'1:12:-1': write from, to and step as '0.5:12:0.5'"),
+    ("motion", BLOWER, ("--angles", "0:360:1e-9"), "more than 10000 steps; take larger ones"),
     ("torsion", BLOWER, ("--speeds", "1e200 rpm"), "is too large to compute with"),
     ("torsion", BLOWER, ("--columns", "tau"), "'tau' is left out for this machine"),
     ("torsion", str(CONFIGS / "waterworks.yaml"), (), "no 'shaft' is given; write its masses"),
@@ -205,7 +265,7 @@ def test_a_coupling_whose_motion_finds_no_end_is_no_fault_of_kurbel(command: str
 
 NEIGHBOURS = """
 speed: 100 rpm
-effort: {unit: N m, mean: 9, harmonics: [[1, 1, 0], [2, 1, 0]]}
+effort: {unit: N m, mean: 9, harmonics: [[1, 1, 0], [10, 1, 0], [11, 1, 0]]}
 shaft:
   - {inertia: 1 kg m2}
   - {stiffness: 5500 N m/rad}
@@ -222,6 +282,9 @@ def test_near_stands_in_every_row_that_is() -> None:
         ["near", "11"],
     ]
     assert "orders 10" in answer.stdout
+    silent = NEIGHBOURS.replace(", [11, 1, 0]", "")
+    answer = CliRunner().invoke(kurbel, ["torsion", "-", "--orders", "10,11"], input=silent)
+    assert [line.split()[:2] for line in answer.stdout.splitlines() if line.startswith("near")] == [["near", "10"]]
 
 
 def test_the_load_stands_at_an_end_that_is_no_crank() -> None:

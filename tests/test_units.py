@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 from kurbel.declared.numerals import parse_number
@@ -247,6 +247,16 @@ def test_the_units_of_one_run_are_not_those_of_the_next() -> None:
     [
         ("7 ft 6 in", "length", "write feet and inches in one unit, such as '90 in' for 7 ft 6 in"),
         ("7' 6\"", "length", "write feet and inches in one unit, such as '90 in' for 7 ft 6 in"),
+        ("7'-6\"", "length", "write feet and inches in one unit, such as '90 in' for 7 ft 6 in"),
+        ('36"', "length", "; did you mean 'in'?"),
+        ("36''", "length", "; did you mean 'in'?"),
+        ("36”", "length", "; did you mean 'in'?"),
+        ("3'", "length", "; did you mean 'ft'?"),
+        ("820 lbs", "mass", "; did you mean 'lb'?"),
+        ("820 Pounds", "mass", "; did you mean 'lb'?"),
+        ("60 lbs/in2", "pressure", "; did you mean 'lb/in2'?"),
+        ("820 lbs", "length", "; lbs is a unit of mass"),
+        ("2 tons", "mass", "a ton is 't' (1000 kg), 'long ton' (2240 lb)"),
         ("60 lb per inch", "spring", "a spring of 60 lb per inch is '1/60 in/psi'"),
         ("60 psi/in", "spring", "a spring of 60 lb per inch is '1/60 in/psi'"),
     ],
@@ -255,6 +265,19 @@ def test_what_a_restorer_writes_in_inches(text: str, kind: str, hint: str) -> No
     with pytest.raises(UnitError) as caught:
         parse_quantity(text, kind)
     assert hint in str(caught.value)
+
+
+def test_the_units_of_one_kind() -> None:
+    def told(*kind: str) -> Result:
+        return CliRunner().invoke(kurbel, ["units", *kind])
+
+    of_pressure = f"pressure  {', '.join(unit_names('pressure'))}\n"
+    assert told("pressure").stdout == of_pressure
+    assert of_pressure.split("  ")[1] in told().stdout
+    assert told("angular velocity").stdout == told("angular_velocity").stdout == "angular velocity  rad/s\n"
+    wrong = told("pressur")
+    assert (wrong.exit_code, wrong.stderr) == (2, "Error: no kind of quantity 'pressur'; did you mean 'pressure'?\n")
+    assert "; there are length, area," in told("nothing of it").stderr
 
 
 def test_a_spring_of_60_lb_per_inch() -> None:

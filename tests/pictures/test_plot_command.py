@@ -40,6 +40,17 @@ def test_the_list_names_what_this_machine_has(name: str) -> None:
     assert "motion" in listed
     assert ("throw-stress" in listed) == (name == "gas-engine")
     assert run(WATERWORKS, "--list", "-o", "x.svg").exit_code == 2
+    unknown = run(str(CONFIGS[name]), "crd").stderr
+    assert unknown.partition(" has ")[2].strip() == f"{', '.join(listed)})"
+
+
+def test_without_a_file_the_list_names_every_picture() -> None:
+    listed = run("--list").stdout.splitlines()
+    assert [line.split()[0] for line in listed] == [one.id for one in PICTURES]
+    assert all(one.title in line for one, line in zip(PICTURES, listed))
+    assert "kurbel plot --list" in CliRunner().invoke(kurbel, ["--help"]).stdout
+    nothing = run()
+    assert (nothing.exit_code, "Missing argument 'FILE'." in nothing.stderr) == (2, True)
 
 
 def test_several_pictures_stand_one_below_the_other(tmp_path: Path) -> None:
@@ -77,7 +88,10 @@ def test_only_one_cylinder() -> None:
 @pytest.mark.parametrize(
     ("args", "message"),
     [
-        (["efort"], "no picture 'efort'; did you mean 'effort'? (there are piston-force,"),
+        (
+            ["efort"],
+            "no picture 'efort'; did you mean 'effort'? (Waterworks engine, high-pressure side has piston-force,",
+        ),
         (["throw-stress"], "no 'crankshaft' is given"),
         (["card", "-o", "x.jpg"], "the name of a picture ends in .svg, .png or .pdf"),
         (["card", "-o", "nowhere/x.svg"], "cannot write nowhere/x.svg: No such file or directory"),

@@ -97,7 +97,7 @@ def test_many_lobes_bear_numbers_within_them_and_few_their_work() -> None:
     crowded = text_of(drawn("radial-three", "effort", TERMINAL)[0], Look(width=80)).split("E in")[0]
     assert "A_4" in crowded
     assert "A_4 88.44 J" not in crowded
-    few = text_of(drawn("waterworks", "effort", TERMINAL)[0], Look(width=72))
+    few = text_of(drawn("waterworks", "effort", TERMINAL)[0], Look(width=80))
     assert "A_2 −18.39 kJ" in few
     assert all(f"A_{number}" in few for number in (1, 2, 3, 4))
 

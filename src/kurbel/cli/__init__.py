@@ -4,8 +4,6 @@ At import only click is loaded; a command module is imported when it is called, 
 its function.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import warnings
@@ -193,7 +191,7 @@ def _pretty(error: MachineFileError) -> str:
     return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_charset().text, width)
 
 
-def _stderr_charset() -> Charset:
+def _stderr_charset() -> "Charset":
     from kurbel.render.charset import Charset
 
     return Charset(getattr(sys.stderr, "encoding", None) or "utf-8")
@@ -239,7 +237,8 @@ def kurbel() -> None:
       kurbel forces engine.yaml                 forces and key values
       kurbel flywheel engine.yaml               turning effort, flywheel, speed
       kurbel balance engine.yaml                free forces and moments, counterweights
-      kurbel plot engine.yaml                   a picture; --list says which there are
+      kurbel plot --list                        the pictures that there are
+      kurbel plot engine.yaml                   the one that says most
       kurbel report engine.yaml -o report.html  everything on one page
 
     Results go to standard output, everything else to standard error.

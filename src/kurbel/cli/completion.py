@@ -1,7 +1,5 @@
 """What a shell completes: shipped machines, columns, cylinders, keys; each is looked up when TAB is pressed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import click
@@ -16,6 +14,13 @@ def complete_key(ctx: click.Context, param: click.Parameter, incomplete: str) ->
     from kurbel.report.keys import every_place
 
     return _beginning(every_place(), incomplete)
+
+
+def complete_kind(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the kinds of quantities that begin like this."""
+    from kurbel.declared.units import kinds
+
+    return _beginning(kinds(), incomplete)
 
 
 def complete_override(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:

@@ -63,7 +63,10 @@ angle_options = stacked(
         help="Step of the crank angle; 10 if not given.",
     ),
     click.option(
-        "--angles", type=readings.numbers, metavar="A,B,...", help="These crank angles in degrees instead of a step."
+        "--angles",
+        type=readings.numbers,
+        metavar="A,B,...",
+        help="These crank angles in degrees instead of a step; or FROM:TO:STEP.",
     ),
 )
 """`--step` and `--angles`: see `crank_angles`."""
@@ -125,7 +128,7 @@ orders_option = click.option(
     "--orders",
     type=readings.numbers,
     metavar="A,B,...",
-    help="Only these orders, periods per turn of the shaft; all up to 24 if not given.",
+    help="Only these orders, periods per turn of the shaft, or FROM:TO:STEP; all up to 24 if not given.",
 )
 speeds_option = click.option(
     "--speeds", type=readings.speeds, metavar="'A,B,... rpm'", help="Also at these speeds; or 'FROM:TO:STEP rpm'."
@@ -248,6 +251,10 @@ class Asked(NamedTuple):
         """Return the frame of the report: rows from 0 to `end` degrees, for each of so many parts, or where wanted."""
         from kurbel.report.frame import Frame
 
+        if self.key_values_only and self.columns:
+            raise click.UsageError(
+                "--columns names columns of the table that --key-values leaves out; a key value is a line, grep 'p_i '"
+            )
         angles = self._rows(command, end) or crank_angles(self.step, self.angles, end, parts)
         return Frame(command, angles, self.columns, self.units, "z" if self.over else "", self.compare)
 
@@ -268,8 +275,6 @@ class Asked(NamedTuple):
 
     def write(self, report: Report, case: "Case | None" = None, spreads: Spreads = ()) -> None:
         """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""
-        if self.key_values_only and self.columns:
-            raise click.UsageError("--columns names columns of the table that --key-values leaves out.")
         if self.cylinder is not None:
             report = report.of_cylinder(self.cylinder)
         report = report.key_values_alone() if self.key_values_only else report

@@ -1,18 +1,24 @@
 """`kurbel plot`: the pictures of a machine, in the terminal or in a file."""
 
-from __future__ import annotations
+from typing import TYPE_CHECKING
 
 import click
 
 from kurbel.cli.completion import complete_cylinder, complete_picture
-from kurbel.cli.output_options import loaded, machine_file, number_options, units_option
+from kurbel.cli.output_options import loaded, number_options, set_option, units_option
 from kurbel.cli.readings import numbers
+
+if TYPE_CHECKING:
+    from kurbel.report.pictures import Declared
 
 
 @click.command()
-@machine_file
+@click.argument("file", metavar="FILE", required=False, type=click.Path(allow_dash=True))
+@set_option
 @click.argument("names", metavar="[PICTURE]...", nargs=-1, shell_complete=complete_picture)
-@click.option("--list", "listed", is_flag=True, help="Say which pictures this machine has.")
+@click.option(
+    "--list", "listed", is_flag=True, help="Say which pictures this machine has; without FILE, which there are."
+)
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
 @click.option("--angles", type=numbers, metavar="A,B,...", help="The mechanism at these crank angles, not moving.")
 @click.option(
@@ -22,7 +28,7 @@ from kurbel.cli.readings import numbers
 @number_options
 @click.option("--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill in the terminal.")
 def plot(
-    file: str,
+    file: str | None,
     overrides: tuple[str, ...],
     names: tuple[str, ...],
     listed: bool,
@@ -42,20 +48,23 @@ def plot(
     """
     from kurbel.render import Look
     from kurbel.render.pictures.drawing import check_file, draw_file, draw_stdout
-    from kurbel.report.pictures import FILE, TERMINAL, Wish, pictures, pictures_of
+    from kurbel.report.pictures import FILE, PICTURES, TERMINAL, Wish, pictures, pictures_of
     from kurbel.solver.case import Case
 
     if listed and file_name is not None:
         raise click.UsageError("--list draws nothing; leave --output out.")
+    if file is None:
+        if not listed:
+            raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
+        _write_list(PICTURES)
+        return
     to_file = file_name is not None and file_name != "-"
     if to_file:
         check_file(file_name or "")
     case = Case(loaded(file, overrides, file_name))
     wish = Wish(units or "metric", FILE if to_file else TERMINAL, cylinder, angles)
     if listed:
-        from kurbel.render.listing import write_entries
-
-        write_entries([(one.id, f"{one.title}. {one.text}") for one in pictures_of(case, wish)])
+        _write_list(pictures_of(case, wish))
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
     drawn = pictures(case, names, wish)
@@ -63,3 +72,9 @@ def plot(
         draw_file(list(drawn), look, file_name or "")
     else:
         draw_stdout(drawn, look)
+
+
+def _write_list(declared: "tuple[Declared, ...]") -> None:
+    from kurbel.render.listing import write_entries
+
+    write_entries([(one.id, f"{one.title}. {one.text}") for one in declared])

@@ -1,14 +1,12 @@
 """How the text behind an option is read; what cannot be read is told with the option that it stands behind."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TypeVar
 
 import click
 
 Value = TypeVar("Value")
-_MOST_SPEEDS = 10_000
+_MOST_STEPS = 10_000
 
 
 def _told(read: Callable[[str], Value], text: str) -> Value:
@@ -31,8 +29,12 @@ def number(text: str | float) -> float:
 
 
 def numbers(text: str) -> tuple[float, ...]:
-    """Return numbers separated by commas, in the order given."""
-    return tuple(map(number, text.split(",")))
+    """Return numbers separated by commas, in the order given; or from, to, by steps: `0.5:12:0.5`."""
+    found = tuple(map(number, text.replace(":", ",").split(",")))
+    if ":" not in text:
+        return found
+    # 3 · 0.1 is written 0.3
+    return tuple(float(f"{one:.15g}") for one in _stepped(found, text, "0.5:12:0.5"))
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -75,19 +77,19 @@ def speeds(text: str) -> tuple[float, ...]:
         for one in each
     )
     if ":" in text:
-        found = _stepped(found, text)
+        found = _stepped(found, text, "300:1500:10 rpm")
     if not all(speed > 0 for speed in found):
         raise click.BadParameter(f"'{text}': a speed is more than 0")
     return found
 
 
-def _stepped(found: tuple[float, ...], text: str) -> tuple[float, ...]:
+def _stepped(found: tuple[float, ...], text: str, sample: str) -> tuple[float, ...]:
     if len(found) != 3 or "," in text or not found[2] > 0 or found[1] < found[0]:
-        raise click.BadParameter(f"'{text}': write from, to and step as '300:1500:10 rpm'")
+        raise click.BadParameter(f"'{text}': write from, to and step as '{sample}'")
     low, high, step = found
     count = (high - low) / step
-    if count > _MOST_SPEEDS:
-        raise click.BadParameter(f"'{text}': more than {_MOST_SPEEDS} speeds; take a larger step")
+    if count > _MOST_STEPS:
+        raise click.BadParameter(f"'{text}': more than {_MOST_STEPS} steps; take larger ones")
     return tuple(low + step * index for index in range(int(count + 1e-9) + 1))
 
 

@@ -1,7 +1,5 @@
 """Unit systems: in which unit people read a value that kurbel holds in its base."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -59,11 +57,12 @@ def convert_back(value: float, kind: str, unit: str) -> float:
     return value * up / down
 
 
-def show(value: float, kind: str) -> str:
+def show(value: float, kind: str, figures: int = 6) -> str:
     """Write a base value for a message, in the unit in which people are told (`told_in`; metric otherwise).
 
-    >>> show(0.3, "length"), show(5e5, "pressure")
-    ('300 mm', '5 bar')
+    >>> show(0.3, "length"), show(5e5, "pressure"), show(225.819, "torque", figures=2)
+    ('300 mm', '5 bar', '230 N m')
     """
     unit = shown_unit(kind, _TOLD.get(), value)
-    return f"{convert(value, kind, unit):.6g} {unit}".rstrip()
+    rounded = float(f"{convert(value, kind, unit):.{figures}g}")
+    return f"{rounded:.6g} {unit}".rstrip()

@@ -5,8 +5,6 @@ legal: `12 kg` is no force. Two bases are not plain SI, both to keep exact what 
 degrees (a dead centre is at 180, not near pi) and speeds of rotation in revolutions per second.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable
@@ -203,12 +201,14 @@ def unit_factor(unit: str, kind: str) -> Factor:
     factor = known.get(_normal(unit))
     if factor is not None:
         return factor
-    raise UnitError(
-        f"unknown {_kind_name(kind)} unit '{unit.strip()}' (known: {_known_text(kind)}){_unit_hint(unit, kind)}"
-    )
+    from kurbel.declared.unit_hints import unit_hint
+
+    hint = unit_hint(_normal(unit), kind)
+    raise UnitError(f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {_known_text(kind)}){hint}")
 
 
-def _kind_name(kind: str) -> str:
+def kind_name(kind: str) -> str:
+    """Return what a kind is called in messages."""
     return {"gd2": "GD²", "speed": "speed of rotation", "unbalance": "mass-times-radius"}.get(
         kind, kind.replace("_", " ")
     )
@@ -217,29 +217,6 @@ def _kind_name(kind: str) -> str:
 def _known_text(kind: str) -> str:
     names = list(_units_of(kind))
     return ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
-
-
-def _unit_hint(unit: str, kind: str) -> str:
-    name = _normal(unit)
-    if kind == "length" and re.fullmatch(r"(ft|') ?[0-9].*", name):
-        return "; write feet and inches in one unit, such as '90 in' for 7 ft 6 in"
-    if kind == "spring":
-        return "; it is height over pressure: a spring of 60 lb per inch is '1/60 in/psi'"
-    if number := NUMBER.match(name):
-        return f"; write the unit alone, without {number.group()}"
-    if name in ("barg", "bara", "atu", "atü", "ata", "psig", "psia"):
-        return "; whether a pressure is gauge or absolute is said by the key 'pressures'"
-    if name in ("ton", "tonf"):
-        f = name.removeprefix("ton")
-        return f"; a ton is 't{f}' (1000 kg{f}), 'long ton{f}' (2240 lb{f}) or 'short ton{f}' (2000 lb{f}): write which"
-    weight = re.sub(r"\bkg\b", "kgf", name)
-    if weight != name and weight in _units_of(kind):
-        return f"; kg is a mass, write '{weight}'"
-    alike = [known for known in _units_of(kind) if known.lower() == name.lower()]
-    if alike:
-        return f"; did you mean '{alike[0]}'?"
-    kinds = [_kind_name(kind) for kind in _BUILDERS if name in _units_of(kind)]
-    return f"; {unit.strip()} is a unit of {kinds[0]}" if kinds else ""
 
 
 def parse_quantity(text: str, kind: str) -> float:

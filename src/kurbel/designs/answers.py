@@ -1,7 +1,5 @@
 """The answers of many machines: those of one kind side by side, the others one after another."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, Union
 
@@ -24,7 +22,7 @@ _ALONE = ("energy_residual",)
 _FEWEST = 3
 """Machines of one kind; fewer are answered as quickly alone."""
 AT_ONCE = 1000
-"""Machines side by side: enough to share the overhead of one run, few enough for the cache of a processor."""
+"""Machines side by side: enough to share the overhead of one run; more would only take memory."""
 
 Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, an Extreme, a tuple or None each; or why it answers nothing."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from kurbel.declared.numerals import parse_ratio
@@ -17,8 +18,8 @@ from kurbel.machine import Machine
 from kurbel.machine_file.source import Source
 from kurbel.numerics.extreme import Extreme
 
-CHUNK = 1000
-"""Rows that are computed together: what memory holds at once."""
+CHUNK = 200
+"""Rows that are computed together: what memory holds at once, and what a run computes anew that begins amid them."""
 _FIRST = 20
 """Rows of the first chunk, so that a reader sees something at once."""
 _STARTS = 100
@@ -157,6 +158,11 @@ class Sweep:
         broken = self._broken(found[len(self.asked) :])
         return Row(row + 1, (*inputs, *next(values)), not broken if self.limited else None, broken)
 
+    def unanswered(self, row: int) -> Row:
+        """Return the row with this index from 0 on without its answers: what varies is known unsolved."""
+        inputs = [self._input_value(*one) for one in enumerate(self.plan.texts(row))]
+        return Row(row + 1, (*inputs, *[None] * (len(self.heads) - len(inputs))))
+
     def _input_value(self, number: int, text: str) -> Any:
         head = self.heads[number]
         value = _in_base(text, head.kind)
@@ -183,12 +189,15 @@ class Sweep:
         return ""
 
     def chunks(self, rows: range) -> Iterator[tuple[int, int]]:
-        """Yield the ends of the chunks in which rows are computed, the first one short."""
-        start = rows.start
-        while start < rows.stop:
-            stop = min(start + (_FIRST if start == rows.start else CHUNK), rows.stop)
-            yield start, stop
-            start = stop
+        """Yield the ends of the chunks that these rows are computed in.
+
+        A row has the same company in every run, since its last digits hang on how many are computed with it.
+        """
+        for start in range(rows.start - rows.start % CHUNK, rows.stop, CHUNK):
+            cuts = (start, start + CHUNK) if start else (0, _FIRST, CHUNK)
+            for low, high in pairwise(cuts):
+                if low < rows.stop and rows.start < high:
+                    yield low, min(high, self.rows)
 
 
 _AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")

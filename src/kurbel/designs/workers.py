@@ -1,7 +1,5 @@
 """Who computes the chunks of a sweep: this process, others on this machine, or a cluster; the order stays."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -23,6 +21,12 @@ def rows_of(sweep: Sweep, rows: range, jobs: int = 1, dask: str = "") -> Iterato
 
     Raises UsageError for an address that does not answer.
     """
+    for chunk in _chunks(sweep, rows, jobs, dask):
+        yield from (row for row in chunk if row.number - 1 in rows)
+
+
+def _chunks(sweep: Sweep, rows: range, jobs: int, dask: str) -> Iterator[list[Row]]:
+    """Yield the chunks of rows in which these stand, in order."""
     if dask:
         with _cluster(dask) as (submit, workers):
             yield from _gathered(sweep, rows, submit, workers)
@@ -30,19 +34,18 @@ def rows_of(sweep: Sweep, rows: range, jobs: int = 1, dask: str = "") -> Iterato
         with _processes(jobs) as submit:
             yield from _gathered(sweep, rows, submit, jobs)
     else:
-        for start, stop in sweep.chunks(rows):
-            yield from sweep.chunk(start, stop)
+        yield from (sweep.chunk(start, stop) for start, stop in sweep.chunks(rows))
 
 
-def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: int) -> Iterator[Row]:
-    """Yield the rows of chunks that others compute, in order, with few of them ahead."""
+def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: int) -> Iterator[list[Row]]:
+    """Yield the chunks that others compute, in order, with few of them ahead."""
     waiting: deque[Any] = deque()
     for start, stop in sweep.chunks(rows):
         waiting.append(submit(computed, sweep.spec, start, stop))
         if len(waiting) > _AHEAD * workers:
-            yield from waiting.popleft().result()
+            yield waiting.popleft().result()
     while waiting:
-        yield from waiting.popleft().result()
+        yield waiting.popleft().result()
 
 
 @contextmanager

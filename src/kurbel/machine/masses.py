@@ -1,14 +1,12 @@
 """Masses of the moving parts."""
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.declared.forms import Listing, Number, OneOf, Physical, Record, not_negative
 from kurbel.declared.keys import Described, Form, Key, Keys, check
 from kurbel.errors import Fault, refuse
+from kurbel.frozen import frozen
 
 _ONE_OR_MORE: Form = OneOf(Physical("mass", least=0), Listing(Physical("mass", least=0)))
 
@@ -17,7 +15,7 @@ def _part(text: str) -> Key:
     return Key(_ONE_OR_MORE, text, instead="reciprocating")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class ConnectingRod(Described):
     """The connecting rod's mass in kg and how it moves.
 
@@ -73,7 +71,7 @@ class ConnectingRod(Described):
         return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Masses(Described):
     """Moving masses in kg: the sum of piston, piston rod, crosshead and others, the connecting rod, and what turns.
 
@@ -113,7 +111,7 @@ class Masses(Described):
         connecting_rod: float | ConnectingRod | None = None,
         rotating: float | None = None,
         **parts: float | tuple[float, ...],
-    ) -> Masses:
+    ) -> "Masses":
         """Return the masses that these keys of a machine file describe."""
         sums = {name: math.fsum(part) if isinstance(part, tuple) else part for name, part in parts.items()}
         if not sums and connecting_rod is None and rotating is None:

@@ -3,8 +3,6 @@
 Each machine has kept its own rules at birth, so that these records, made without them, keep them too.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import fields, is_dataclass

@@ -1,7 +1,5 @@
 """From a machine file to a `Machine`: text, tree, records; or one error with all faults."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -59,7 +57,7 @@ def read_machine(origin: Source, overrides: Iterable[str] = (), births: list[Bir
     return replace(machine, origin=Origin(origin.name, origin.content, given))
 
 
-def _set_over(tree: Any, overrides: Sequence[str]) -> list[Override]:
+def _set_over(tree: Any, overrides: Sequence[str]) -> "list[Override]":
     """Put the overrides into the tree, and return them."""
     if not overrides or not isinstance(tree, dict):
         return []
@@ -81,7 +79,7 @@ def _machine(reading: Reading, tree: Any, stem: str) -> Any:
         return REFUSED
 
 
-def _located(text: str, faults: list[Fault], set_over: Sequence[Override]) -> list[Fault]:
+def _located(text: str, faults: list[Fault], set_over: "Sequence[Override]") -> list[Fault]:
     """Return the faults with their places in the text, or with the override that they are of."""
     if not faults:
         return []

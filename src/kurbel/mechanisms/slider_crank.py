@@ -1,10 +1,7 @@
 """Slider-crank (gerader und geschränkter Schubkurbeltrieb), R ch. 14 B."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel import crank_formulas as formulas
@@ -14,6 +11,7 @@ from kurbel.declared.keys import Key, Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
+from kurbel.frozen import frozen
 from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, where
 from kurbel.numerics.extreme import Extreme
@@ -63,7 +61,7 @@ ROD_OFFERS = (
 )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 
@@ -105,7 +103,7 @@ class SliderCrank(Mechanism):
         rod_ratio: float | None = None,
         offset: float = 0.0,
         **others: float,
-    ) -> SliderCrank:
+    ) -> "SliderCrank":
         """Return the slider-crank that these keys of a machine file describe; raises RuleError."""
         if crank is None:
             assert stroke is not None
@@ -201,7 +199,7 @@ class SliderCrank(Mechanism):
         above_minus_one = within + lam * where(up, near, far)
         return lam * angle.sin - self.offset / self.rod, sqrt(below_one) * sqrt(above_minus_one)
 
-    def coupler_at(self, angle: CrankAngle) -> Coupler:
+    def coupler_at(self, angle: CrankAngle) -> "Coupler":
         """Return the rod, which leads from the crank pin to the crosshead in the direction −ψ."""
         from kurbel.mechanisms.coupler import Coupler
 
@@ -209,7 +207,7 @@ class SliderCrank(Mechanism):
         slope = formulas.rod_slope(angle.cos, cos_psi, self.lam)
         return Coupler(-sin_psi, cos_psi, -slope, -formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.lam))
 
-    def sketch(self, angle: CrankAngle) -> Sketch:
+    def sketch(self, angle: CrankAngle) -> "Sketch":
         """Return crank, rod and crosshead, whose line runs e beside the shaft; for an infinite rod its twin, a yoke."""
         if math.isinf(self.rod):
             from kurbel.mechanisms.scotch_yoke import ScotchYoke

@@ -1,7 +1,5 @@
 """The few operations beside + − × ÷ that the formulas need, for floats, arrays, jets and high-precision numbers."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -92,6 +90,23 @@ def total(*terms: Any) -> Any:
         of_term = whole - before
         missed = missed + ((before - (whole - of_term)) + (term - of_term))
     return whole + missed
+
+
+_ROUNDING = 16 * 2.0**-52
+"""What is left of terms that cancel, beside the sum of their sizes, is rounding."""
+
+
+def unless_cancelled(whole: Any, sizes: Any) -> Any:
+    """Return a sum, as an array; exactly 0 where nothing is left of its terms but rounding.
+
+    sizes: the sum of the sizes of the terms.
+
+    >>> unless_cancelled(0.1 + 0.2 - 0.3, 0.6), unless_cancelled(0.1, 0.6)
+    (array(0.), array(0.1))
+    """
+    import numpy as np
+
+    return np.where(np.abs(whole) > _ROUNDING * sizes, whole, 0.0)
 
 
 def running_sums(terms: Iterable[float]) -> Iterator[float]:

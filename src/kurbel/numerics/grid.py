@@ -243,6 +243,11 @@ class Cuts(NamedTuple):
         smooth, jumps = (np.mod(np.add.outer(turns, part + by).ravel(), cycle) for part in self)
         return Cuts(_cycle(np.array([0.0, cycle]), smooth), jumps)
 
+    def first_of(self, parts: int) -> "Cuts":
+        """Return the cuts of the first of so many equal parts, in each of which all comes back."""
+        end = self.smooth[-1] / parts
+        return Cuts(np.append(self.smooth[self.smooth < end], end), self.jumps[self.jumps < end])
+
     def grid(self, rule: Rule = GAUSS) -> Grid:
         """Return the pieces. Between many jumps they have four points, and the smooth pieces are cut to suit them."""
         if len(self.jumps) <= _MANY:

@@ -1,13 +1,12 @@
 """The report of `kurbel bearings`: the load on every pin and main bearing, each a part of its own."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from kurbel.declared.unit_systems import show
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.notes import of_machine
 from kurbel.report.tables import LeftOut, Report
+from kurbel.report.warnings import as_far_as_solved
 from kurbel.solver.bearings.bearing import Bearing
 from kurbel.solver.bearings.shaft_bearings import ShaftBearings
 from kurbel.solver.case import Case
@@ -22,7 +21,7 @@ def bearings_report(case: Case, frame: Frame) -> Report:
         "whole machine",
         (),
         left_out=lambda: _machine_left_out(case.bearings),
-        warnings=lambda: (*of_machine(case), *_spacing(case.bearings)),
+        warnings=lambda: (*of_machine(case), *bearing_warnings(case)),
     )
     report = frame.report(case.machine, "Lagerkräfte", subjects(case), whole, _notes(case.bearings))
     return report._replace(group="bearings")
@@ -92,10 +91,18 @@ _ROUNDED = 0.05
 """By which distances of throws may contradict their crankshaft, over what they should be."""
 
 
-def _spacing(bearings: ShaftBearings) -> Iterable[str]:
+def bearing_warnings(case: Case) -> tuple[str, ...]:
+    """Return what looks wrong in the bearings of the shaft."""
+    return as_far_as_solved(lambda: _spacing(case), "bearings")
+
+
+def _spacing(case: Case) -> Iterable[str]:
     """Yield that the throws do not stand as far apart as their bearings put them."""
-    line, shaft, cylinders = bearings.line, bearings.machine.crankshaft, bearings.machine.cylinders
-    if line is None or shaft is None or shaft.overhung or any(one.axial_position is None for one in cylinders):
+    shaft, cylinders = case.machine.crankshaft, case.machine.cylinders
+    if shaft is None or shaft.overhung or any(one.axial_position is None for one in cylinders):
+        return
+    line = case.bearings.line
+    if line is None:
         return
     apart = shaft.a + shaft.b
     for one, following in zip(line.throws, line.throws[1:]):

@@ -1,8 +1,9 @@
 """The report of `kurbel check`: what a machine has, what is left out, and how its limits and expectations stand."""
 
 import math
-from collections.abc import Hashable, Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from functools import cache
+from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.declared.forms import Physical
 from kurbel.declared.unit_systems import show
@@ -14,6 +15,9 @@ from kurbel.report.compared import Entry, Unjudged, judged
 from kurbel.report.left_out import left_out, missing, stages, strength_left_out, turning_stages
 from kurbel.report.notes import Note, machine_notes
 from kurbel.report.tables import LeftOut
+
+if TYPE_CHECKING:
+    from kurbel.solver.case import Case
 
 
 class Section(NamedTuple):
@@ -53,21 +57,46 @@ def checked(machine: Machine) -> Checked:
     """Return what is to be said of a machine; key values are computed only as far as it needs."""
     found = tuple(judged(machine))
     entries = [one for one in found if isinstance(one, Entry)]
-    notes = machine_notes(machine)
+
+    @cache
+    def case() -> "Case":
+        from kurbel.solver.case import Case
+
+        return Case(machine)
+
+    notes = (*machine_notes(machine), *_notes_of_one_command(machine, case))
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
         Section("Cranks", tuple(_crank_entries(machine))),
         Section("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
         Section("Crankshaft", tuple(_crankshaft_entries(machine))),
-        Section("Balance", tuple(_balance_entries(machine))),
-        Section("Shaft line", tuple(_shaft_entries(machine))),
+        Section("Balance", tuple(_balance_entries(machine, case))),
+        Section("Shaft line", tuple(_shaft_entries(machine, case))),
         Section("Limits", tuple(one for one in entries if one.path[0] == "limits")),
         Section("Expected", tuple(one for one in entries if one.path[0] == "expect")),
     )
     broken = any(one.severity == "error" for one in entries)
     unjudged = tuple(one for one in found if isinstance(one, Unjudged))
     return Checked(f"{machine.name}: a valid machine", tuple(s for s in sections if s.entries), broken, unjudged)
+
+
+Solved = Callable[[], "Case"]
+"""Returns the machine with its results; asked only where some are needed, which loads what computes them."""
+
+
+def _notes_of_one_command(machine: Machine, case: Solved) -> Iterable[Note]:
+    """Return what only `kurbel bearings` and `kurbel torsion` warn of."""
+    found: list[str] = []
+    if machine.crankshaft:
+        from kurbel.report.bearings import bearing_warnings
+
+        found += bearing_warnings(case())
+    if machine.shaft or machine.coupling:
+        from kurbel.report.torsion import torsion_warnings
+
+        found += torsion_warnings(case())
+    return (Note(None, text) for text in found)
 
 
 def _machine_entries(machine: Machine) -> Iterable[Entry]:
@@ -150,16 +179,15 @@ def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
     yield from _without(strength_left_out(machine), ("crankshaft",))
 
 
-def _balance_entries(machine: Machine) -> Iterable[Entry]:
+def _balance_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
     """Yield what kurbel balance has to say of a machine of which a place, a weight or a wheel is told."""
     placed = any(one.axial_position is not None or one.counterweights for one in machine.cylinders)
     if not (placed or machine.counterweights or machine.balance_shafts or machine.locomotive):
         return
     from kurbel.report.balance import subjects
-    from kurbel.solver.case import Case
 
     try:
-        (whole,) = subjects(Case(machine))
+        (whole,) = subjects(case())
         lacking = tuple(whole.left_out())
     except KurbelError as error:
         yield Entry("left out", str(error), "info")
@@ -168,16 +196,15 @@ def _balance_entries(machine: Machine) -> Iterable[Entry]:
     yield from _without(lacking)
 
 
-def _shaft_entries(machine: Machine) -> Iterable[Entry]:
+def _shaft_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
     """Yield what kurbel torsion has to say of a shaft line, or why it refuses it."""
     if machine.shaft is None:
         return
     from kurbel.report.torsion import torsion_left_out
-    from kurbel.solver.case import Case
 
     yield Entry("masses", str(len(machine.shaft.masses)))
     try:
-        found = Case(machine).torsion
+        found = case().torsion
     except KurbelError as error:
         yield Entry("left out", f"torsional vibration: {error}", "info", ("shaft",))
         return

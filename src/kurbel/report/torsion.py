@@ -15,19 +15,22 @@ from kurbel.report.harmonics import orders_of
 from kurbel.report.notes import of_machine
 from kurbel.report.shown import counted, shown_column
 from kurbel.report.tables import LeftOut, PlaceTable, Report
+from kurbel.report.warnings import as_far_as_solved
 from kurbel.solver.case import Case
 from kurbel.solver.torsion.forced import Vibration, stress
-from kurbel.solver.torsion.vibration import Critical, ShaftVibration
+from kurbel.solver.torsion.vibration import RUN_UP, Critical, ShaftVibration
 
 _HIGHEST = 12
 """Order up to which critical speeds are told unless orders are asked for."""
+_MODES = 3
+"""Modes whose critical speeds are told unless others are asked for."""
 
 
 class Wanted(NamedTuple):
     """What is asked of torsion: orders, how many modes, whose Holzer table, and speeds in revolutions per second."""
 
     orders: Sequence[float] | None = None
-    modes: int = 3
+    modes: int = _MODES
     mode: int = 1
     speeds: Sequence[float] | None = None
 
@@ -44,7 +47,7 @@ def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Repor
         whole = whole._replace(place_tables=tuple(_tables(found, critical, wanted, frame.system)))
         pieces = found.pieces if frame.columns else ()
         each = [Subject(one.name, (), one.at) for one in pieces]
-    return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found, wanted))
+    return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found, wanted, critical))
 
 
 def subjects(
@@ -52,14 +55,28 @@ def subjects(
 ) -> Iterable[Subject]:
     """Yield the shaft line; asked: by other than the usual orders; critical: the critical speeds to warn of."""
     found = asked or case.torsion
-    if found.vibration is not None and found.vibration.endless.any():
-        raise NoSolutionError("an order of the torque meets a natural vibration that nothing damps: give it 'damping'")
+    _refuse_endless(found)
     yield Subject(
         "shaft line",
         (found,),
         left_out=lambda: torsion_left_out(found),
         warnings=lambda: (*_warnings(found, critical or ()), *of_machine(case)),
     )
+
+
+def torsion_warnings(case: Case) -> tuple[str, ...]:
+    """Return which of the usual critical speeds lie beside the working speed, or that a vibration has no end."""
+
+    def found() -> Iterable[str]:
+        _refuse_endless(case.torsion)
+        return _warnings(case.torsion, case.torsion.critical_speeds(_MODES, _HIGHEST))
+
+    return as_far_as_solved(found, "torsion")
+
+
+def _refuse_endless(found: ShaftVibration) -> None:
+    if found.vibration is not None and found.vibration.endless.any():
+        raise NoSolutionError("an order of the torque meets a natural vibration that nothing damps: give it 'damping'")
 
 
 def _tables(found: ShaftVibration, critical: tuple[Critical, ...], wanted: Wanted, system: str) -> Iterable[PlaceTable]:
@@ -228,7 +245,7 @@ def _warnings(found: ShaftVibration, critical: tuple[Critical, ...]) -> Iterable
     """Yield, mode by mode, the critical speeds beside the working speed, the strongest first."""
     speed = found.machine.speed
     for mode in sorted({one.mode for one in critical}):
-        near = sorted((one for one in critical if one.mode == mode and one.near), key=lambda one: -one.phase_sum)
+        near = sorted((one for one in critical if one.mode == mode and one.near), key=lambda one: -one.share)
         if not near or speed is None:
             continue
         listed = ", ".join(f"{one.order:g} ({100 * (one.distance or 0.0):+.3g} %)" for one in near)
@@ -246,9 +263,14 @@ def _listed(orders: Sequence[str]) -> str:
     return f"order{'s' if len(orders) > 1 else ''} {', '.join(orders)}"
 
 
-def _notes(found: ShaftVibration, wanted: Wanted) -> Iterable[str]:
+def _notes(found: ShaftVibration, wanted: Wanted, critical: Sequence[Critical]) -> Iterable[str]:
     if wanted.orders is None:
         yield f"Critical speeds of orders up to {_HIGHEST}; --orders tells others, --modes of more modes."
+    if any(map(found.met, critical)) and not all(map(found.met, critical)):
+        yield (
+            "What the shaft bears at a critical speed holds all orders, when running there; – stands where the machine "
+            f"does not come, beyond {RUN_UP:g} times the working speed, and where nothing damps the mode."
+        )
     if any(piece.ratio != 1 for piece in found.line.pieces):
         yield "Masses and stiffnesses beyond the gear are referred to the cranks' shaft by u²; torques are true ones."
     if not found.machine.cylinders and found.machine.effort:
@@ -257,6 +279,6 @@ def _notes(found: ShaftVibration, wanted: Wanted) -> Iterable[str]:
         orders = f"{_listed([f'{order:g}' for order in found.orders])} together"
         orders = "all orders together" if found.steady else orders
         if found.remainder is not None:
-            orders += f" (higher ones add about {show(found.remainder, 'torque')} or less)"
+            orders += f" (higher ones add about {show(found.remainder, 'torque', figures=2)} or less)"
         taker = "what holds it" if found.chain.ground else found.line.masses[found.line.load].name
         yield f"Forced vibration: {orders}, about uniform rotation; the mean torque goes to {taker}."

@@ -1,7 +1,5 @@
 """What looks wrong in measurements and results: said as warnings, the same whichever command computes them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from itertools import islice
@@ -9,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
+from kurbel.machine import Machine
 from kurbel.report.guide import guide_warnings
+from kurbel.solver.case import Case
 from kurbel.solver.cylinder.brake import Brake
+from kurbel.solver.cylinder.forces import CylinderForces
 
 if TYPE_CHECKING:
-    from kurbel.machine import Machine
-    from kurbel.solver.case import Case
-    from kurbel.solver.cylinder.forces import CylinderForces
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
     from kurbel.solver.turning.flywheel import MachineTurning
 
@@ -30,7 +28,7 @@ def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
         yield from _reversal_warnings(forces)
         yield from guide_warnings(forces)
 
-    return _as_far_as_solved(found, "forces")
+    return as_far_as_solved(found, "forces")
 
 
 def turning_warnings(case: Case) -> tuple[str, ...]:
@@ -38,7 +36,7 @@ def turning_warnings(case: Case) -> tuple[str, ...]:
     machine = case.machine
     if machine.efficiency == 1 and not any((machine.flywheel, machine.load, machine.coupling)):
         return ()
-    return _as_far_as_solved(lambda: _of_turning(case.flywheel), "flywheel")
+    return as_far_as_solved(lambda: _of_turning(case.flywheel), "flywheel")
 
 
 def strength_warnings(case: Case) -> tuple[str, ...]:
@@ -50,10 +48,10 @@ def strength_warnings(case: Case) -> tuple[str, ...]:
         cool, verdict = shell_verdict(case.strength)
         return () if cool else verdict
 
-    return _as_far_as_solved(found, "stress")
+    return as_far_as_solved(found, "stress")
 
 
-def _as_far_as_solved(found: Callable[[], Iterable[str]], command: str) -> tuple[str, ...]:
+def as_far_as_solved(found: Callable[[], Iterable[str]], command: str) -> tuple[str, ...]:
     """Return the warnings; where there is no solution, why; what a command refuses is for that command to tell."""
     try:
         return tuple(found())
@@ -117,7 +115,7 @@ def _reversal_warnings(forces: CylinderForces) -> Iterable[str]:
         )
 
 
-def _of_turning(turning: MachineTurning) -> Iterable[str]:
+def _of_turning(turning: "MachineTurning") -> Iterable[str]:
     machine = turning.machine
     if turning.deficit is not None:
         word = "more" if turning.deficit > 0 else "less"
@@ -139,7 +137,7 @@ def _of_turning(turning: MachineTurning) -> Iterable[str]:
     yield from _rim_warnings(turning)
 
 
-def _wish_warnings(turning: MachineTurning) -> Iterable[str]:
+def _wish_warnings(turning: "MachineTurning") -> Iterable[str]:
     """Yield by how much the flywheel of the books misses the wish, which is for the speed under the true load."""
     if turning.J_needed is None or turning.delta_needed is None or not turning.misses_the_wish:
         return
@@ -150,7 +148,7 @@ def _wish_warnings(turning: MachineTurning) -> Iterable[str]:
     )
 
 
-def _rim_warnings(turning: MachineTurning) -> Iterable[str]:
+def _rim_warnings(turning: "MachineTurning") -> Iterable[str]:
     rim = turning.machine.flywheel.rim if turning.machine.flywheel else None
     if rim and rim.allowable_tension and turning.rim_stress and turning.rim_stress > rim.allowable_tension:
         yield (
@@ -159,7 +157,7 @@ def _rim_warnings(turning: MachineTurning) -> Iterable[str]:
         )
 
 
-def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
+def _coupling_warnings(turning: "MachineTurning") -> Iterable[str]:
     if not turning.elastic:
         return
     for near in turning.elastic.resonances:
@@ -181,7 +179,7 @@ _SHELLS = (
 """p_m v of the crank pin in kgf m/(cm² s), and what G says of it up to there."""
 
 
-def shell_verdict(strength: CrankshaftStrength) -> tuple[bool, tuple[str, ...]]:
+def shell_verdict(strength: "CrankshaftStrength") -> tuple[bool, tuple[str, ...]]:
     """Return whether all shells stand p_m v of the crank pin, and a sentence that tells (G); none without a speed."""
     found = strength.pressure_velocity("pin")
     if found is None:

@@ -1,13 +1,11 @@
 """Forms of mappings: a mapping becomes a record once all of its keys could be read."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from typing import Any, NoReturn
 
 from kurbel.declared.forms.scalars import Choice, reference, refused
-from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, none_of, required
+from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, contradictions, none_of, required
 from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, glued_hint, kind_of
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.near_words import near
@@ -44,7 +42,7 @@ class Record(Form):
     def expected(self) -> str:
         return f"a mapping with the keys {', '.join(self.keys)}"
 
-    def records(self, word: str) -> Iterator[tuple[str, Record]]:
+    def records(self, word: str) -> "Iterator[tuple[str, Record]]":
         yield word, self
 
     def parts(self) -> Iterable[tuple[str, Form]]:
@@ -115,7 +113,11 @@ class Record(Form):
     def _born(self, reading: Reading, values: Tree, path: Path) -> Any:
         """Make the record, or note what it has to say of single keys where others could not be read."""
         if REFUSED in values.values():
-            return reading.refuse(path, RuleError(*self.load().faults_of_keys(values)))
+            told = {name: reading.partly.get((*path, name), value) for name, value in values.items()}
+            # what is there contradicts the rest whether it could be read or not
+            return reading.refuse(
+                path, RuleError(*contradictions(self.keys, values), *self.load().faults_of_keys(told))
+            )
         return self.born(values)
 
     def born(self, values: Tree) -> Any:

@@ -1,7 +1,5 @@
 """Forms of one line: numbers, values with a unit, counts, words, texts, file names."""
 
-from __future__ import annotations
-
 import os
 import re
 from abc import abstractmethod

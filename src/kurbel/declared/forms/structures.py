@@ -1,7 +1,5 @@
 """Forms made of others: lists, alternatives, mappings with one telling key, records whose keys stand among others."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -42,7 +40,10 @@ class Listing(Form):
         if len(value) > MOST_ITEMS:
             refused(f"{len(value)} items; no machine has more than {MOST_ITEMS} of them")
         items = tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(value))
-        return REFUSED if any(item is REFUSED for item in items) else items
+        if any(item is REFUSED for item in items):
+            reading.partly[path] = items
+            return REFUSED
+        return items
 
     def parts(self) -> Iterable[tuple[str, Form]]:
         return (("", self.item),)

@@ -1,17 +1,11 @@
 """A grid of characters to draw on: eight dots of Braille to a character, or one letter where there are none."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.render.charset import width
 from kurbel.render.lines import Line, Piece
 from kurbel.render.pictures.style import LOOKS
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _BLANK = 0x2800
 _DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])

@@ -1,12 +1,10 @@
 """A picture as lines of characters, for a terminal: curves in Braille or letters, with axes, units and labels."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.render import Look
 from kurbel.render.charset import right
 from kurbel.render.charset import width as cells
 from kurbel.render.lines import BLANK, Line, line
@@ -15,10 +13,7 @@ from kurbel.render.pictures.labels import axis_text, figure_text, shade_texts, s
 from kurbel.render.pictures.scale import Scale, scale_of, taller, ticks
 from kurbel.render.pictures.style import looks_of
 from kurbel.render.prose import folded
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.pictures.picture import Curve, Panel, Picture, Shade
+from kurbel.report.pictures.picture import Curve, Panel, Picture, Shade
 
 _WIDTH = 80
 _WIDEST = 160

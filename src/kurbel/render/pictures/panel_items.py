@@ -1,23 +1,18 @@
 """What stands on one panel of a scene: ticks, shades, curves, marks, arrows, and their labels."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array
+from kurbel.render import Look
 from kurbel.render.charset import width as cells
 from kurbel.render.pictures.labels import CHARACTER, Box, Taken, axis_text, figure_text, shade_texts, symbol, tick_texts
 from kurbel.render.pictures.scale import Scale, ticks
 from kurbel.render.pictures.scene import Dots, Item, Line, Places, Text, thinned
 from kurbel.render.pictures.style import SHAPES, looks_of
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
-    from kurbel.render import Look
-    from kurbel.report.pictures.picture import Arrow, Curve, Panel, Shade
+from kurbel.report.pictures.picture import Arrow, Curve, Panel, Shade
 
 Scales = tuple[Scale, Scale]
 _KINDS = {"faint": "f", "guide": "f", "member": "m", "block": "b"}
@@ -158,7 +153,10 @@ def _marks(panel: Panel, scales: Scales, taken: Taken, look: Look) -> Iterator[I
     middle = (y.start + y.end) / 2
     for mark, (left, base) in list(zip(panel.marks, places))[:_MOST_LABELS]:
         text = figure_text(mark.figure, look)
-        if place := taken.place(left, base, text, upward=base < middle or panel.plain):
+        if found := taken.pointed(left, base, text, upward=base < middle or panel.plain):
+            place, pointer = found
+            if pointer:
+                yield Line((pointer,), "f")
             yield Text(*place, text, halo=True)
 
 

@@ -205,7 +205,11 @@ def pictures(case: "Case", names: Sequence[str], wish: Wish) -> Iterator[Picture
             yield from _first(case, wish)
             return
         every = "all" in names
-        for declared in (one for one in PICTURES if _has(case, one, wish)) if every else [*map(_named, names)]:
+        for declared in (
+            (one for one in PICTURES if _has(case, one, wish))
+            if every
+            else [_named(case, name, wish) for name in names]
+        ):
             found = list(_pictures(case, declared, wish))
             if not found:
                 raise UsageError(_missing(case, declared, wish))
@@ -241,19 +245,25 @@ def _first(case: "Case", wish: Wish) -> list[Picture]:
     raise UsageError(f"{case.machine.name}: there is nothing to draw; kurbel check says what is missing")
 
 
-def _named(name: str) -> Declared:
+def _named(case: "Case", name: str, wish: Wish) -> Declared:
     known = {one.id: one for one in PICTURES}
     if name not in known:
-        raise UsageError(f"no picture '{shown(name)}'{did_you_mean(name, tuple(known))} (there are {', '.join(known)})")
+        hint = did_you_mean(name, tuple(known))
+        raise UsageError(f"no picture '{shown(name)}'{hint} ({case.machine.name} has {_having(case, wish)})")
     return known[name]
+
+
+def _having(case: "Case", wish: Wish) -> str:
+    return ", ".join(one.id for one in pictures_of(case, wish))
 
 
 def _missing(case: "Case", declared: Declared, wish: Wish) -> str:
     names = _names(case)
     if wish.cylinder is not None and wish.cylinder not in names:
         return f"--cylinder: there is no '{shown(wish.cylinder)}'; there are {', '.join(names)}"
-    having = ", ".join(one.id for one in pictures_of(case, wish))
-    return f"{case.machine.name} has no picture '{declared.id}': what it shows is left out; it has {having}"
+    return (
+        f"{case.machine.name} has no picture '{declared.id}': what it shows is left out; it has {_having(case, wish)}"
+    )
 
 
 def _names(case: "Case") -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle, jet_angle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
@@ -15,13 +16,12 @@ from kurbel.mechanisms import fan
 from kurbel.numerics.arithmetic import some, sqrt, where
 from kurbel.numerics.gauss import LOBATTO_12
 from kurbel.numerics.grid import Cuts, Grid, Pieces
+from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
     from kurbel.machine.resistance import RamForce
     from kurbel.solver.cylinder.gas import PistonGas
-    from kurbel.solver.cylinder.inside import Inside
     from kurbel.solver.cylinder.pins import PinFriction
     from kurbel.solver.cylinder.rod import ExactRod
 
@@ -128,6 +128,11 @@ class Drive:
         indicated = [number for number, piston in enumerate(self.cylinder.pistons) if piston.indicator]
         return tuple(self._gas_on(number) for number in indicated)
 
+    @property
+    def has_gas(self) -> bool:
+        """Whether any piston has an indicator."""
+        return any(piston.indicator for piston in self.cylinder.pistons)
+
     def _gas_on(self, number: int) -> PistonGas:
         from kurbel.solver.cylinder.gas import PistonGas
 
@@ -144,7 +149,7 @@ class Drive:
     @cached_property
     def has_force(self) -> bool:
         """Whether any force acts along the stroke line, or a moment on what swings."""
-        return bool(self.gas) or self.has_inertia or self.weight is not None or self.resistance is not None
+        return self.has_gas or self.has_inertia or self.weight is not None or self.resistance is not None
 
     @property
     def resistance(self) -> RamForce | None:

@@ -26,7 +26,9 @@ NEAR = 0.1
 """A critical speed so near the working speed, relatively, is worth a note."""
 _PRESENT = 1e-6
 """An order whose phase-vector sum is smaller, over the sum of its vectors, meets no resistance and no work."""
-_RUN_UP = 1.2
+_FAINT = 0.01
+"""An order that excites a mode no more than this, over the order that does so most, is no danger to it."""
+RUN_UP = 1.2
 """Over the working speed, up to which a machine meets its critical speeds at all."""
 
 
@@ -49,7 +51,8 @@ def shaft_line_of(machine: Machine) -> ShaftLine:
 class Critical(NamedTuple):
     """A critical speed in revolutions per second: order, mode, and the sum of the phase vectors of the cranks.
 
-    distance: from the working speed, relatively; None without one.
+    distance: from the working speed, relatively; None without one. share: how strongly the order excites the mode, over
+    the order that does so most.
     """
 
     order: float
@@ -57,11 +60,12 @@ class Critical(NamedTuple):
     speed: float
     phase_sum: float
     distance: float | None
+    share: float
 
     @property
     def near(self) -> bool:
-        """Whether it lies beside the working speed."""
-        return self.distance is not None and abs(self.distance) <= NEAR and self.phase_sum > 0
+        """Whether it lies beside the working speed, and its order excites it."""
+        return self.distance is not None and abs(self.distance) <= NEAR and self.share > _FAINT
 
 
 class ShaftVibration(Results):
@@ -123,11 +127,14 @@ class ShaftVibration(Results):
         last = min(modes, self.first + len(self.modes.omegas) - 1)
         for mode in range(1, last + 1):
             omega = float(self.modes.omegas[mode - self.first])
-            sums = self._phase_sums(self.holzer(mode).angles)
-            for order, total in zip(self.orders[self.orders <= highest].tolist(), sums.tolist()):
+            angles = self.holzer(mode).angles
+            sums = self._phase_sums(angles)
+            shares = self._shares(angles, sums)
+            told = self.orders[self.orders <= highest]
+            for order, total, share in zip(told.tolist(), sums.tolist(), shares.tolist()):
                 speed = omega / (2 * math.pi * order)
                 distance = speed / self.machine.speed - 1 if self.machine.speed else None
-                found.append(Critical(order, mode, speed, total, distance))
+                found.append(Critical(order, mode, speed, total, distance, share))
         return tuple(found)
 
     def _phase_sums(self, angles: Array) -> Array:
@@ -138,15 +145,33 @@ class ShaftVibration(Results):
         sums = np.abs(phases(self.orders, positions) @ amplitudes)
         return np.where(sums > _PRESENT * np.abs(amplitudes).sum(), sums, 0.0)
 
+    def _shares(self, angles: Array, sums: Array) -> Array:
+        """Return how strongly the orders excite a mode, over the one that does so most (k,).
+
+        That is |Σ M_ν Θ| of the torques at the working speed; of torques that are not known |Σ Θ e^{−iνβ}|.
+        """
+        works = sums
+        if not self._unexcited:
+            torques = self.acting.torques(np.array([self.acting.omega]))
+            works = np.abs(np.tensordot(angles, torques, 1)[0])
+        return np.asarray(works / (works.max() or 1.0))
+
     # forced vibration
 
     @property
-    def obstacle(self) -> str:
-        """Why no forced vibration can be told, or an empty text."""
+    def _unexcited(self) -> str:
+        """Why no torques are known, or an empty text."""
         if not self.machine.speed:
             return "no speed given" if self.machine.speed is None else "not defined at rest"
         if not self.machine.effort and not any(forces.drive.has_force for forces in self._forces.values()):
             return "no torque acts: no effort and no cylinder with a force is given"
+        return ""
+
+    @property
+    def obstacle(self) -> str:
+        """Why no forced vibration can be told, or an empty text."""
+        if self._unexcited:
+            return self._unexcited
         return "" if self.chain.damped else "no damping given; at resonance nothing but damping bounds a vibration"
 
     @cached_property
@@ -199,9 +224,7 @@ class ShaftVibration(Results):
 
     def met(self, critical: Critical) -> bool:
         """Whether the machine meets a critical speed on its way to the working speed, or a little beyond."""
-        return (
-            not self.obstacle and bool(self.machine.speed) and critical.speed <= _RUN_UP * (self.machine.speed or 0.0)
-        )
+        return not self.obstacle and bool(self.machine.speed) and critical.speed <= RUN_UP * (self.machine.speed or 0.0)
 
     @cached_property
     def pieces(self) -> "tuple[PieceTorque, ...]":

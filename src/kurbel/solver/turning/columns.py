@@ -1,12 +1,11 @@
 """What `kurbel flywheel` tells over the angle of crank 1."""
 
-from __future__ import annotations
-
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.numerics.jet import Jet
 from kurbel.numerics.search import Sampled
 from kurbel.solver.figures import Columns
@@ -15,7 +14,6 @@ from kurbel.solver.turning.speed import SpeedLine
 from kurbel.solver.turning.torques import Sum, Torque
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.solver.turning.coupling import ElasticCoupling
 
 
@@ -32,7 +30,7 @@ class TurningCurves:
     def __init__(self, turned: MachineEffort, crank: float | None, phi: Array, within: Array) -> None:
         self._turned, self._crank, self._phi, self._within = turned, crank, phi, within
 
-    def columns(self, speed: SpeedLine | ElasticCoupling | None) -> Columns:
+    def columns(self, speed: "SpeedLine | ElasticCoupling | None") -> Columns:
         """Return the columns."""
         own = {id: partial(self._value, id) for id in ("M", "M_load", "T", "T_inertia")}
         elastic = None if isinstance(speed, SpeedLine) else speed
