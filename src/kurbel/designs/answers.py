@@ -21,8 +21,8 @@ _ALONE = ("energy_residual",)
 """Key values whose quadrature cuts the pieces of each machine until they agree, and answers one machine at a time."""
 _FEWEST = 3
 """Machines of one kind; fewer are answered as quickly alone."""
-AT_ONCE = 200
-"""Machines side by side: enough to share the overhead of one run, few enough for the cache of a processor."""
+AT_ONCE = 1000
+"""Machines side by side: enough to share the overhead of one run; more would only take memory."""
 
 Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, an Extreme, a tuple or None each; or why it answers nothing."""
