@@ -139,6 +139,16 @@ def test_without_masses_there_is_nothing_to_balance(text: str, message: str) -> 
     assert message in result.stderr
 
 
+def test_the_counterweights_say_what_they_hold() -> None:
+    """Of one crank of 50 mm with 2 kg to and fro and 3 kg on the pin the first holds (3 + 2/2) · 0.05 kg m."""
+    one = "speed: 600 rpm\ncrank: 50 mm\nrod_ratio: 4\nmasses: {reciprocating: 2 kg, rotating: 3 kg}\n"
+    told = run(one + "counterweights: [{product: 1 kg m, angle: 0 deg}, {product: 1 kg m, angle: 180 deg}]\n").stdout
+    best = next(line for line in told.splitlines() if line.startswith("  u_1 "))
+    assert best.split()[1:3] == ["0.2000", "kg"]
+    assert "what turns with the crank: rotating masses and half the reciprocating ones" in best
+    assert "Vector sum of the given counterweights" in told
+
+
 def test_a_case_answers_by_name() -> None:
     from kurbel import loads
     from kurbel.solver.case import Case

@@ -115,7 +115,7 @@ def test_columns_of_this_machine_are_told_first() -> None:
     file = str(Path(__file__).parents[2] / "configs" / "scotch-yoke-pump.yaml")
     told = CliRunner().invoke(kurbel, ["motion", file, "--columns", "theeta"]).stderr
     assert (
-        "'theeta' is no column of kurbel motion; did you mean 'theta'? (this machine has phi, z, x, c, b, c_block; "
+        "'theeta' is no column of kurbel motion; did you mean 'theta'? (this machine has phi (φ), z, x, c, b, c_block"
         in told
     )
     for command in (["motion"], ["stress", "--places"]):

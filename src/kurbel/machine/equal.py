@@ -1,18 +1,19 @@
 """Equal cylinders described at once, and cranks that follow from a firing order."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar
 
 from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, Path, refuse
+from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import Cylinder
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class EqualCylinders(Described):
     """Cylinders that differ in name, crank position and place only.
 
