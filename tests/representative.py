@@ -10,6 +10,8 @@ import pytest
 from _pytest.mark import ParameterSet
 
 from kurbel.machine_file import load
+from kurbel.machine_file.reader import read_machine
+from kurbel.machine_file.source import Source
 from kurbel.solver.case import Case
 
 SHIPPED = sorted((Path(__file__).parent.parent / "configs").glob("*.yaml"))
@@ -21,6 +23,12 @@ CONFIGS = {path.stem: path for path in SHIPPED}
 def case_of(name: str) -> Case:
     """The results of a machine that comes with kurbel: computed once, since nothing can change them."""
     return Case(load(CONFIGS[name]))
+
+
+@cache
+def case_from(source: Source, overrides: tuple[str, ...]) -> Case:
+    """The results of the machine in a text: computed once, as those above."""
+    return Case(read_machine(source, overrides))
 
 
 def shipped(*names: str) -> list[ParameterSet]:

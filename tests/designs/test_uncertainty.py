@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from pathlib import Path
 
@@ -53,7 +55,7 @@ def test_what_bends_is_told_by_a_sample() -> None:
     """c_max with L/R = 5 ± 0.8 is far from straight; the spread is that of a sample drawn otherwise."""
     (one,) = of({"rod_ratio": "0.8"}, "c_max").values()
     assert one.sample > 1000
-    ratios = np.random.default_rng(4).normal(5, 0.8, 1500)
+    ratios = np.random.default_rng(4).normal(5, 0.8, 600)
     machine = kurbel.load(WATERWORKS)
     drawn = kurbel.sweep(machine, {"rod_ratio": ratios[ratios > 1.01]}, ["c_max"])["c_max"]
     assert one.spread == pytest.approx(np.nanstd(drawn), rel=0.15)
@@ -89,6 +91,37 @@ def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> 
     page = CliRunner().invoke(command, ["forces", str(file), "--key-values"]).stdout
     assert "Standard uncertainty, and the share of each input in its square" in page
     assert "speed" in page
+
+
+def _table(*args: str) -> str:
+    asked = ["forces", str(WATERWORKS), "--key-values", "--uncertainty", "bore=0.1mm", *args]
+    result = CliRunner().invoke(command, asked)
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+
+def test_its_figures_are_numbers_to_programs() -> None:
+    """The guard against formulas in spreadsheets is for names, not for negative numbers."""
+    rows = {row["key_value"]: row for row in csv.DictReader(io.StringIO(_table("-f", "csv")))}
+    (table,) = json.loads(_table("-f", "json"))["cylinders"][0]["place_tables"]
+    columns = {column["id"]: column["values"] for column in table["columns"]}
+    cylinder = kurbel.solve(kurbel.load(str(WATERWORKS))).cylinders[0]
+    for place, name in enumerate(row["key_value"] for row in table["rows"]):
+        assert float(rows[name]["value"]) == columns["value"][place]
+        assert columns["value"][place] == pytest.approx(cylinder[name].value, rel=1e-14)
+        assert float(rows[name]["uncertainty"]) == columns["uncertainty"][place] > 0
+    assert float(rows["P_min"]["value"]) < 0
+    assert table["rows"][0] == {"key_value": "A_head", "symbol": "A_H", "unit": "m^2"}
+
+
+def test_its_lines_are_found_by_symbol() -> None:
+    assert [line.split()[1] for line in _table().splitlines() if line.startswith(("power ", "P_start_max "))] == [
+        "P_0,max",
+        "N_i",
+    ]
+    asked = ["forces", str(WATERWORKS), "--key-values", "--columns", "p_i"]
+    told = " ".join(CliRunner().invoke(command, asked).output.split())
+    assert "a key value is a line, grep 'p_i '" in told
 
 
 @pytest.mark.parametrize(

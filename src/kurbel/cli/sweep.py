@@ -14,7 +14,7 @@ from kurbel.cli.readings import words
 from kurbel.render import Look
 
 if TYPE_CHECKING:
-    from kurbel.designs.chosen import Aim
+    from kurbel.designs.chosen import Aim, Condition
     from kurbel.designs.sweep import Row, Spec, Sweep
     from kurbel.render.sweep_output import SweepOutput
 
@@ -132,11 +132,11 @@ class _Asked(SimpleNamespace):
         if found.rows > MOST_ROWS and not self.yes:
             raise UsageError(f"these are {found.rows} rows; --yes computes more than {MOST_ROWS}")
         rows = shard(self.shard, found.rows) if self.shard else range(found.rows)
-        out = self._out(found, rows)
         conditions = [read_condition(one, found.heads) for one in self.conditions]
         aims = [read_aim(one, found.heads, "--pareto") for one in self.pareto or ()]
         order = read_aim(self.sort, found.heads, "--sort") if self.sort else None
-        told = _counted(rows_of(found, out.rows, self.jobs, self.dask or ""), len(out.rows), self.file_name)
+        out, rows = self._out(found, rows, conditions)
+        told = _counted(rows_of(found, rows, self.jobs, self.dask or ""), len(rows), self.file_name)
         kept: Iterable[Row] = (row for row in told if all(one.holds(row) for one in conditions))
         out.write(summary(kept, found.heads) if self.summary else self._chosen(kept, aims, order))
 
@@ -150,14 +150,21 @@ class _Asked(SimpleNamespace):
         plan = self.vary, self.side_by_side, self.sample, self.seed, self.sobol
         return Spec(source.read(self.file), self.overrides, *plan, self.columns or (), self.with_angles, system)
 
-    def _out(self, found: "Sweep", rows: range) -> "SweepOutput":
+    def _out(self, found: "Sweep", rows: range, conditions: "Sequence[Condition]") -> "tuple[SweepOutput, range]":
+        """Return where the rows go, and those that are not there yet."""
         from kurbel.designs.chosen import summary_heads
         from kurbel.render.sweep_output import SweepOutput, Titles
 
         titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.limited)
         if self.summary:
             titles = Titles(summary_heads(found.heads), row="column", failing=False)
-        return SweepOutput(titles, self._look, self.file_name, rows, self.resume)
+        if not self.resume:
+            return SweepOutput(titles, self._look, self.file_name, headed=rows.start == 0), rows
+        from kurbel.render.kept_rows import KeptRows
+
+        kept = KeptRows(self.file_name, titles, self._look, rows)
+        headed = rows.start == 0 and not kept.size
+        return SweepOutput(titles, self._look, self.file_name, headed, kept.size), kept.rest(found, conditions)
 
     def _chosen(self, rows: "Iterable[Row]", aims: "Sequence[Aim]", order: "Aim | None") -> "Iterable[Row]":
         from kurbel.designs.chosen import sorted_rows, unbettered

@@ -72,6 +72,10 @@ class Form(ABC):
         """Return the names that do not stand in this mapping but below this key or in a list, each with that place."""
         return {}
 
+    def called_from(self, words: str, mapping: Tree) -> str:
+        """Return words for the place of a key as that place is called from this mapping."""
+        return words
+
     def flat(self, fault: Fault, mapping: Tree) -> Fault:
         """Return a fault of the record as one of its mapping, whatever list the record has made of it."""
         return fault
@@ -170,10 +174,11 @@ def check(keys: Keys, values: Mapping[str, Any]) -> None:
     What holds for a machine file holds for records that are made in Python. None is a value that is not given.
     """
     given = {name: value for name, value in values.items() if value is not None}
-    refuse(*_contradictions(keys, given), *_beyond(keys, given))
+    refuse(*contradictions(keys, given), *_beyond(keys, given))
 
 
-def _contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
+def contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield which keys say the same thing, or lack one another."""
     for name, key in keys.items():
         other = key.instead
         if name in given and other in given:
@@ -209,13 +214,6 @@ class Described:
     def of_keys(cls, *args: Any, **values: Any) -> Any:
         """Return the record; its fields are the keys, where it does not say otherwise."""
         return cls(*args, **values)
-
-    def __repr__(self) -> str:
-        """Return what was given to the record; one that is generated for each class costs at every start."""
-        from dataclasses import fields
-
-        given = [one.name for one in fields(self) if getattr(self, one.name) is not one.default]  # type: ignore[arg-type]
-        return f"{type(self).__name__}({', '.join(f'{name}={getattr(self, name)!r}' for name in given)})"
 
     @staticmethod
     def faults_of_keys(values: Mapping[str, Any]) -> Iterable[Fault]:

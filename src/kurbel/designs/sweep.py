@@ -158,6 +158,11 @@ class Sweep:
         broken = self._broken(found[len(self.asked) :])
         return Row(row + 1, (*inputs, *next(values)), not broken if self.limited else None, broken)
 
+    def unanswered(self, row: int) -> Row:
+        """Return the row with this index from 0 on without its answers: what varies is known unsolved."""
+        inputs = [self._input_value(*one) for one in enumerate(self.plan.texts(row))]
+        return Row(row + 1, (*inputs, *[None] * (len(self.heads) - len(inputs))))
+
     def _input_value(self, number: int, text: str) -> Any:
         head = self.heads[number]
         value = _in_base(text, head.kind)

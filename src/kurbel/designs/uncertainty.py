@@ -262,18 +262,22 @@ def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], sys
     own = [one for one in found if one.answer.subject == part.name and one.spread > _NOISE * abs(one.value)]
     if not own:
         return part
-    names, spreads = [], []
+    names, values, spreads = [], [], []
     for one in own:
-        kind = one.answer.quantity.kind
-        unit = shown_unit(kind, system, abs(one.value))
-        names.append((one.answer.quantity.id, f"{convert(one.value, kind, unit):.6g}", unit or "1"))
-        spreads.append(convert(one.spread, kind, unit))
-    columns = [Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2)]
+        quantity = one.answer.quantity
+        unit = shown_unit(quantity.kind, system, abs(one.value))
+        names.append((quantity.id, quantity.symbol, unit or "1"))
+        values.append(convert(one.value, quantity.kind, unit))
+        spreads.append(convert(one.spread, quantity.kind, unit))
+    columns = [
+        Column("value", "value", "value", "", tuple(values), alone=6),
+        Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2),
+    ]
     for place, key in enumerate(keys):
         columns.append(Column(key, key, key, "%", tuple(_percent(one.shares[place]) for one in own), alone=2))
     columns.append(Column("sample", "sample", "sample", "", tuple(one.sample or None for one in own), alone=2))
     title = "Standard uncertainty, and the share of each input in its square"
-    heads = ("key_value", "value", "unit")
+    heads = ("key_value", "symbol", "unit")
     table = PlaceTable("uncertainty", title, heads, tuple(names), tuple(columns), headed=True)
     return part._replace(place_tables=(*part.place_tables, table))
 

@@ -1,17 +1,19 @@
 """Equal cylinders described at once, and cranks that follow from a firing order."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar
 
 from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, Path, refuse
+from kurbel.frozen import frozen
+from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import Cylinder
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class EqualCylinders(Described):
     """Cylinders that differ in name, crank position and place only.
 
@@ -86,6 +88,17 @@ def _standing(each: Cylinder, bank: float, place: float | None) -> Cylinder:
         incline = (incline + bank + 180.0) % 360.0 - 180.0 if bank else incline
     along = each.axial_position if place is None else place + (each.axial_position or 0.0)
     return replace(each, bank_angle=each.bank_angle + bank, inclination=incline, axial_position=along)
+
+
+def in_order(
+    cylinders: tuple[Cylinder, ...] | EqualCylinders, order: tuple[int, ...] | None, cycle: str
+) -> tuple[Cylinder, ...]:
+    """Return the cylinders with the crank positions of their firing order; cycle: that of the machine."""
+    each = cylinders if isinstance(cylinders, tuple) else cylinders.cylinders
+    degrees = 360.0 * max((CYCLES[one.cycle or cycle] for one in each), default=1)
+    if isinstance(cylinders, tuple):
+        return fired(cylinders, order or (), degrees, ("firing_order",))
+    return cylinders.standing(order, degrees)
 
 
 def fired(cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: float, where: Path) -> tuple[Cylinder, ...]:

@@ -1,6 +1,5 @@
 """Rectangular cards: one pressure on every stroke, or an indicated mean pressure and nothing more."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.declared.forms import Physical
@@ -8,9 +7,10 @@ from kurbel.declared.forms.scalars import refused
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import show
+from kurbel.frozen import frozen
 
 
-@dataclass(frozen=True, eq=False)
+@frozen
 class Rectangle:
     """A card of horizontal lines, for any working cycle; pressures in Pa.
 

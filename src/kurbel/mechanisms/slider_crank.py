@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel import crank_formulas as formulas
@@ -12,6 +11,7 @@ from kurbel.declared.keys import Key, Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
+from kurbel.frozen import frozen
 from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, where
 from kurbel.numerics.extreme import Extreme
@@ -61,7 +61,7 @@ ROD_OFFERS = (
 )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 

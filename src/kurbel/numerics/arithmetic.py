@@ -92,6 +92,23 @@ def total(*terms: Any) -> Any:
     return whole + missed
 
 
+_ROUNDING = 16 * 2.0**-52
+"""What is left of terms that cancel, beside the sum of their sizes, is rounding."""
+
+
+def unless_cancelled(whole: Any, sizes: Any) -> Any:
+    """Return a sum, as an array; exactly 0 where nothing is left of its terms but rounding.
+
+    sizes: the sum of the sizes of the terms.
+
+    >>> unless_cancelled(0.1 + 0.2 - 0.3, 0.6), unless_cancelled(0.1, 0.6)
+    (array(0.), array(0.1))
+    """
+    import numpy as np
+
+    return np.where(np.abs(whole) > _ROUNDING * sizes, whole, 0.0)
+
+
 def running_sums(terms: Iterable[float]) -> Iterator[float]:
     """Yield the sum of the first one, two, … terms, each rounded once (Shewchuk).
 

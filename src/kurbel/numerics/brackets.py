@@ -76,10 +76,14 @@ class Slopes(NamedTuple):
     worth: Any
 
 
-def slopes_worth(grid: Grid, sampled: Sampled, worth: Worth | None) -> Slopes:
-    rows, intervals = worth or Worth(np.arange(len(sampled.slope)), True)
-    slope = sampled.slope[rows]
-    return Slopes(rows, slope, grid.slopes(slope, rows), intervals)
+def slopes_worth(grid: Grid, sampled: Sampled, worth: Worth) -> Slopes:
+    slope = _of_rows(sampled.slope, worth.rows)
+    return Slopes(worth.rows, slope, grid.slopes(slope, worth.rows), worth.intervals)
+
+
+def _of_rows(values: Array, rows: Indices) -> Array:
+    """Return the values (pieces, nodes) of these pieces, node by node in memory as they were."""
+    return np.asarray(values.T.take(rows, axis=1).T)
 
 
 def _reach(grid: Grid, sampled: Sampled) -> Array:
@@ -88,14 +92,14 @@ def _reach(grid: Grid, sampled: Sampled) -> Array:
     Slope times width is four times what a parabola with these slopes rises above its ends.
     """
     steepest = np.maximum(sampled.slope.max(axis=1), -sampled.slope.min(axis=1))
-    return np.asarray(steepest * grid.half_widths * grid.widest)
+    return np.asarray(steepest * grid.half_widths * grid.gaps.max())
 
 
 def _between_nodes(grid: Grid, sampled: Sampled, rows: Indices) -> tuple[Array, Array, Array]:
     """Return values at both ends of the intervals of these rows, and the reach in each, (k, nodes − 1)."""
-    value, slope = sampled.value[rows], np.abs(sampled.slope[rows])
-    widths = grid.half_widths[rows][:, None] * np.diff(grid.nodes)
-    return value[:, :-1], value[:, 1:], np.maximum(slope[:, :-1], slope[:, 1:]) * widths
+    value, slope = _of_rows(sampled.value, rows), np.abs(_of_rows(sampled.slope, rows))
+    rise = np.maximum(slope[:, :-1], slope[:, 1:]) * grid.half_widths[rows, None] * grid.gaps
+    return value[:, :-1], value[:, 1:], rise
 
 
 _FLAT = 32 * np.finfo(float).eps
@@ -106,13 +110,17 @@ def may_be_extreme(grid: Grid, sampled: Sampled) -> Worth:
     """Return where a quantity may be larger or smaller than at every node of its variant."""
     reach, high, low = _reach(grid, sampled), sampled.value.max(axis=1), sampled.value.min(axis=1)
     varies = reach > _FLAT * np.maximum(high, -low)
-    pieces = np.diff(np.append(grid.first, len(high)))
-    top = np.repeat(np.maximum.reduceat(high, grid.first), pieces)
-    bottom = np.repeat(np.minimum.reduceat(low, grid.first), pieces)
+    top = grid.of_each(np.maximum.reduceat(high, grid.first))
+    bottom = grid.of_each(np.minimum.reduceat(low, grid.first))
     rows = np.flatnonzero(varies & ((high + reach >= top) | (low - reach <= bottom)))
     before, after, rise = _between_nodes(grid, sampled, rows)
-    above = np.maximum(before, after) + rise >= top[rows][:, None]
-    return Worth(rows, above | (np.minimum(before, after) - rise <= bottom[rows][:, None]))
+    above = np.maximum(before, after) + rise >= top[rows, None]
+    return Worth(rows, above | (np.minimum(before, after) - rise <= bottom[rows, None]))
+
+
+def everywhere(grid: Grid) -> Worth:
+    """Return that every interval is worth a search."""
+    return Worth(np.arange(len(grid.low)), True)
 
 
 def may_be_zero(grid: Grid, sampled: Sampled) -> Worth:
@@ -154,7 +162,7 @@ def _dips(grid: Grid, owner: int, asked: Slopes) -> tuple[Brackets, Array]:
     toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0) & asked.worth
     rows, nodes = np.nonzero(toward)
     low, high, bend, next_bend = (part[rows, nodes] for part in (low, high, bend, next_bend))
-    width = grid.half_widths[asked.rows[rows]] * np.diff(grid.nodes)[nodes]
+    width = grid.half_widths[asked.rows[rows]] * grid.gaps[nodes]
     lowest = low + bend * (high - low - next_bend * width) / (bend - next_bend)
     beyond = lowest * low <= 0
     share = bend / (bend - next_bend)

@@ -78,6 +78,15 @@ class Grid(Pieces):
         """The first piece of every variant, (v,)."""
         return np.zeros(1, dtype=np.intp)
 
+    @property
+    def counts(self) -> Indices:
+        """How many pieces every variant has, (v,)."""
+        return np.diff(np.append(self.first, len(self.low)))
+
+    def of_each(self, found: Array) -> Array:
+        """Return what was found of every variant, (v,), spread over its pieces, (pieces,)."""
+        return np.repeat(found, self.counts)
+
     def told(self, values: Array) -> Any:
         """Return what was found of every variant (v,), or of the only machine as a number."""
         return float(values[0])
@@ -91,9 +100,9 @@ class Grid(Pieces):
         return np.sort(angles)
 
     @property
-    def widest(self) -> float:
-        """The largest distance between two nodes of a piece, over half its width."""
-        return float(np.diff(self.nodes).max())
+    def gaps(self) -> Array:
+        """The distances between the nodes of a piece, over half its width, (nodes − 1,)."""
+        return np.diff(self.nodes)
 
     def slopes(self, value: Array, rows: Any = np.s_[:]) -> Array:
         """Return the derivatives by φ of the polynomials through values (k, nodes) on these pieces (k,)."""
@@ -209,6 +218,11 @@ class Cuts(NamedTuple):
         turns = np.arange(0.0, cycle, self.smooth[-1])
         smooth, jumps = (np.mod(np.add.outer(turns, part + by).ravel(), cycle) for part in self)
         return Cuts(_cycle(np.array([0.0, cycle]), smooth), jumps)
+
+    def first_of(self, parts: int) -> "Cuts":
+        """Return the cuts of the first of so many equal parts, in each of which all comes back."""
+        end = self.smooth[-1] / parts
+        return Cuts(np.append(self.smooth[self.smooth < end], end), self.jumps[self.jumps < end])
 
     def grid(self, rule: Rule = GAUSS) -> Grid:
         """Return the pieces. Between many jumps they have four points, and the smooth pieces are cut to suit them."""

@@ -22,7 +22,7 @@ _STYLE = (
     ".pair{display:grid;grid-template-columns:1fr 1fr;gap:1rem}.pair>*{min-width:0}"
     "@media (max-width:64rem){.pair{grid-template-columns:1fr}}\n"
     "@media print{figure svg{min-width:0;max-height:24cm}nav{break-after:page}a{color:inherit;text-decoration:none}"
-    ".pair{break-inside:avoid;gap:0}.pair svg{max-height:10.5cm}}\n"
+    ".pair{display:block;break-inside:avoid}}\n"
 )
 
 

@@ -1,5 +1,6 @@
 """Forms made of others: lists, alternatives, mappings with one telling key, records whose keys stand among others."""
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -40,7 +41,10 @@ class Listing(Form):
         if len(value) > MOST_ITEMS:
             refused(f"{len(value)} items; no machine has more than {MOST_ITEMS} of them")
         items = tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(value))
-        return REFUSED if any(item is REFUSED for item in items) else items
+        if any(item is REFUSED for item in items):
+            reading.partly[path] = items
+            return REFUSED
+        return items
 
     def parts(self) -> Iterable[tuple[str, Form]]:
         return (("", self.item),)
@@ -174,6 +178,13 @@ class Inline(Form):
         there = f"'{self.unless}.each'" if isinstance(mapping[self.unless], dict) else f"the items of '{self.unless}'"
         message = f"belongs {self._item}; move it into {there}"
         return dict.fromkeys(self.record.all_names(mapping), message)
+
+    def called_from(self, words: str, mapping: Tree) -> str:
+        if self.unless not in mapping:
+            return words
+        item = f"{self.unless}.{'each' if isinstance(mapping[self.unless], dict) else 0}"
+        own = self.record.all_names(mapping)
+        return re.sub(r"under '(\w+)", lambda one: f"under '{item}.{one[1]}" if one[1] in own else one[0], words)
 
     def flat(self, fault: Fault, mapping: Tree) -> Fault:
         if len(fault.path) < 2 or fault.path[0] != self.unless or not isinstance(fault.path[1], int):

@@ -161,7 +161,10 @@ def _marks(panel: Panel, scales: Scales, taken: Taken, look: Look) -> Iterator[I
     middle = (y.start + y.end) / 2
     for mark, (left, base) in list(zip(panel.marks, places))[:_MOST_LABELS]:
         text = figure_text(mark.figure, look)
-        if place := taken.place(left, base, text, upward=base < middle or panel.plain):
+        if found := taken.pointed(left, base, text, upward=base < middle or panel.plain):
+            place, pointer = found
+            if pointer:
+                yield Line((pointer,), "f")
             yield Text(*place, text, halo=True)
 
 

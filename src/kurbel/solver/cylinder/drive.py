@@ -130,6 +130,11 @@ class Drive:
         indicated = [number for number, piston in enumerate(self.cylinder.pistons) if piston.indicator]
         return tuple(self._gas_on(number) for number in indicated)
 
+    @property
+    def has_gas(self) -> bool:
+        """Whether any piston has an indicator."""
+        return any(piston.indicator for piston in self.cylinder.pistons)
+
     def _gas_on(self, number: int) -> PistonGas:
         from kurbel.solver.cylinder.gas import PistonGas
 
@@ -146,7 +151,7 @@ class Drive:
     @cached_property
     def has_force(self) -> bool:
         """Whether any force acts along the stroke line, or a moment on what swings."""
-        return bool(self.gas) or self.has_inertia or self.weight is not None or self.resistance is not None
+        return self.has_gas or self.has_inertia or self.weight is not None or self.resistance is not None
 
     @property
     def resistance(self) -> RamForce | None:

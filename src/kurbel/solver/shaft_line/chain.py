@@ -1,18 +1,18 @@
 """A chain of masses on pieces of shaft, as numbers: J θ̈ + C θ̇ + K θ = M."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
+from kurbel.frozen import frozen
 from kurbel.machine.shaft_line import ShaftLine
 
 _ARRAYS = ("inertias", "stiffnesses", "piece_damping", "mass_damping", "loss")
 
 
-@dataclass(frozen=True, eq=False)
+@frozen
 class Chain:
     """n masses with the pieces between them, one more where an end is fixed: `ground` is `before`, `after` or empty.
 

@@ -38,6 +38,11 @@ class Sum:
         """The cuts of all parts."""
         return Cuts.joined([part.cuts for _, part in self.parts])
 
+    @property
+    def repeats(self) -> int:
+        """How often it comes back in the cycle, as far as its parts know that of themselves."""
+        return math.gcd(*(getattr(part, "repeats", 1) for _, part in self.parts))
+
     def torque(self, degrees: Array, within: Array | tuple[Any, ...]) -> Jet:
         """Return the sum with its slope; see `Torque`. within: angles, or what `inside` made of them."""
         total = Jet(np.zeros_like(degrees), np.zeros_like(degrees))
