@@ -1,6 +1,7 @@
 """Options shared by the commands that print a table, and what they mean."""
 
-from collections.abc import Callable, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -281,8 +282,17 @@ class Asked(NamedTuple):
         if case and (spreads or case.machine.uncertainty):
             from kurbel.designs.uncertainty import with_uncertainty
 
-            report = with_uncertainty(report, case, spreads, self.units)
+            report = with_uncertainty(report, case, spreads, self.units, _drawn)
         self.output.write(report)
+
+
+def _drawn(parts: Sequence[Any]) -> Iterator[Any]:
+    """Yield the parts of a sample, with a bar on the terminal."""
+    if not sys.stderr.isatty():
+        yield from parts
+        return
+    with click.progressbar(parts, file=sys.stderr, label="drawn machines") as bar:
+        yield from bar
 
 
 def _with_asked(command: Callable[..., None]) -> Callable[..., None]:
