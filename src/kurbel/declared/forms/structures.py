@@ -1,6 +1,5 @@
 """Forms made of others: lists, alternatives, mappings with one telling key, records whose keys stand among others."""
 
-
 import re
 from collections.abc import Iterable, Iterator
 from typing import Any
