@@ -204,6 +204,11 @@ def test_differences_are_in_percent(tmp_path: Path) -> None:
     same = run(str(one), str(one))
     assert "Nothing: both files give the same." in same.stdout
     assert "A (A)" in same.stdout
+    other.write_text("{name: A, speed: 50 rpm, stroke: 900 mm, rod_ratio: 5}")
+    page = run(str(one), str(other)).stdout
+    assert f"A (A) is that of {one}; A (B) is that of {other}." in text_in(page)
+    # the heading, and what a reader of screens is told
+    assert text_in(page).count("A (A). Kolbenweg") == text_in(page).count("A (B). Kolbenweg") == 2
 
 
 @pytest.mark.parametrize(
