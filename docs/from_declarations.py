@@ -168,7 +168,9 @@ def _command(name: str) -> str:
     context = click.Context(command, info_name=f"kurbel {name}", help_option_names=names)
     usage = command.get_usage(context).removeprefix("Usage: ")
     text = _prose(command.help or "")
-    rows = [row for one in command.get_params(context) if (row := one.get_help_record(context))]
+    # not every version of click tells arguments, which the usage names
+    shown = [one for one in command.get_params(context) if isinstance(one, click.Option)]
+    rows = [row for one in shown if (row := one.get_help_record(context))]
     options = _table(("option", "meaning"), ((f"`{option}`", meaning) for option, meaning in rows))
     status = f"{command.epilog}" if command.epilog else ""
     return f"## kurbel {name}\n\n```text\n{usage}\n```\n\n{text}\n\n{options}\n\n{status}"

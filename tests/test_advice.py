@@ -10,7 +10,7 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 from kurbel.machine_file import loads
-from kurbel.machine_file.schema import json_schema
+from schemas import whole_schema
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 ONE, TWO = str(CONFIGS / "waterworks.yaml"), str(CONFIGS / "waterworks-two-cranks.yaml")
@@ -105,7 +105,7 @@ def test_quotients_before_a_unit(length: str, metres: float) -> None:
     (cylinder,) = loads(text).cylinders
     assert cylinder.mechanism.rod == pytest.approx(metres, rel=1e-15)  # type: ignore[attr-defined]
     jsonschema = pytest.importorskip("jsonschema")
-    jsonschema.Draft7Validator(json_schema()).validate({"crank": "100 mm", "rod": length})
+    jsonschema.Draft7Validator(whole_schema()).validate({"crank": "100 mm", "rod": length})
 
 
 def test_the_spring_of_an_indicator_as_a_quotient() -> None:

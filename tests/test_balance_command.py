@@ -11,6 +11,7 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parent.parent / "configs"
 V90 = """
 speed: 600 rpm
@@ -70,6 +71,18 @@ def test_orders_as_csv() -> None:
     head, *rows = result.stdout.splitlines()
     assert head.startswith("table,weight,order,F_forward_N,F_backward_N,F_share")
     assert [row.split(",")[0] for row in rows].count("orders") == 6
+
+
+def test_of_thousands_of_orders_the_lowest_are_told_and_the_rest_together() -> None:
+    short = "{speed: 600 rpm, crank: 50 mm, rod_ratio: 1.00001, axial_position: 0 mm, masses: {reciprocating: 2 kg}}"
+    result = run(short, "--orders", "--width", "200")
+    rows = [line.split() for line in result.stdout.splitlines()]
+    assert [row[0] for row in rows if len(row) > 4 and row[0].isdigit()][:24] == ["1", *map(str, range(2, 48, 2))]
+    (note,) = (line for line in result.stdout.splitlines() if "more orders follow, n = 48 to" in line)
+    assert "of the force they are at most " in note
+    assert note.endswith(" kN, of the moment 0 N m, together.")
+    assert len(result.stdout.splitlines()) < 100
+    assert "more orders" not in run(short.replace("1.00001", "3"), "--orders").stdout
 
 
 def test_a_column_by_name() -> None:

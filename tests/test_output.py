@@ -192,7 +192,8 @@ def test_json_says_what_it_was_made_from(tmp_path: Path) -> None:
 def test_nothing_is_hashed_where_nobody_reads_it(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text(MACHINE)
     code = (
-        "import sys; from kurbel.cli import kurbel\n"
+        # what old versions of numpy import themselves does not count
+        "import sys, numpy; sys.modules.pop('hashlib', None); from kurbel.cli import kurbel\n"
         "for format in ('csv', 'json'):\n"
         "    try: kurbel.main([*sys.argv[1:], '-f', format])\n"
         "    except SystemExit: print('hashlib' in sys.modules, file=sys.stderr)"

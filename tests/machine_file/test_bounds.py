@@ -16,8 +16,8 @@ from kurbel.declared.kinds import KINDS
 from kurbel.declared.unit_systems import SI
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine_file import columns, events, load, loads
-from kurbel.machine_file.schema import json_schema
 from representative import law_of_each
+from schemas import whole_schema
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod_ratio: 5\n"
 STEAM = (
@@ -82,7 +82,7 @@ def test_bounds_are_those_of_the_file_not_of_python() -> None:
 
 
 def test_the_schema_states_the_sizes() -> None:
-    schema = json_schema()
+    schema = whole_schema()
     assert "; in size 0 or 1e-09 to 1e+09 m; " in schema["definitions"]["quantity_length"]["description"]
     ratio = schema["properties"]["rod_ratio"]
     jsonschema.validate(1e15, ratio)
@@ -200,7 +200,7 @@ def test_a_line_without_end_is_not_loaded(tmp_path: Path) -> None:
 
 
 def test_json_of_the_schema_is_finite() -> None:
-    assert json.loads(json.dumps(json_schema(), allow_nan=False))
+    assert json.loads(json.dumps(whole_schema(), allow_nan=False))
 
 
 def test_more_points_than_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -135,6 +135,8 @@ def test_lobes_are_shaded_and_numbered_with_their_work() -> None:
         assert shade.figure is not None
         assert shade.figure.value == pytest.approx(work / 1e3, rel=1e-15)
         assert shade.gain == (work > 0)
+    ends = {end for shade in panel.shades for end in (shade.x[0], shade.x[-1])}
+    assert ends == {0.0, 360.0, *turning.phi_crossing}  # where they cross, rounding may leave either of them above
     # the surface itself, in kN times the way of the pin in m, is that work: straight lines miss it by their fineness
     first = figures["A_2"]
     area = float(trapezoid(first.high - first.low, np.radians(first.x))) * turning.crank

@@ -236,7 +236,9 @@ class TestReversalsInTheNoise:
         """Above, thrice through zero within the band, below; then to zero and back below; then above again."""
         angles = np.array([10.0, 30, 50, 70, 90, 110, 130, 150, 170])
         values = np.array([9.0, -0.5, 0.5, -9, 0.5, -9, 9, 0.1, 8])
-        curve = Curve(angles, np.arange(9), values, np.array([0]), Grid(np.arange(0.0, 181, 20)), np.arange(0))
+        curve = Curve(
+            angles, np.arange(9), values, np.array([0]), Grid(np.arange(0.0, 181, 20)), np.arange(0), values[:, None]
+        )
         changes = np.array([20.0, 40, 60, 80, 100, 120])
         assert lasting(curve, changes, 1.0).tolist() == [40.0, 120.0]
         assert lasting(curve, changes, 0.0).tolist() == changes.tolist()

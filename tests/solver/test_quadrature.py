@@ -119,7 +119,7 @@ def test_friction_where_the_guide_changes_sides_twice_at_once() -> None:
 
 def test_the_residual_shows_gauss_across_a_kink(monkeypatch: pytest.MonkeyPatch) -> None:
     """A planted fault: the pieces of the grid are not cut where the guide changes sides."""
-    monkeypatch.setattr(CylinderForces, "grid", property(lambda forces: forces.drive.cuts.grid()))
+    monkeypatch.setattr(CylinderForces, "grid", property(lambda forces: forces.drive.pieces))
     forces = rubbing_diesel()
     precise = precise_integral(friction_power(forces), forces.drive.cuts.grid().breaks)
     turnover = precise_integral(lambda degrees: np.abs(forces.at(degrees).M), forces.drive.cuts.grid().breaks)

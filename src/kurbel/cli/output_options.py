@@ -251,6 +251,10 @@ class Asked(NamedTuple):
         """Return the frame of the report: rows from 0 to `end` degrees, for each of so many parts, or where wanted."""
         from kurbel.report.frame import Frame
 
+        if self.key_values_only and self.columns:
+            raise click.UsageError(
+                "--columns names columns of the table that --key-values leaves out; a key value is a line, grep 'p_i '"
+            )
         angles = self._rows(command, end) or crank_angles(self.step, self.angles, end, parts)
         return Frame(command, angles, self.columns, self.units, "z" if self.over else "", self.compare)
 
@@ -271,8 +275,6 @@ class Asked(NamedTuple):
 
     def write(self, report: Report, case: "Case | None" = None, spreads: Spreads = ()) -> None:
         """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""
-        if self.key_values_only and self.columns:
-            raise click.UsageError("--columns names columns of the table that --key-values leaves out.")
         if self.cylinder is not None:
             report = report.of_cylinder(self.cylinder)
         report = report.key_values_alone() if self.key_values_only else report

@@ -1,7 +1,5 @@
 """The quantities of `kurbel balance`: free forces and moments, their orders, and the weights against them."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from kurbel.declared.quantity import Quantity, by_id

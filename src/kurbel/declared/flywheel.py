@@ -1,7 +1,5 @@
 """The quantities of `kurbel flywheel`: turning effort, excess work, flywheel, speed line, coupling."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from kurbel.declared.quantity import Quantity

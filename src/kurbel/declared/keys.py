@@ -4,7 +4,7 @@ A record (`Cylinder`, `Piston`, …) carries a table `KEYS` of these.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.declared.reading import REFUSED, Reading, Tree
@@ -50,6 +50,10 @@ class Form(ABC):
     def out_of_bounds(self, value: Any) -> str:
         """Return in what way a value is too small or too large, with the bound; '' when it is not."""
         return ""
+
+    def numbers(self, texts: Sequence[str]) -> list[float] | None:
+        """Return what texts become that are plain numbers, all of them; None where each must be read by itself."""
+        return None
 
     def read(self, reading: Reading, value: Any, path: Path) -> Any:
         """Return what a value of the tree becomes, or REFUSED after noting every fault."""
@@ -214,13 +218,6 @@ class Described:
     def of_keys(cls, *args: Any, **values: Any) -> Any:
         """Return the record; its fields are the keys, where it does not say otherwise."""
         return cls(*args, **values)
-
-    def __repr__(self) -> str:
-        """Return what was given to the record; one that is generated for each class costs at every start."""
-        from dataclasses import fields
-
-        given = [one.name for one in fields(self) if getattr(self, one.name) is not one.default]  # type: ignore[arg-type]
-        return f"{type(self).__name__}({', '.join(f'{name}={getattr(self, name)!r}' for name in given)})"
 
     @staticmethod
     def faults_of_keys(values: Mapping[str, Any]) -> Iterable[Fault]:

@@ -17,7 +17,7 @@ from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import answers_of
-from kurbel.designs.binding import Binder, Unbound, tree_of, written
+from kurbel.designs.binding import Binder, tree_of, written
 from kurbel.designs.columns import Answer, subjects
 from kurbel.designs.sampling import latin_hypercube
 from kurbel.designs.sweep import kind_of_form
@@ -89,19 +89,15 @@ class Uncertainty:
         if wrong:
             raise WrongUncertainty(wrong)
 
-    def _machine(self, shifts: Sequence[float]) -> Machine | None:
-        """Return the machine with inputs off by so many of their uncertainties each; None where there is none."""
+    def _texts(self, shifts: Sequence[float]) -> list[str]:
+        """Return the texts of the inputs where each is off by so many of its uncertainties."""
         values = (value + shift * spread for value, shift, spread in zip(self._values, shifts, self._spreads))
-        try:
-            return self._binder.bound([f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._kinds)])
-        except Unbound:
-            return None
+        return [f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._kinds)]
 
     def _answers(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer]) -> Any:
         """Return the answers (machines, asked) as floats, nan where there are none."""
-        machines = [self._machine(one) for one in shifts]
-        found = iter(answers_of([one for one in machines if one], asked))
-        rows = [next(found) if one else "" for one in machines]
+        found = answers_of(self._binder.bound([self._texts(one) for one in shifts]).lots, asked)
+        rows = [found.get(row, "") for row in range(len(shifts))]
         blank = [math.nan] * len(asked)
         return np.array([blank if isinstance(row, str) else [_float(value) for value in row] for row in rows])
 
@@ -262,18 +258,22 @@ def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], sys
     own = [one for one in found if one.answer.subject == part.name and one.spread > _NOISE * abs(one.value)]
     if not own:
         return part
-    names, spreads = [], []
+    names, values, spreads = [], [], []
     for one in own:
-        kind = one.answer.quantity.kind
-        unit = shown_unit(kind, system, abs(one.value))
-        names.append((one.answer.quantity.id, f"{convert(one.value, kind, unit):.6g}", unit or "1"))
-        spreads.append(convert(one.spread, kind, unit))
-    columns = [Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2)]
+        quantity = one.answer.quantity
+        unit = shown_unit(quantity.kind, system, abs(one.value))
+        names.append((quantity.id, quantity.symbol, unit or "1"))
+        values.append(convert(one.value, quantity.kind, unit))
+        spreads.append(convert(one.spread, quantity.kind, unit))
+    columns = [
+        Column("value", "value", "value", "", tuple(values), alone=6),
+        Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2),
+    ]
     for place, key in enumerate(keys):
         columns.append(Column(key, key, key, "%", tuple(_percent(one.shares[place]) for one in own), alone=2))
     columns.append(Column("sample", "sample", "sample", "", tuple(one.sample or None for one in own), alone=2))
     title = "Standard uncertainty, and the share of each input in its square"
-    heads = ("key_value", "value", "unit")
+    heads = ("key_value", "symbol", "unit")
     table = PlaceTable("uncertainty", title, heads, tuple(names), tuple(columns), headed=True)
     return part._replace(place_tables=(*part.place_tables, table))
 

@@ -7,7 +7,6 @@ Records check their own rules and raise RuleError. They hold numbers only; what 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
@@ -28,17 +27,18 @@ from kurbel.declared.forms import (
     Uncertainties,
     not_negative,
 )
+from kurbel.declared.forms.figures import Expected
 from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.quantity import Quantity
 from kurbel.declared.reading import REFUSED
 from kurbel.errors import Fault, RuleError, refuse
+from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder, crowded
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kurbel.declared.forms.figures import Expected
-    from kurbel.declared.quantity import Quantity
     from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.equal import EqualCylinders
@@ -73,7 +73,7 @@ def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: tuple[Cylinder, .
     return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Machine(Described):
     """A whole machine.
 
@@ -106,7 +106,7 @@ class Machine(Described):
     expect: tuple[tuple[str, Expected], ...] = ()
     uncertainty: tuple[tuple[str, str], ...] = ()
     rotation: str | None = None
-    origin: Origin | None = field(default=None, repr=False)
+    origin: Origin | None = None
 
     KEYS: ClassVar[Keys] = {
         "kurbel": Key(Count(least=FORMAT, most=FORMAT), "Number of the file format", absent="1"),

@@ -1,13 +1,11 @@
 """What is put on a machine to balance it: counterweights on the crank, balance shafts, the wheels of a locomotive."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Choice, Count, Listing, Number, Physical, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, refuse
+from kurbel.frozen import frozen
 
 _WEIGHT_KEYS: Keys = {
     "product": not_negative(
@@ -30,7 +28,7 @@ def _product(keys: dict[str, Any]) -> float:
     return product
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Counterweight(Described):
     """A weight that turns with the crank: mass times radius in kg m, its direction and its place.
 
@@ -52,12 +50,12 @@ class Counterweight(Described):
     }
 
     @classmethod
-    def of_keys(cls, **keys: Any) -> Counterweight:
+    def of_keys(cls, **keys: Any) -> "Counterweight":
         """Return the counterweight that these keys of a machine file describe."""
         return cls(_product(keys), **keys)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class SharedCounterweights(Described):
     """Counterweights opposite each throw, for what turns with it and a share of what goes to and fro.
 
@@ -89,7 +87,7 @@ class SharedCounterweights(Described):
             refuse(Fault(("planes",), f"{len(self.planes)} of them, {len(set(self.planes))} different; {message}"))
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class BalanceShaft(Described):
     """A shaft with a weight of mass times radius in kg m that turns `order` times in a turn of the crank.
 
@@ -124,12 +122,12 @@ class BalanceShaft(Described):
     }
 
     @classmethod
-    def of_keys(cls, sense: str, **keys: Any) -> BalanceShaft:
+    def of_keys(cls, sense: str, **keys: Any) -> "BalanceShaft":
         """Return the shaft that these keys of a machine file describe."""
         return cls(_product(keys), against=sense == "against", **keys)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Locomotive(Described):
     """The driven wheels of a locomotive, in which its counterweights stand: lengths in m, forces in N.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
@@ -12,6 +11,7 @@ from kurbel.declared.forms import Choice, Inline, Listing, OneOf, Physical, Reco
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
+from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES
 from kurbel.mechanisms import MECHANISMS, Mechanism
 
@@ -47,7 +47,7 @@ COUNTERWEIGHTS = Key(
 """Of a cylinder beside its throw, or of the whole machine."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Cylinder(Described):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 

@@ -1,20 +1,19 @@
 """Equal cylinders described at once, and cranks that follow from a firing order."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar
 
 from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, Path, refuse
+from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import Cylinder
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class EqualCylinders(Described):
     """Cylinders that differ in name, crank position and place only.
 
@@ -54,7 +53,7 @@ class EqualCylinders(Described):
         firing_order: tuple[int, ...] | None = None,
         spacing: float | None = None,
         bank_angles: tuple[float, ...] = (0.0,),
-    ) -> EqualCylinders:
+    ) -> "EqualCylinders":
         """Return the cylinders that these keys of a machine file describe; raises RuleError."""
         if count % len(bank_angles):
             message = f"{len(bank_angles)} angles for {count} cylinders; give one for each bank or for each cylinder"

@@ -1,21 +1,19 @@
 """The flywheel, and the rim that is to be built for it."""
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Number, Record, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
+from kurbel.frozen import frozen
 
 CAST_IRON = 7250.0
 """Density in kg/m³ of what rims are cast of."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Rim(Described):
     """The rim of a flywheel: mean diameter in m, density in kg/m³, and the tension in Pa that it may bear or None.
 
@@ -63,7 +61,7 @@ class Rim(Described):
     @classmethod
     def of_keys(
         cls, outer_diameter: float | None = None, inner_diameter: float = 0.0, depth: float = 0.0, **keys: Any
-    ) -> Rim:
+    ) -> "Rim":
         """Return the rim with D = (D_a + D_i)/2 and h = (D_a − D_i)/2; raises RuleError."""
         if outer_diameter is None:
             return cls(depth=depth, **keys)
@@ -111,7 +109,7 @@ class Rim(Described):
         return self.density * self.speed(omega) ** 2
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Flywheel(Described):
     """A flywheel: its moment of inertia J in kg m², the wanted coefficient of fluctuation δ, and the rim to be built.
 
@@ -152,7 +150,7 @@ class Flywheel(Described):
     }
 
     @classmethod
-    def of_keys(cls, **keys: Any) -> Flywheel:
+    def of_keys(cls, **keys: Any) -> "Flywheel":
         """Return the flywheel with J = inertia, GD²/4, m k², or that of its rim; raises RuleError."""
         mass, radius, gd2 = (keys.pop(name, None) for name in ("mass", "radius_of_gyration", "gd2"))
         if gd2 is not None:

@@ -1,20 +1,18 @@
 """Friction of the crosshead on its guide and of piston rings (Redtenbacher 1862), as a force, in pins and journals."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from kurbel.declared.forms import Count, Number, Record, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys, check
 from kurbel.errors import Fault, refuse
+from kurbel.frozen import frozen
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Rings(Described):
     """Piston rings: their number, height in m, pressure on the wall in Pa, and coefficient of friction."""
 
@@ -31,7 +29,7 @@ class Rings(Described):
     }
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Guide(Described):
     """The shoe with which a crosshead presses on its guide: length along the stroke and width in m."""
 
@@ -56,7 +54,7 @@ def _diameter(of: str, text: str, symbol: str, absent: str = "") -> Key:
     return positive("length", text, symbol, absent=absent, needs=of)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Friction(Described):
     """Coefficient f of the crosshead, None where it is left out, rings, a force in N against the motion, the shoe.
 
@@ -106,7 +104,7 @@ class Friction(Described):
         """The keys of the pins and journals whose coefficient is given."""
         return tuple(name for name in _PINS if getattr(self, name) is not None)
 
-    def faults_beside(self, shaft: Crankshaft | None) -> Iterator[Fault]:
+    def faults_beside(self, shaft: "Crankshaft | None") -> Iterator[Fault]:
         """Yield a diameter that is needed and given nowhere, or given here and in the crankshaft."""
         for name in self.of_pins:
             here, there = _PINS[name]

@@ -4,16 +4,14 @@ Fractions are fractions of the stroke from the chamber's smallest volume, as on 
 the stroke volume. Exponents are those of p V^n.
 """
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
 from typing import Any, ClassVar, Union
 
 from kurbel.declared.forms import Number, Physical
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
+from kurbel.frozen import frozen
 from kurbel.machine.indicator import CLEARANCE, CLEARANCE_OR_NONE
 
 _CLEARANCE = Key(CLEARANCE_OR_NONE, "Clearance volume over stroke volume", "c", required=True)
@@ -58,7 +56,7 @@ def _vacuum_fault(lift: float, **pressures: float | None) -> str:
     return ""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Steam(Described):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression.
 
@@ -103,7 +101,7 @@ class Steam(Described):
         return _two_stroke_only("steam", cycle) or _vacuum_fault(lift, admission=self.admission, exhaust=self.exhaust)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Compressor(Described):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance. Pressures in Pa."""
 
@@ -160,7 +158,7 @@ _ENGINE_KEYS: Keys = {
 """What every combustion engine gives."""
 
 
-def _peak_fault(peak: float | None, card: _Engine, lift: float) -> str:
+def _peak_fault(peak: float | None, card: "_Engine", lift: float) -> str:
     """Return what to say of a peak below the end of the compression; lift makes the pressures absolute."""
     compressed = after_polytrope(card.intake + lift, 1 + card.clearance, card.clearance, card.exponent) - lift
     # as much as rounding of the clearance may take from a peak that is just that pressure
@@ -207,7 +205,7 @@ class _Engine(Described):
         )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Otto(_Engine):
     """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume. Pressures in Pa.
 
@@ -225,7 +223,7 @@ class Otto(_Engine):
     KEYS: ClassVar[Keys] = {**_ENGINE_KEYS, "peak": _pressure("Largest pressure, after combustion")}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Diesel(_Engine):
     """A Diesel engine: injection at constant pressure up to the cut-off. Pressures in Pa.
 

@@ -1,7 +1,6 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from kurbel.declared.bounds import Point, size_faults
@@ -10,11 +9,11 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, Path, refuse
-from kurbel.machine.rectangle import Rectangular
+from kurbel.frozen import frozen
+from kurbel.machine.rectangle import Rectangle, Rectangular
 
 if TYPE_CHECKING:
     from kurbel.machine.drawn import Drawn
-    from kurbel.machine.rectangle import Rectangle
 
 CLEARANCE = Number(least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
@@ -54,7 +53,7 @@ STROKES = {"two-stroke": ("expansion", "compression"), "four-stroke": ("expansio
 """Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Card(Described):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
@@ -239,7 +238,7 @@ _CHAMBER = Keyed(
 _ONE_PRESSURE = Rectangular("level")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Indicator(Described):
     """The pressures in the two ends of a cylinder; an end that is None is open to the ambient.
 

@@ -1,16 +1,14 @@
 """What the output of a mechanism works against: the ram of a shaper or a press, the rocker of a four-bar."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.declared.forms import not_negative
 from kurbel.declared.keys import Described, Keys, check
 from kurbel.errors import Fault, refuse
+from kurbel.frozen import frozen
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class RamForce(Described):
     """A force in N on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
 
@@ -26,14 +24,14 @@ class RamForce(Described):
         check(self.KEYS, {"work": self.work, "return": self.back})
 
     @classmethod
-    def of_keys(cls, work: float | None = None, **others: float) -> RamForce:
+    def of_keys(cls, work: float | None = None, **others: float) -> "RamForce":
         """Return the resistance that these keys of a machine file describe; raises RuleError where it has none."""
         if work is None and not others:
             refuse(Fault((), "give 'work', the force on the working stroke, or 'return', or both"))
         return cls(work or 0.0, others.get("return", 0.0))
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Moment(RamForce):
     """A moment in N m on a member that swings or turns, opposing its motion; what turns has no return stroke."""
 

@@ -1,18 +1,16 @@
 """A point of the connecting rod or coupler, of which the motion is asked."""
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Choice, Physical
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault
+from kurbel.frozen import frozen
 from kurbel.mechanisms import Mechanism
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class RodPoint(Described):
     """A point `along` the rod in m from one of its pins toward the other, or beyond it, and `across` from its line.
 
@@ -38,7 +36,7 @@ class RodPoint(Described):
     }
 
     @classmethod
-    def of_keys(cls, **keys: Any) -> RodPoint:
+    def of_keys(cls, **keys: Any) -> "RodPoint":
         """Return the point that these keys of a machine file describe."""
         return cls(keys.pop("from"), **keys)
 

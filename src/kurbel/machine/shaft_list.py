@@ -1,7 +1,5 @@
 """The list of a shaft line, read along the shaft: what may follow what, and the masses and pieces that it makes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any, Union

@@ -1,8 +1,5 @@
 """What works on the shaft: load, a turning-moment diagram known from elsewhere, an elastic coupling."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.bounds import Point, size_faults
@@ -10,6 +7,7 @@ from kurbel.declared.forms import Number, Points, UnitName, not_negative, positi
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, refuse
+from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES, angle_faults, beyond_cycle
 
 _TORQUE_KEYS: Keys = {
@@ -20,7 +18,7 @@ _TORQUE_KEYS: Keys = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@frozen
 class Effort:
     """A turning-moment diagram: torques in N m over crank angles in degrees, from 0 to 360 or 720, ascending.
 
@@ -33,7 +31,7 @@ class Effort:
     notes: tuple[str, ...] = ()
 
     @classmethod
-    def of_points(cls, unit: Factor, points: list[Point]) -> Effort:
+    def of_points(cls, unit: Factor, points: list[Point]) -> "Effort":
         """Return the diagram of the points that stand under `points` in a machine file; raises RuleError."""
         refuse(*(angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))))
         up, down = unit
@@ -49,7 +47,7 @@ class Effort:
         return "file" if self.files else "points"
 
 
-@dataclass(frozen=True, eq=False)
+@frozen
 class Harmonics:
     """A turning effort by harmonics, M = mean + Σ c cos νφ + s sin νφ: in N m, ν per turn of the shaft.
 
@@ -69,7 +67,7 @@ class Harmonics:
         return ""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Load(Described):
     """The resistance at the shaft, in exactly one of three forms.
 
@@ -88,7 +86,7 @@ class Load(Described):
     }
 
     @classmethod
-    def of_keys(cls, power_law: float | None = None, slip: float | None = None, **points: Any) -> Load:
+    def of_keys(cls, power_law: float | None = None, slip: float | None = None, **points: Any) -> "Load":
         """Return the load that these keys of a machine file describe; raises RuleError."""
         return cls(power_law, slip, Effort.of_points(**points) if points else None)
 
@@ -106,7 +104,7 @@ class Load(Described):
         return self.diagram.cycle_fault(cycle) if self.diagram else ""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class Coupling(Described):
     """An elastic coupling: stiffness in N m/rad, damping in N m s/rad, and the driven moment of inertia in kg m²."""
 

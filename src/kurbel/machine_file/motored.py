@@ -1,23 +1,19 @@
 """The dead centre found from a motored trace: without combustion the pressure peaks just before it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from os.path import basename
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.forms import FilePath, not_negative
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, RuleError, refuse
+from kurbel.frozen import frozen
 from kurbel.machine_file.samples import Layout, samples_of
 from kurbel.numerics.vertex import Vertex, vertex
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _HALF = 6.0
 """Degrees on either side of the peak through which the parabola goes."""
@@ -29,7 +25,7 @@ _FEWEST, _NEAR = 36, 5
 _ALIKE = 0.5, 1.15
 
 
-@dataclass(frozen=True)
+@frozen
 class Motored(Described):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 

@@ -1,9 +1,6 @@
 """Four-bar linkage: the crank-rocker (Bogenschubkurbel), R ch. 14 A, and the drag link, whose rocker turns too."""
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -13,6 +10,7 @@ from kurbel.declared.keys import Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
+from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, turning_column
 from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.four_bar_loop import Loop
@@ -42,7 +40,7 @@ COUPLER_OFFERS = turning_offers(
 )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@frozen
 class FourBar(Mechanism):
     """A crank that turns fully and through a coupler swings a rocker, or, where the frame is shortest, turns it too.
 

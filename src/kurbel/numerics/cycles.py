@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices
-from kurbel.numerics.gauss import GAUSS
+from kurbel.numerics.gauss import LOBATTO_12
 from kurbel.numerics.grid import SAME, Grid, Pieces
 
 
@@ -74,8 +74,7 @@ class Cycles(Grid):
         self.variant, low = breaks
         last = np.append(self.variant[1:] != self.variant[:-1], True)
         high = np.where(last, cycle, np.append(low[1:], cycle))
-        Pieces.__init__(self, low, high, GAUSS)
-        self.rule = GAUSS
+        Pieces.__init__(self, low, high, LOBATTO_12)
         self.cycle = cycle
 
     @cached_property

@@ -1,7 +1,5 @@
 """Rules of Gauss-Legendre and of Lobatto for integrals over a piece."""
 
-from __future__ import annotations
-
 Rule = tuple[tuple[float, ...], tuple[float, ...]]
 """Nodes and weights on (−1, 1)."""
 
@@ -17,7 +15,16 @@ HALF_RULE = (
 )
 """Nodes and weights on (−1, 1), the positive half; the rule is symmetric."""
 
-_HALF_LOBATTO = (
+_HALF_LOBATTO_12 = (
+    (0.13655293285492756, 0.2714052409106962),
+    (0.3995309409653489, 0.2512756031992013),
+    (0.6328761530318607, 0.21250841776102114),
+    (0.8192793216440066, 0.15797470556437013),
+    (0.9448992722228822, 0.09168451741319614),
+    (1.0, 0.015151515151515152),
+)
+
+_HALF_LOBATTO_16 = (
     (0.10132627352194945, 0.20195830817822988),
     (0.2998304689007632, 0.1936900238252036),
     (0.48605942188713763, 0.17749191339170411),
@@ -36,6 +43,8 @@ def _whole(half: tuple[tuple[float, float], ...]) -> Rule:
 
 GAUSS = _whole((*HALF_RULE, (1.0, 0.0)))
 """16 points of Gauss, and both ends with the weight 0."""
-LOBATTO_16 = _whole(_HALF_LOBATTO)
+LOBATTO_16 = _whole(_HALF_LOBATTO_16)
+LOBATTO_12 = _whole(_HALF_LOBATTO_12)
+"""Both ends included: exact for polynomials of degree 21."""
 LOBATTO_4 = (-1.0, -0.4472135954999579, 0.4472135954999579, 1.0), (1 / 6, 5 / 6, 5 / 6, 1 / 6)
 """Both ends included: exact for polynomials of degree 5."""

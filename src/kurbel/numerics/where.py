@@ -30,7 +30,7 @@ def where(grid: Grid, samples: Sampled, sampled: Callable[[Array, Array], Sample
         found = sampled(degrees, within)
         return {"it": Sampled(found.value - value, found.slope)}
 
-    lowered = {"it": whole._replace(value=whole.value - value)}
+    lowered = {"it": whole.less(value)}
     passed = sign_changes(grid, lowered, less, float(np.abs(whole.value).max()))["it"]
     ends = extremes_of(whole)
     reached = [one.degrees for one in ends if math.isclose(one.value, value, rel_tol=1e-14)]

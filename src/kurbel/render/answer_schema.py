@@ -1,7 +1,5 @@
 """The JSON Schema of what `-f json` prints, for programs that read it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from kurbel.render.json_text import FORMAT

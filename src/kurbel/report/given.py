@@ -1,7 +1,5 @@
 """What looks wrong in what was given: sizes, crank pins and cards; said as notes, since the file may be right."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
@@ -85,7 +83,7 @@ def _throw(cylinder: Cylinder) -> float:
     return cylinder.bank_angle - cylinder.crank_position
 
 
-def card_end_notes(piston: Piston) -> Iterable[str]:
+def card_end_notes(piston: "Piston") -> Iterable[str]:
     """Yield a note where both ends of a piston have their high pressure on the same side, at the same crank angle.
 
     Their cards may be drawn from the same dead centre.
@@ -104,7 +102,7 @@ def card_end_notes(piston: Piston) -> Iterable[str]:
     )
 
 
-def _lean(card: Card) -> float:
+def _lean(card: "Card") -> float:
     """Return the mean of p (1 − 2z) over both strokes by the range of p: positive where p is high at small volumes."""
     pressures = [p for line in card.lines for p in line.pressures]
     middle, span = (max(pressures) + min(pressures)) / 2, max(pressures) - min(pressures)

@@ -1,7 +1,5 @@
 """What a machine leaves out, and why: decided from the description alone, so that nothing is computed to find out."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from kurbel.machine import Cylinder, Machine

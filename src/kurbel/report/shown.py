@@ -1,7 +1,5 @@
 """From values in SI to columns and key values in the unit they are shown in; what overflows is refused by name."""
 
-from __future__ import annotations
-
 import math
 from array import array
 from collections.abc import Callable, Iterable, Sequence

@@ -1,7 +1,5 @@
 """Whether the pressures of a trace are those that an engine can have: level, unit, and the line of its compression."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import pairwise
 

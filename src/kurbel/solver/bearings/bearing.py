@@ -138,7 +138,7 @@ class Bearing(Results):
             found = self._evaluate(degrees, within)["load"]
             return {"load": Sampled(found.value - half, found.slope)}
 
-        passed = sign_changes(self._grid, {"load": whole._replace(value=whole.value - half)}, beyond, 2 * half)["load"]
+        passed = sign_changes(self._grid, {"load": whole.less(half)}, beyond, 2 * half)["load"]
 
         def high(pieces: Pieces) -> Array:
             middle = pieces.within[:, :1]

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from kurbel.numerics.grid import Grid
-from kurbel.numerics.jet import Jet
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.state import State
 
@@ -21,8 +20,7 @@ class Assembled:
         new = (before.low[there] != grid.low) | (before.high[there] != grid.high)
         # of each piece the place among those of the coarser grid with the new ones after them
         self._place = np.where(new, len(before.low) + np.cumsum(new) - 1, there)
-        self.phi = grid.degrees
-        self._coarser, self._finer = coarser, drive.on(grid, np.flatnonzero(new))
+        self._coarser, self._finer = coarser, drive.on(grid.part(new))
         self._found: dict[str, Any] = {}
 
     def __getattr__(self, name: str) -> Any:
@@ -35,6 +33,4 @@ class Assembled:
     def _joined(self, coarser: Any, finer: Any) -> Any:
         if coarser is None:
             return None
-        if isinstance(coarser, Jet):
-            return Jet(self._joined(coarser.value, finer.value), self._joined(coarser.slope, finer.slope))
         return np.concatenate((coarser.T, finer.T), axis=1).take(self._place, axis=1).T

@@ -1,7 +1,5 @@
 """The cycle of one cylinder, searched: extremes of every column, changes of sign, and the angles of a value."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from functools import cached_property
@@ -9,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
@@ -28,11 +27,10 @@ from kurbel.solver.cylinder.assembled import Assembled
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
     from kurbel.numerics.where import Where
-    from kurbel.solver.cylinder.state import State
 
 
 _SURE = 4.0
@@ -49,17 +47,18 @@ class Quantities:
 
     def __call__(self, degrees: Array, within: Array | Inside) -> dict[str, Sampled]:
         state = self.drive.jets_at(degrees, within)
-        return self.of_state(state if self.rubs else state.unrubbed)
+        state = state if self.rubs else state.unrubbed
+        return {name: Sampled.of(getattr(state, name), degrees.shape) for name in self.names}
 
     def inside(self, within: Array) -> Inside:
         """Return what all angles in the pieces share that hold these."""
         return Inside(self.drive, CrankAngle.of(within))
 
-    def of_state(self, state: Any) -> dict[str, Sampled]:
-        """Return them in a state."""
-        return {name: Sampled.of(getattr(state, name), state.phi.shape) for name in self.names}
+    def on(self, grid: Grid, state: State | Assembled) -> dict[str, Sampled]:
+        """Return them in the state at the nodes of a grid."""
+        return {name: Sampled.on(grid, getattr(state, name)) for name in self.names}
 
-    def of(self, variant: Indices) -> Quantities:
+    def of(self, variant: Indices) -> "Quantities":
         """Return the same of these variants (n,)."""
         return Quantities(self.drive.taken(variant), self.names, self.rubs)
 
@@ -90,7 +89,7 @@ class Searched:
         pins = self.drive.pin_friction
         if self.drive.rubs:
             sense = self.quantities("guide_sense")
-            sampled = sense.of_state(samples)
+            sampled = sense.on(grid, samples)
             if pins:
                 # what makes pins rub bends where N changes sides without them; only beside that true turns are exact
                 without = Quantities(self.drive, ("guide_sense",), rubs=False)
@@ -120,16 +119,16 @@ class Searched:
     def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
         """Return the extremes in SI of these columns, as far as there are any."""
         asked = self.quantities(*(name for name in columns if getattr(self.samples, name) is not None))
-        return extremes(self.grid, asked.of_state(self.samples), asked) if asked.names else {}
+        return extremes(self.grid, asked.on(self.grid, self.samples), asked) if asked.names else {}
 
     def _whole(self, column: str) -> Curve:
         asked = self.quantities(column)
-        return curves(self.grid, asked.of_state(self.samples), asked)[column]
+        return curves(self.grid, asked.on(self.grid, self.samples), asked)[column]
 
     def _changes(self, column: str) -> Any:
         """The crank angles in degrees at which a column takes the other sign."""
         asked = self.quantities(column)
-        return zeros(self.grid, asked.of_state(self.samples), asked)[column]
+        return zeros(self.grid, asked.on(self.grid, self.samples), asked)[column]
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
@@ -153,14 +152,14 @@ class Searched:
         high, low = zip(*found, strict=True)
         return Extremes(largest(*high), smallest(*low))
 
-    def angles_where(self, column: str, value: float) -> Where | None:
+    def angles_where(self, column: str, value: float) -> "Where | None":
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         if getattr(self.samples, column) is None:
             return None
         from kurbel.numerics.where import where
 
         asked = self.quantities(column)
-        samples = asked.of_state(self.samples)[column]
+        samples = asked.on(self.grid, self.samples)[column]
         return where(self.grid, samples, lambda *place: asked(*place)[column], value)
 
     @cached_property
