@@ -82,7 +82,7 @@ class Progress:
         self._late = False
         self._timer: Timer | None = None
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> "Progress":
         if sys.stderr is not None and sys.stderr.isatty():
             from threading import Timer
 
