@@ -49,7 +49,7 @@ def size_notes(cylinder: Cylinder) -> Iterable[str]:
             yield f"a mass of {show(moving, 'mass')} in moving parts {_ASK}"
 
 
-def exponent_notes(piston: Piston) -> Iterable[str]:
+def exponent_notes(piston: "Piston") -> Iterable[str]:
     """Yield a note on each exponent of a card by which no gas expands or is compressed."""
     least, most = _EXPONENTS
     ends = (piston.indicator.head_end, piston.indicator.crank_end) if piston.indicator else ()
