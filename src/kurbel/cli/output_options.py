@@ -1,5 +1,6 @@
 """Options shared by the commands that print a table, and what they mean."""
 
+import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import wraps
@@ -161,12 +162,17 @@ _SUFFIXES = {
     ".html": "html",
     ".tex": "latex",
 }
+_OF_NO_FORMAT = ("", ".txt", ".yaml", ".yml")
+"""Suffixes that a table may have, and those of machine files, which are refused where they are read."""
 
 
 def format_of(asked: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES) -> str:
     """Return the format that is asked for, or that of the suffix of the file; UsageError where the two contradict."""
-    dot = (file_name or "").rfind(".")
-    of_suffix = suffixes.get(file_name[dot:].lower()) if file_name else None
+    suffix = os.path.splitext(file_name or "")[1].lower()
+    of_suffix = suffixes.get(suffix)
+    if not (asked or of_suffix or suffix in _OF_NO_FORMAT):
+        known = ", ".join(suffixes)
+        raise click.UsageError(f"--output {file_name}: no format has this suffix; write {known}, .txt, or --format.")
     if asked and of_suffix and asked != of_suffix:
         raise click.UsageError(
             f"--format {asked} contradicts the name {file_name}, which says {of_suffix}; change one of them."
