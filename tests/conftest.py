@@ -41,6 +41,19 @@ def pytest_collection_finish() -> None:
 
 
 @pytest.fixture
+def solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands share the results of a machine: where they tell them in many ways, to solve it anew tells nothing new.
+
+    Not for machines with traces, whose files may change.
+    """
+    from kurbel.cli.output_options import Asked
+    from kurbel.machine_file import source
+    from representative import case_from
+
+    monkeypatch.setattr(Asked, "case", lambda asked: case_from(source.read(asked.file), asked.overrides))
+
+
+@pytest.fixture
 def kept(request: pytest.FixtureRequest) -> Callable[[Path, str], str]:
     """Return the text that is kept in a file; with --rewrite it is first replaced by the one that is printed now."""
 

@@ -222,7 +222,11 @@ def turning(random: Random) -> Keys:
         inertia = {"mass": size(random, 300, "kg", 2.5), "radius_of_gyration": size(random, 1, "m")}
     wish = {"fluctuation": number(random, 0.001, 0.2)}
     flywheel = inertia if random.random() < 0.5 else wish if random.random() < 0.7 else inertia | wish
-    rim: Keys = {"mean_diameter": size(random, 2, "m")} | maybe(random, 0.5, {"allowable_tension": "5 N/mm2"})
+    rim: Keys = (
+        {"mean_diameter": size(random, 2, "m")}
+        | maybe(random, 0.3, {"depth": size(random, 0.2, "m")})
+        | maybe(random, 0.5, {"allowable_tension": "5 N/mm2"})
+    )
     flywheel |= maybe(random, 0.4, {"rim": rim})
     loads: list[Keys] = [{"power_law": number(random, -0.5, 4)}, {"slip": 10 ** random.uniform(-9, 0)}]
     coupling = {

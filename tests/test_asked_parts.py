@@ -12,6 +12,7 @@ from click.testing import CliRunner, Result
 from kurbel.cli import kurbel
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 FOUR = str(Path(__file__).parent.parent / "configs" / "four-cylinder-generator.yaml")
 GAS_ENGINE = str(Path(__file__).parent.parent / "configs" / "gas-engine.yaml")
 

@@ -11,6 +11,7 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parent.parent / "configs"
 V90 = """
 speed: 600 rpm
@@ -72,6 +73,18 @@ def test_orders_as_csv() -> None:
     assert [row.split(",")[0] for row in rows].count("orders") == 6
 
 
+def test_of_thousands_of_orders_the_lowest_are_told_and_the_rest_together() -> None:
+    short = "{speed: 600 rpm, crank: 50 mm, rod_ratio: 1.00001, axial_position: 0 mm, masses: {reciprocating: 2 kg}}"
+    result = run(short, "--orders", "--width", "200")
+    rows = [line.split() for line in result.stdout.splitlines()]
+    assert [row[0] for row in rows if len(row) > 4 and row[0].isdigit()][:24] == ["1", *map(str, range(2, 48, 2))]
+    (note,) = (line for line in result.stdout.splitlines() if "more orders follow, n = 48 to" in line)
+    assert "of the force they are at most " in note
+    assert note.endswith(" kN, of the moment 0 N m, together.")
+    assert len(result.stdout.splitlines()) < 100
+    assert "more orders" not in run(short.replace("1.00001", "3"), "--orders").stdout
+
+
 def test_a_column_by_name() -> None:
     result = run(V90, "--columns", "F_free", "--angles", "0,90", "-f", "csv")
     assert result.stdout.splitlines()[0] == "phi_deg,F_free_N"
@@ -124,6 +137,16 @@ def test_without_masses_there_is_nothing_to_balance(text: str, message: str) -> 
     result = run(text)
     assert result.exit_code == 2
     assert message in result.stderr
+
+
+def test_the_counterweights_say_what_they_hold() -> None:
+    """Of one crank of 50 mm with 2 kg to and fro and 3 kg on the pin the first holds (3 + 2/2) · 0.05 kg m."""
+    one = "speed: 600 rpm\ncrank: 50 mm\nrod_ratio: 4\nmasses: {reciprocating: 2 kg, rotating: 3 kg}\n"
+    told = run(one + "counterweights: [{product: 1 kg m, angle: 0 deg}, {product: 1 kg m, angle: 180 deg}]\n").stdout
+    best = next(line for line in told.splitlines() if line.startswith("  u_1 "))
+    assert best.split()[1:3] == ["0.2000", "kg"]
+    assert "Counterweight against what rotates and half of what reciprocates" in best
+    assert "Vector sum of the given counterweights" in told
 
 
 def test_a_case_answers_by_name() -> None:

@@ -13,6 +13,7 @@ from click.testing import CliRunner, Result
 from kurbel.cli import kurbel
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parents[1] / "configs"
 ENGINE = (CONFIGS / "gas-engine.yaml").read_text("utf-8")
 THREE = """

@@ -12,6 +12,7 @@ from kurbel.cli import kurbel
 from kurbel.render.charset import width
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parent.parent / "configs"
 FOUR = str(CONFIGS / "four-cylinder-generator.yaml")
 EQUAL = """

@@ -176,7 +176,7 @@ def test_an_absent_column_is_told_with_those_that_are_there() -> None:
     )
     assert result.exit_code == 2
     assert (
-        "'N' is left out for this machine, which has phi, z, x, theta, P_ram, P, F_pin, D, T, M"
+        "'N' is left out for this machine, which has phi (φ), z, x, theta (θ), P_ram (P_r), P, F_pin (F_z), D, T, M"
         in result.stderr.replace("\n", " ")
     )
 

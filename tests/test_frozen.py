@@ -30,7 +30,7 @@ def test_a_record_cannot_be_changed(change: Any) -> None:
     ],
 )
 def test_values_that_are_missing_doubled_or_unknown_are_refused(values: Any, named: Any) -> None:
-    with pytest.raises(TypeError, match=r"^SliderCrank\(.*, offset: 'float' = 0.0\) does not take"):
+    with pytest.raises(TypeError, match=r"^SliderCrank\(.*, offset: float = 0.0\) does not take"):
         SliderCrank(*values, **named)
 
 

@@ -242,8 +242,9 @@ def test_columns_in_the_order_asked_for() -> None:
 @pytest.mark.parametrize(
     ("column", "message"),
     [
-        ("P", "'P' is no column of kurbel motion (this machine has phi, z, psi, x, x_book; other machines also c, "),
+        ("P", "'P' is no column of kurbel motion (this machine has phi (φ), z, psi (ψ), x, x_book (x_0); other "),
         ("theta", "'theta' is left out for this machine"),
+        ("c_m", "'c_m' is a key value and no column: a line below the table, --key-values | grep 'c_m '"),
         ("thetta", "did you mean 'theta'?"),
     ],
 )

@@ -13,6 +13,7 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 ENGINE = (Path(__file__).parents[1] / "configs" / "gas-engine.yaml").read_text("utf-8")
 EXACT_ROD = ENGINE.replace("share: 0.4", "center_of_gravity: 900 mm, inertia: 60 kg m2")
 PLACES = [

@@ -15,6 +15,7 @@ from kurbel.machine_file import load
 from kurbel.solver.case import Case
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parent.parent / "configs"
 J = 5.0
 HARMONIC = f"""

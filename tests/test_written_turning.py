@@ -106,6 +106,58 @@ def test_the_rim_of_the_wanted_flywheel() -> None:
     assert "the rim bears a hoop stress of 2.55" in " ".join(weak.partition("Warnings")[2].split())
 
 
+@pytest.mark.parametrize(
+    ("sizes", "inertia"),
+    [
+        # a ring is a disc less a disc, m r²/2 each
+        (
+            "outer_diameter: 8 ft, inner_diameter: 7 ft, width: 12 in",
+            7250 * 0.3048 * math.pi * (1.2192**4 - 1.0668**4) / 2,
+        ),
+        (
+            "mean_diameter: 90 in, depth: 6 in, width: 12 in, density: 7.85 t/m3",
+            7850 * 0.3048 * math.pi * (1.2192**4 - 1.0668**4) / 2,
+        ),
+        ("outer_diameter: 8 ft, inner_diameter: 7 ft, mass: 3 t", 3000 * (1.2192**2 + 1.0668**2) / 2),
+        ("outer_diameter: 2 m, inner_diameter: 0 m, mass: 3 t", 3000 / 2),
+    ],
+)
+def test_a_rim_of_which_the_sizes_are_known(sizes: str, inertia: float) -> None:
+    text = DIAGRAM + f"flywheel: {{rim: {{{sizes}}}}}\n"
+    turning = solve(loads(text)).flywheel
+    found = turning.J
+    assert found == pytest.approx(inertia, rel=1e-14)
+    assert turning.delta_book == pytest.approx(turning.dE / (inertia * (4 * math.pi) ** 2), rel=1e-14)
+    if "width" in sizes:
+        assert turning.rim_section == pytest.approx(0.1524 * 0.3048, rel=1e-14)
+    printed = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text).stdout
+    assert "arms and hub of the flywheel  J is that of the rim" in printed
+
+
+@pytest.mark.parametrize(
+    ("rim", "says"),
+    [
+        ("outer_diameter: 7 ft, inner_diameter: 8 ft, width: 1 ft", "inner_diameter: 2438.4 mm leaves no rim inside"),
+        ("outer_diameter: 7 ft, inner_diameter: 7 ft, width: 1 ft", "inner_diameter: 2133.6 mm leaves no rim inside"),
+        ("mean_diameter: 2 m, depth: 3 m, width: 2 m", "rim.depth: 3000 mm is more than the mean diameter (2000 mm)"),
+        ("mean_diameter: 2 m, width: 3 m", "rim.width: tells no moment of inertia without the depth of the rim"),
+        ("outer_diameter: 3 m, width: 3 m", "'outer_diameter' needs 'inner_diameter' beside it"),
+        ("outer_diameter: 3 m, inner_diameter: 2 m, width: 1 m, mass: 1 t", "'width' and 'mass' say the same thing"),
+        ("mean_diameter: 3 m, outer_diameter: 3 m, inner_diameter: 2 m", "'mean_diameter' and 'outer_diameter' say"),
+        ("mean_diameter: 2 m", "a flywheel needs 'inertia', 'gd2', 'mass', a 'rim' with its sizes, or the wanted"),
+    ],
+)
+def test_sizes_of_a_rim_that_tell_none(rim: str, says: str) -> None:
+    assert says in refused(DIAGRAM + f"flywheel: {{rim: {{{rim}}}}}\n")
+
+
+@pytest.mark.parametrize("given", ["inertia: 30 kg m2", "gd2: 30 kg m2", "mass: 3 t, radius_of_gyration: 1 m"])
+def test_a_moment_of_inertia_beside_the_sizes_of_the_rim(given: str) -> None:
+    rim = "rim: {outer_diameter: 3 m, inner_diameter: 2 m, width: 1 m}"
+    message = refused(DIAGRAM + f"flywheel: {{{given}, {rim}}}\n")
+    assert "rim.width: the sizes of the rim tell the moment of inertia, which is given besides" in message
+
+
 def test_the_rim_of_a_given_flywheel_of_cast_iron() -> None:
     text = DIAGRAM.replace("speed: 120 rpm\n", "") + "flywheel: {inertia: 500 kg m2, rim: {mean_diameter: 2 m}}\n"
     turning = solve(loads(text)).flywheel

@@ -17,8 +17,6 @@
 Values are SI floats and arrays; crank angles are in degrees. Names below are imported when they are first used.
 """
 
-from __future__ import annotations
-
 __version__ = "0.1.0"
 
 __all__ = [
@@ -68,7 +66,7 @@ _HOMES = {
 """Public name -> module; nothing is imported before it is used, so that the command line starts quickly."""
 
 
-def solve(machine: Machine) -> Case:
+def solve(machine: "Machine") -> "Case":
     """Return the machine with its results, each computed when it is asked for.
 
     machine: from `load`, `loads`, or built in Python. Raises NoSolutionError, when a result is asked for that does not
@@ -79,7 +77,7 @@ def solve(machine: Machine) -> Case:
     return Case(machine)
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
     if name not in _HOMES:
         raise AttributeError(f"module 'kurbel' has no attribute '{name}'")
     from importlib import import_module

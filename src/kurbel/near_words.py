@@ -1,7 +1,5 @@
 """What was probably meant by a misspelt word."""
 
-from __future__ import annotations
-
 _OTHERWISE = 0.85
 _LONGEST = 40  # characters of a word worth comparing
 

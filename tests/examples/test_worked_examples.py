@@ -110,18 +110,24 @@ def expected(row: dict[str, Any]) -> tuple[Any, Any]:
     return [factor * one + row.get("plus", 0) for one in figures], [abs(factor) * one for one in last]
 
 
-@pytest.mark.parametrize("row", ASKED, ids=lambda row: f"{row['file']}: {row['of']}")
-def test_it_answers(row: dict[str, Any]) -> None:
+@pytest.mark.parametrize("file", dict.fromkeys(row["file"] for row in ASKED))
+def test_it_answers(file: str) -> None:
+    for row in ASKED:
+        if row["file"] == file:
+            check(row)
+
+
+def check(row: dict[str, Any]) -> None:
     answered = told(row)
     if "back" in row:
         assert str(row.get("strict", row["exact"])) in (FOLDER / f"{row['file']}.yaml").read_text(encoding="utf-8")
-        assert answered == pytest.approx(row["back"], rel=1e-11, abs=1e-7)
+        assert answered == pytest.approx(row["back"], rel=1e-11, abs=1e-7), row["of"]
         return
     answered = answered if isinstance(answered, list) else [answered]
     wanted, unit_of_last = expected(row)
-    assert len(answered) == len(wanted)
+    assert len(answered) == len(wanted), row["of"]
     for value, figure, last in zip(answered, wanted, unit_of_last):
-        assert value == pytest.approx(figure, rel=0, abs=0.51 * last)
+        assert value == pytest.approx(figure, rel=0, abs=0.51 * last), row["of"]
 
 
 def test_every_figure_has_an_answer_or_a_reason() -> None:

@@ -24,10 +24,9 @@ def _message(name: str, monkeypatch: pytest.MonkeyPatch) -> str:
     return str(caught.value)
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_message(name: str, monkeypatch: pytest.MonkeyPatch, kept: Callable[[Path, str], str]) -> None:
-    message = _message(name, monkeypatch) + "\n"
-    assert message == kept(FOLDER / f"{name}.expected", message)
+def test_messages(monkeypatch: pytest.MonkeyPatch, kept: Callable[[Path, str], str]) -> None:
+    told = {name: _message(name, monkeypatch) + "\n" for name in FILES}
+    assert told == {name: kept(FOLDER / f"{name}.expected", message) for name, message in told.items()}
 
 
 @pytest.mark.parametrize("name", few(FILES, ["deep_nesting", *FILES[::8]]))
@@ -116,7 +115,7 @@ def test_columns_of_this_machine_are_told_first() -> None:
     file = str(Path(__file__).parents[2] / "configs" / "scotch-yoke-pump.yaml")
     told = CliRunner().invoke(kurbel, ["motion", file, "--columns", "theeta"]).stderr
     assert (
-        "'theeta' is no column of kurbel motion; did you mean 'theta'? (this machine has phi, z, x, c, b, c_block; "
+        "'theeta' is no column of kurbel motion; did you mean 'theta'? (this machine has phi (φ), z, x, c, b, c_block"
         in told
     )
     for command in (["motion"], ["stress", "--places"]):

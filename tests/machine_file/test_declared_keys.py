@@ -17,11 +17,9 @@ from kurbel.machine.masses import ConnectingRod
 from kurbel.machine.trace import Trace
 from kurbel.machine_file import loads
 from kurbel.machine_file.reader import ROOT
-from kurbel.machine_file.schema import json_schema
 from kurbel.mechanisms.slider_crank import SliderCrank
 from representative import law_of_each
-
-whole_schema = cache(json_schema)
+from schemas import whole_schema
 
 
 def all_records() -> Iterator[Record]:
@@ -44,10 +42,14 @@ def declared(field: str) -> list[Any]:
 
 def allowed_by_schema(record: Record, *names: str) -> bool:
     """Whether the rules between keys let these stand together, whatever their values."""
-    properties: dict[str, Any] = {}
+    return rules_of(record).is_valid(dict.fromkeys(names, 1))
+
+
+@cache
+def rules_of(record: Record) -> jsonschema.Draft7Validator:
     rules: list[dict[str, Any]] = []
-    record.describe_all(properties, rules, whole_schema()["definitions"])
-    return jsonschema.Draft7Validator({"allOf": rules}).is_valid(dict.fromkeys(names, 1))
+    record.describe_all({}, rules, whole_schema()["definitions"])
+    return jsonschema.Draft7Validator({"allOf": rules})
 
 
 @law_of_each(declared("instead"))

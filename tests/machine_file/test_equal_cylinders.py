@@ -11,7 +11,7 @@ import yaml
 from kurbel.errors import MachineFileError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine_file import loads
-from kurbel.machine_file.schema import json_schema
+from schemas import whole_schema
 
 EACH = "each: {stroke: 80 mm, rod_ratio: 4}"
 FOUR = """\
@@ -172,7 +172,7 @@ def test_what_is_wrong_is_told_once(text: str, message: str) -> None:
 
 
 def test_the_schema_takes_them() -> None:
-    validator = jsonschema.Draft7Validator(json_schema())
+    validator = jsonschema.Draft7Validator(whole_schema())
     for text in (
         FOUR,
         "cylinders:\n- {mechanism: four-bar, crank: 1 m, coupler: 4 m, rocker: 4 m, frame: 4 m}\n- {like: cylinder 1}",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from functools import cache
 from typing import Any
 
 import pytest
@@ -13,11 +12,9 @@ from good_machines import ALL
 from kurbel.declared.unit_systems import SI
 from kurbel.declared.units import example, parse_quantity, unit_names
 from kurbel.errors import UnitError
-from kurbel.machine_file.schema import json_schema
+from schemas import whole_schema
 
 jsonschema = pytest.importorskip("jsonschema")
-
-whole_schema = cache(json_schema)
 
 
 @pytest.fixture(scope="module")

@@ -136,7 +136,7 @@ def test_latin_1_has_line_and_column() -> None:
 
 
 def test_column_counts_characters_not_bytes() -> None:
-    assert refused("{name: äöüß, crank: 4}").startswith("<text>:1:21: crank:")
+    assert refused("{name: äöüß, crank: 4, rod_ratio: 5}").startswith("<text>:1:21: crank:")
 
 
 def test_unusual_line_ends_count_as_yaml_counts_them() -> None:

@@ -7,6 +7,7 @@ from itertools import combinations, pairwise
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from drawn import drawn, ids_of, named
 
@@ -18,7 +19,7 @@ from kurbel.render.html import INK as PAGE_INK
 from kurbel.render.html import PAPER as PAGE_PAPER
 from kurbel.render.html import SHADE as PAGE_SHADE
 from kurbel.render.pictures.drawing import draw_file
-from kurbel.render.pictures.labels import CHARACTER, Box
+from kurbel.render.pictures.labels import CHARACTER, LINE, Box, Taken
 from kurbel.render.pictures.layout import scene
 from kurbel.render.pictures.scene import Text, thinned
 from kurbel.render.pictures.style import FAINT, GAIN, INK, LOOKS, LOSS, PAPER, css
@@ -240,3 +241,37 @@ def test_names_along_an_axis_stand_inside_and_apart(name: str) -> None:
     assert spans[0][0] >= 0
     assert spans[-1][1] <= laid.width
     assert all(before[1] <= after[0] for before, after in pairwise(spans))
+
+
+def test_labels_of_a_steep_bundle_stand_clear_of_it_and_lines_lead_to_them() -> None:
+    """Five marks within 15° of the left edge: their labels once stood on the curves, and one on the next."""
+    frame = Box(0.0, 0.0, 700.0, 250.0)
+    steep = np.array([(x, 30 * k + 4 * x) for k in range(5) for x in np.linspace(0, 40, 80)])
+    taken = Taken(frame, steep)
+    text = "σ_pin,max 51.24 N/mm², 1.65°"
+    marks = [(2.0 + 3 * k, 30.0 * k + 8 + 12 * k) for k in range(5)]
+    for x, y in marks:
+        taken.take(Box(x - 4, y - 4, x + 4, y + 4))
+    boxes, pointers = [], []
+    for x, y in marks:
+        found = taken.pointed(x, y, text, upward=True)
+        assert found
+        (left, base), pointer = found
+        boxes.append(Box(left, base - LINE + 2, left + CHARACTER * len(text), base + 2))
+        pointers.append(pointer)
+        inside = (steep > (boxes[-1].left, boxes[-1].top)) & (steep < (boxes[-1].right, boxes[-1].bottom))
+        assert inside.all(axis=1).sum() <= 6
+        assert not pointer or pointer[0] == (x, y)
+    assert any(pointers)
+    assert not any(one.meets(other) for k, one in enumerate(boxes) for other in boxes[:k])
+    assert not any(box.cuts(*line) for line in pointers if line for box in boxes)
+
+
+def test_no_label_of_the_throw_stresses_is_left_out_or_stands_on_another() -> None:
+    texts = [one for one in scene(drawn("gas-engine", "throw-stress")[0], Look()).items if isinstance(one, Text)]
+    labels = [one for one in texts if one.halo]
+    assert sorted(one.text.split("_max")[0].split(",max")[0] for one in labels) == sorted(
+        ["σ_pin", "σ_w,A", "σ_w,B", "σ_j,A", "σ_j,B"]
+    )
+    boxes = [Box(one.x, one.y - 9, one.x + CHARACTER * len(one.text), one.y + 2) for one in labels]
+    assert not any(one.meets(other) for k, one in enumerate(boxes) for other in boxes[:k])

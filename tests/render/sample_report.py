@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+from unicodedata import category
+
+from hypothesis import strategies as st
+
 from kurbel.report.tables import Column, KeyValue, LeftOut, Part, Report
+
+
+def texts(*without: str, **sizes: Any) -> st.SearchStrategy[str]:
+    """Any text without characters of these categories; for `st.text` a table of all Unicode is made, for seconds."""
+    codes = st.integers(0, 0x2FF) | st.integers(0x300, 0xD7FF) | st.integers(0xE000, 0x10FFFF)
+    return st.lists(codes.map(chr).filter(lambda one: category(one) not in without), **sizes).map("".join)
+
 
 PHI = Column("phi", "φ", "phi", "deg", tuple(range(0, 361, 30)))
 

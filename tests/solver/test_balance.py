@@ -110,6 +110,21 @@ def test_orders_of_one_cylinder(ratio: float, series: dict[int, float]) -> None:
     assert not force.forward[2::2].any()
 
 
+def test_a_rod_hardly_longer_than_the_crank_has_few_orders_that_are_told() -> None:
+    """L/R = 1.00001: what is told and the rest make up the whole, which is −1 + λ in the outer dead centre."""
+    free = balance_of(single(1.00001)).free
+    assert free.orders == (1, *range(2, 48, 2))
+    assert free.higher[0] == 48
+    assert len(free.higher) > 1000
+    # in the outer dead centre the even orders have alternating signs; b/(R ω²) there is −1 + λ by the closed formula
+    signs = (-1.0) ** np.arange(1, len(free.force.forward) + 1)
+    whole = 2 * float((free.force.forward.real * signs).sum()) / 0.1
+    assert whole == pytest.approx(-1 + 1 / 1.00001, abs=1e-11)
+    sizes = np.abs(free.force.forward)
+    assert free.at_most(free.force) == pytest.approx(2 * (sizes.sum() - sizes[:46].sum()), rel=1e-12)
+    assert balance_of(single(3)).free.higher == ()
+
+
 # against the forces inside
 
 INSIDE = """
@@ -147,6 +162,51 @@ def test_the_rolling_moment_is_the_turning_effort_with_the_other_sign() -> None:
     case = Case(loads(FOUR))
     assert_allclose(case.balance.at(ANGLES).M_roll, -case.flywheel.at(ANGLES).M, rtol=1e-13)
     assert case.balance.rolls_as_it_turns
+
+
+TWO_BANKS = """
+speed: 600 rpm
+cycle: four-stroke
+cylinders:
+  count: COUNT
+  firing_order: ORDER
+  bank_angles: [0 deg, 60 deg]
+  each:
+    crank: 50 mm
+    rod_ratio: 4
+    bore: 80 mm
+    masses: {reciprocating: 2 kg}
+    indicator:
+      pressures: absolute
+      head_end: {otto: {intake: 0.95 bar, exhaust: 1.08 bar, peak: 25 at, compression_ratio: 6, exponent: 1.35}}
+"""
+
+
+@pytest.mark.parametrize("count", [6, 14])
+def test_the_rolling_moment_of_equal_cylinders_comes_back_with_each_of_them(count: int) -> None:
+    """Its extremes are sought over 720°/k only, and are those of the whole cycle, which the turning effort is asked."""
+    case = Case(loads(TWO_BANKS.replace("COUNT", str(count)).replace("ORDER", "-".join(map(str, range(1, count + 1))))))
+    roll, effort = case.balance, case.flywheel
+    assert roll.roll is not None
+    assert roll.roll.repeats == count
+    assert roll.M_roll_max.value == pytest.approx(-effort.M_min.value, rel=1e-12)
+    assert roll.M_roll_min.value == pytest.approx(-effort.M_max.value, rel=1e-12)
+    assert roll.M_roll_max.degrees == pytest.approx(effort.M_min.degrees, abs=1e-6)
+    angles = np.linspace(0.0, 720.0, 8 * count, endpoint=False)
+    assert_allclose(roll.at(angles).M_roll, roll.at(angles + 720 / count).M_roll, rtol=0, atol=1e-9)
+
+
+def test_cylinders_that_differ_come_back_as_often_as_every_group_does() -> None:
+    """Three equal cranks and three others among them, unevenly: three times in a turn; with one heavier crank, once."""
+    light, heavy = "rod_ratio: 4, masses: {other: 2 kg}", "rod_ratio: 5, masses: {other: 3 kg}"
+    cranks = [(light, 0), (light, 120), (light, 240), (heavy, 17), (heavy, 137), (heavy, 257)]
+    for given, times in ((cranks, 3), (cranks[:4], 1)):
+        each = (f"{{name: {late}, crank: 50 mm, crank_position: {late} deg, {what}}}" for what, late in given)
+        found = balance_of(f"{{speed: 600 rpm, cylinders: [{', '.join(each)}]}}")
+        assert found.roll is not None
+        assert found.roll.repeats == times
+        angles = np.linspace(0.0, 360.0, 7201)
+        assert found.M_roll_max.value == pytest.approx(found.at(angles).M_roll.max(), rel=1e-5)
 
 
 def test_no_force_is_left_over_a_turn() -> None:
@@ -446,6 +506,22 @@ def test_the_carriers_alone_have_the_same_smallest_circle(seed: int) -> None:
     circle = smallest_circle(points)
     assert max(abs(one - circle.centre) for one in points) == pytest.approx(circle.radius, rel=1e-12)
     assert smallest_circle(list(circle.carriers)).radius == pytest.approx(circle.radius, rel=1e-12)
+
+
+@pytest.mark.parametrize(("turns", "last"), [(1, 1), (7, 7), (-3, 5)])
+def test_a_length_that_never_changes_but_for_rounding_has_one_summit(turns: int, last: int) -> None:
+    """One circle alone: what its sampled length rises and falls by is rounding."""
+    sizes = np.zeros((2, last), complex)
+    sizes[int(turns < 0), abs(turns) - 1] = 0.3 - 0.7j
+    ((length, degrees),) = Circles(*sizes).summits
+    assert (length, degrees) == (pytest.approx(math.hypot(0.3, 0.7), rel=1e-15), 0.0)
+
+
+def test_an_ellipse_is_longest_where_its_circles_meet() -> None:
+    """e^{iφ} + ½ e^{i(40° − φ)} at 20° and 200°; what stands at 0° is told besides."""
+    found = Circles(np.array([1 + 0j]), np.array([0.5 * unit_vectors(40.0)])).summits
+    assert [one.value for one in found[:2]] == pytest.approx([1.5, 1.5], rel=1e-15)
+    assert sorted(one.degrees for one in found) == pytest.approx([0.0, 20.0, 200.0], abs=1e-12)
 
 
 def random_circles(seed: int) -> Circles:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
 
+from kurbel import load
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
@@ -28,6 +30,8 @@ from kurbel.solver.turning.machine_effort import dead_centre_force
 from machines import STEAM_CARD, constant_pressure
 from representative import few
 from turning_machines import of_points
+
+CONFIGS = Path(__file__).parent.parent.parent / "configs"
 
 STEAM = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
 PUMP = Piston(0.285, 0.0, 0.075, Indicator(constant_pressure(4e5), constant_pressure(4e5)), "pump")
@@ -447,3 +451,18 @@ def test_the_work_of_very_many_points_is_the_area_under_them() -> None:
     points = [(360.0 * i / 40_000, 1000 + 500 * math.sin(i * 6.0 / 40_000) + (i * 7919 % 13)) for i in range(40_001)]
     area = math.fsum((b - a) * (m + n) / 2 for (a, m), (b, n) in pairwise(points))
     assert of_points(points).work_shaft == pytest.approx(math.radians(area), rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("name", "angles"), [("marine-diesel", [0, 60, 120, 180, 240, 660]), ("radial-three", [0, 720])]
+)
+def test_the_inertia_of_equal_cylinders_that_cancels_is_zero(name: str, angles: list[int]) -> None:
+    """Six and three cranks at equal distances: by symmetry nothing is left in the dead centre of any of them."""
+    case = Case(load(CONFIGS / f"{name}.yaml"))
+    assert not np.abs(case.flywheel.at(np.array(angles, float)).T_inertia).any()
+
+
+def test_excess_work_that_comes_back_is_zero_each_time() -> None:
+    """Inertia of four cranks at 180°: E is 0 each half turn, and printed 0.0 where rounding was left."""
+    work = Case(load(CONFIGS / "four-in-line.yaml")).flywheel.at(np.arange(0.0, 721.0, 180.0)).E
+    assert work.tolist() == [0.0] * 5

@@ -317,7 +317,7 @@ def test_a_damping_is_a_torque_over_an_angular_velocity() -> None:
 def test_a_column_that_is_not_there_is_told_with_those_that_are() -> None:
     answer = run(ENGINE + "flywheel: {inertia: 9000 kg m2}\n", "--columns", "M_coupling")
     assert answer.exit_code == 2
-    assert "'M_coupling' is left out for this machine, which has phi, T, T_inertia, M, E, omega" in answer.stderr
+    assert "'M_coupling' is left out for this machine, which has phi (φ), T, T_inertia (T_b), M, E" in answer.stderr
 
 
 def test_an_effort_beyond_all_speeds_is_refused_by_name() -> None:

@@ -3,8 +3,6 @@
 All functions work in the current decimal context; `precise` sets one. Nothing here comes from kurbel's own formulas.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from decimal import Decimal, getcontext, localcontext

@@ -3,8 +3,6 @@
 Angles are in degrees, all else in SI; the results are Decimals. Each function computes in the current decimal context.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from fractions import Fraction

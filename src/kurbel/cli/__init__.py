@@ -4,8 +4,6 @@ At import only click is loaded; a command module is imported when it is called, 
 its function.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import warnings
@@ -193,7 +191,7 @@ def _pretty(error: MachineFileError) -> str:
     return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_charset().text, width)
 
 
-def _stderr_charset() -> Charset:
+def _stderr_charset() -> "Charset":
     from kurbel.render.charset import Charset
 
     return Charset(getattr(sys.stderr, "encoding", None) or "utf-8")

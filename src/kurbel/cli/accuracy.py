@@ -1,7 +1,5 @@
 """`kurbel accuracy`: error against run time, and the check on stiff and extreme cases."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 import click
@@ -51,7 +49,7 @@ def accuracy(
     return 0
 
 
-def _uncertain(machine: Machine | None) -> tuple[Difference, ...]:
+def _uncertain(machine: "Machine | None") -> "tuple[Difference, ...]":
     if not (machine and machine.uncertainty):
         return ()
     from kurbel.designs.uncertainty import data_uncertainty

@@ -1,7 +1,5 @@
 """`kurbel balance`: free forces and moments of the whole machine, and the weights against them."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.output_options import Asked, machine_table

@@ -1,7 +1,5 @@
 """`kurbel bearings`: loads on crank pins, crosshead pins and main bearings."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.output_options import Asked, machine_table

@@ -1,7 +1,5 @@
 """`kurbel check`: reads a machine, says what will be computed, and holds it against its limits."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 import click
@@ -51,7 +49,7 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
     return BROKEN if result.broken else DONE
 
 
-def _loaded(file: str, overrides: tuple[str, ...], file_name: str | None = None) -> Machine:
+def _loaded(file: str, overrides: tuple[str, ...], file_name: str | None = None) -> "Machine":
     """Read the machine, whose uncertainties are told of what stands in the file."""
     machine = loaded(file, overrides, file_name)
     if machine.uncertainty:

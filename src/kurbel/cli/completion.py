@@ -1,7 +1,5 @@
 """What a shell completes: shipped machines, columns, cylinders, keys; each is looked up when TAB is pressed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import click

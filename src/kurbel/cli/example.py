@@ -1,7 +1,5 @@
 """`kurbel example`: the machines that come with kurbel."""
 
-from __future__ import annotations
-
 import os
 
 import click

@@ -1,7 +1,5 @@
 """`kurbel flywheel`: the turning effort of the whole machine, its flywheel and its speed."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option, where_option

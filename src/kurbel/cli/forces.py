@@ -1,7 +1,5 @@
 """`kurbel forces`: the forces in the crank train of every cylinder."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.output_options import Asked, Spreads, machine_table, row_options, uncertainty_option

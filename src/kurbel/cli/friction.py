@@ -1,7 +1,5 @@
 """`kurbel friction`: a body on an inclined plane."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.output_options import Output, output_options

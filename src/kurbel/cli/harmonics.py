@@ -1,7 +1,5 @@
 """`kurbel harmonics`: the orders of the turning effort."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.output_options import Asked, machine_places, orders_option, speeds_option

@@ -1,7 +1,5 @@
 """`kurbel keys`: what a machine file may hold."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.completion import complete_key

@@ -1,7 +1,5 @@
 """`kurbel motion`: displacement, velocity and acceleration over the crank angle, for any mechanism."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.output_options import Asked, machine_table, row_options

@@ -1,6 +1,7 @@
 """Options shared by the commands that print a table, and what they mean."""
 
-from collections.abc import Callable, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -251,6 +252,10 @@ class Asked(NamedTuple):
         """Return the frame of the report: rows from 0 to `end` degrees, for each of so many parts, or where wanted."""
         from kurbel.report.frame import Frame
 
+        if self.key_values_only and self.columns:
+            raise click.UsageError(
+                "--columns names columns of the table that --key-values leaves out; a key value is a line, grep 'p_i '"
+            )
         angles = self._rows(command, end) or crank_angles(self.step, self.angles, end, parts)
         return Frame(command, angles, self.columns, self.units, "z" if self.over else "", self.compare)
 
@@ -271,16 +276,23 @@ class Asked(NamedTuple):
 
     def write(self, report: Report, case: "Case | None" = None, spreads: Spreads = ()) -> None:
         """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""
-        if self.key_values_only and self.columns:
-            raise click.UsageError("--columns names columns of the table that --key-values leaves out.")
         if self.cylinder is not None:
             report = report.of_cylinder(self.cylinder)
         report = report.key_values_alone() if self.key_values_only else report
         if case and (spreads or case.machine.uncertainty):
             from kurbel.designs.uncertainty import with_uncertainty
 
-            report = with_uncertainty(report, case, spreads, self.units)
+            report = with_uncertainty(report, case, spreads, self.units, _drawn)
         self.output.write(report)
+
+
+def _drawn(parts: Sequence[Any]) -> Iterator[Any]:
+    """Yield the parts of a sample, with a bar on the terminal."""
+    if not sys.stderr.isatty():
+        yield from parts
+        return
+    with click.progressbar(parts, file=sys.stderr, label="drawn machines") as bar:
+        yield from bar
 
 
 def _with_asked(command: Callable[..., None]) -> Callable[..., None]:

@@ -1,7 +1,5 @@
 """`kurbel plot`: the pictures of a machine, in the terminal or in a file."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 import click
@@ -76,7 +74,7 @@ def plot(
         draw_stdout(drawn, look)
 
 
-def _write_list(declared: tuple[Declared, ...]) -> None:
+def _write_list(declared: "tuple[Declared, ...]") -> None:
     from kurbel.render.listing import write_entries
 
     write_entries([(one.id, f"{one.title}. {one.text}") for one in declared])

@@ -1,7 +1,5 @@
 """How the text behind an option is read; what cannot be read is told with the option that it stands behind."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TypeVar
 

@@ -1,7 +1,5 @@
 """`kurbel report`: all that one machine has on one page, or two machines side by side."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time

@@ -1,7 +1,5 @@
 """`kurbel schema`: the JSON Schema of the machine file."""
 
-from __future__ import annotations
-
 import click
 
 

@@ -1,7 +1,5 @@
 """`kurbel stress`: the strength of the crankshaft."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.output_options import Asked, Spreads, machine_table, uncertainty_option

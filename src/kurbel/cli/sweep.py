@@ -3,8 +3,7 @@
 import gc
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -14,7 +13,7 @@ from kurbel.cli.readings import words
 from kurbel.render import Look
 
 if TYPE_CHECKING:
-    from kurbel.designs.chosen import Aim
+    from kurbel.designs.chosen import Aim, Condition
     from kurbel.designs.sweep import Row, Spec, Sweep
     from kurbel.render.sweep_output import SweepOutput
 
@@ -55,7 +54,13 @@ _who_computes = stacked(
     click.option(
         "--shard", metavar="K/N", help="Only this part of the rows; all parts one after another are the whole."
     ),
-    click.option("--jobs", "-j", type=click.IntRange(1), default=1, metavar="N", help="Processes; 1 if not given."),
+    click.option(
+        "--jobs",
+        "-j",
+        type=click.IntRange(1),
+        metavar="N",
+        help="Processes; if not given, of many rows one for each of up to 4 cores.",
+    ),
     click.option(
         "--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster that computes, such as tcp://node:8786."
     ),
@@ -81,8 +86,33 @@ def sweep(**options: Any) -> None:
     asked.run()
 
 
-class _Asked(SimpleNamespace):
+class _Asked(NamedTuple):
     """The options, by the names above."""
+
+    file: str
+    overrides: tuple[str, ...]
+    vary: tuple[str, ...]
+    side_by_side: bool
+    sample: int | None
+    seed: int
+    sobol: bool
+    columns: tuple[str, ...] | None
+    with_angles: bool
+    conditions: tuple[str, ...]
+    sort: str | None
+    top: int | None
+    pareto: tuple[str, ...] | None
+    summary: bool
+    units: str | None
+    format: str | None
+    file_name: str | None
+    decimal: str
+    digits: int | None
+    resume: bool
+    shard: str | None
+    jobs: int | None
+    dask: str | None
+    yes: bool
 
     @property
     def _look(self) -> Look:
@@ -112,7 +142,7 @@ class _Asked(SimpleNamespace):
             (self._written == "parquet" and not named, "Parquet is a file; give --output FILE.parquet."),
             (self.summary and self._written == "parquet", "--summary is a table, csv, json or markdown."),
             (self.summary and self.shard, "--summary is of all rows; leave --shard out."),
-            (self.dask and self.jobs > 1, "--dask and --jobs both say who computes; leave one of them out."),
+            (self.dask and self.jobs, "--dask and --jobs both say who computes; leave one of them out."),
             (self.decimal == "comma" and self._written in ("json", "parquet"), "--decimal comma: not in this format."),
         ):
             if wrong:
@@ -125,18 +155,19 @@ class _Asked(SimpleNamespace):
         from kurbel.designs.chosen import read_aim, read_condition, summary
         from kurbel.designs.plan import MOST_ROWS, shard
         from kurbel.designs.sweep import Sweep
-        from kurbel.designs.workers import rows_of
+        from kurbel.designs.workers import likely_jobs, rows_of
         from kurbel.errors import UsageError
 
         found = Sweep(self._spec())
         if found.rows > MOST_ROWS and not self.yes:
             raise UsageError(f"these are {found.rows} rows; --yes computes more than {MOST_ROWS}")
         rows = shard(self.shard, found.rows) if self.shard else range(found.rows)
-        out = self._out(found, rows)
         conditions = [read_condition(one, found.heads) for one in self.conditions]
         aims = [read_aim(one, found.heads, "--pareto") for one in self.pareto or ()]
         order = read_aim(self.sort, found.heads, "--sort") if self.sort else None
-        told = _counted(rows_of(found, out.rows, self.jobs, self.dask or ""), len(out.rows), self.file_name)
+        out, rows = self._out(found, rows, conditions)
+        jobs = self.jobs or (1 if self.shard else likely_jobs(len(rows)))
+        told = _counted(rows_of(found, rows, jobs, self.dask or ""), len(rows), self.file_name)
         kept: Iterable[Row] = (row for row in told if all(one.holds(row) for one in conditions))
         out.write(summary(kept, found.heads) if self.summary else self._chosen(kept, aims, order))
 
@@ -150,14 +181,22 @@ class _Asked(SimpleNamespace):
         plan = self.vary, self.side_by_side, self.sample, self.seed, self.sobol
         return Spec(source.read(self.file), self.overrides, *plan, self.columns or (), self.with_angles, system)
 
-    def _out(self, found: "Sweep", rows: range) -> "SweepOutput":
+    def _out(self, found: "Sweep", rows: range, conditions: "Sequence[Condition]") -> "tuple[SweepOutput, range]":
+        """Return where the rows go, and those that are not there yet."""
         from kurbel.designs.chosen import summary_heads
         from kurbel.render.sweep_output import SweepOutput, Titles
 
         titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.limited)
         if self.summary:
             titles = Titles(summary_heads(found.heads), row="column", failing=False)
-        return SweepOutput(titles, self._look, self.file_name, rows, self.resume)
+        if not self.resume:
+            return SweepOutput(titles, self._look, self.file_name, headed=rows.start == 0), rows
+        from kurbel.render.kept_rows import KeptRows
+
+        assert self.file_name is not None
+        kept = KeptRows(self.file_name, titles, self._look, rows)
+        headed = rows.start == 0 and not kept.size
+        return SweepOutput(titles, self._look, self.file_name, headed, kept.size), kept.rest(found, conditions)
 
     def _chosen(self, rows: "Iterable[Row]", aims: "Sequence[Aim]", order: "Aim | None") -> "Iterable[Row]":
         from kurbel.designs.chosen import sorted_rows, unbettered

@@ -1,7 +1,5 @@
 """`kurbel table`: Zusammenstellung 112."""
 
-from __future__ import annotations
-
 import math
 
 import click

@@ -1,7 +1,5 @@
 """`kurbel torsion`: torsional vibration of the shaft line."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.output_options import Asked, machine_table, orders_option, speeds_option

@@ -1,7 +1,5 @@
 """`kurbel units`: what units a machine file may use."""
 
-from __future__ import annotations
-
 import click
 
 from kurbel.cli.completion import complete_kind

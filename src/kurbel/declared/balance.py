@@ -1,7 +1,5 @@
 """The quantities of `kurbel balance`: free forces and moments, their orders, and the weights against them."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from kurbel.declared.quantity import Quantity, by_id
@@ -30,8 +28,13 @@ BALANCE_VALUES = (
     _balance("M_free_max_book", "M_f,0,max", "torque", "The same by the acceleration of first order (R 291)"),
     _balance("M_roll_max", "M_roll,max", "torque", "Largest rolling moment on the frame", unless="rolls_as_it_turns"),
     _balance("M_roll_min", "M_roll,min", "torque", "Smallest rolling moment on the frame", unless="rolls_as_it_turns"),
-    _balance("counterweight_given", "u", "unbalance", "Sum of the given counterweights, mass times radius"),
-    _balance("counterweight_best", "u_1", "unbalance", "Counterweight that takes away what turns with the crank"),
+    _balance("counterweight_given", "u", "unbalance", "Vector sum of the given counterweights, mass times radius"),
+    _balance(
+        "counterweight_best",
+        "u_1",
+        "unbalance",
+        "Counterweight against what rotates and half of what reciprocates",
+    ),
     _balance("counterweight_best_angle", "α_1", "angle", "Its direction from throw 1"),
     _balance("counterweight_least", "u_min", "unbalance", "Counterweight that leaves the least largest free force"),
     _balance("counterweight_least_angle", "α_min", "angle", "Its direction from throw 1"),

@@ -1,7 +1,5 @@
 """The quantities of pins and main bearings: their friction, and what `kurbel bearings` tells of each of them."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from kurbel.declared.quantity import Quantity

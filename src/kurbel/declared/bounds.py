@@ -4,8 +4,6 @@ The bounds are far outside of what was ever built and far inside of what floats 
 and no quotient of values from a file leaves their range. They hold for the file, not for records made in Python.
 """
 
-from __future__ import annotations
-
 import math
 
 from kurbel.declared.kinds import KINDS

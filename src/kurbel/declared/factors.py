@@ -1,7 +1,5 @@
 """The quantities of `kurbel table`: the rows of Zusammenstellung 112."""
 
-from __future__ import annotations
-
 from kurbel.declared.quantity import Quantity, by_id
 
 PHI = Quantity(

@@ -1,7 +1,5 @@
 """The quantities of `kurbel flywheel`: turning effort, excess work, flywheel, speed line, coupling."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from kurbel.declared.quantity import Quantity
@@ -50,7 +48,7 @@ FLYWHEEL_VALUES = (
     _flywheel("GD2", "GD²", "gd2", "Old form of the moment of inertia, 4gJ as a weight times an area", "GD2"),
     _flywheel("J_needed", "J_δ", "inertia", "Flywheel for the wanted δ, ΔE/(δ ω²)", unless="is_the_needed"),
     _flywheel("GD2_needed", "GD²_δ", "gd2", "The same as GD² = 4gJ", "GD2_delta", unless="is_the_needed"),
-    _flywheel("rim_section", "A_K", "area", "Section of the rim for the wanted δ, or for J: 4 J/(π ρ D³)"),
+    _flywheel("rim_section", "A_K", "area", "Section of the rim for the wanted δ, or for J: 4 J/(π ρ D (D² + h²))"),
     _flywheel("rim_speed", "v_K", "velocity", "Speed of the middle of the rim"),
     _flywheel("rim_stress", "σ_K", "stress", "Hoop stress of the rim, ρ v²"),
     _flywheel("J_exact", "J_δ,ω", "inertia", "Flywheel with which δ of the speed line is the wanted one"),

@@ -1,7 +1,5 @@
 """The quantities of an indicator diagram beside its work: volumes, rise of pressure, spread of cycles, the brake."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from kurbel.declared.quantity import Quantity

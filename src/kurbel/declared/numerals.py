@@ -1,7 +1,5 @@
 """Numbers as people write them, with the white space and the signs that word processors put in their place."""
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -59,6 +59,8 @@ class Reading:
         self.faults: list[Fault] = []
         self.births: list[Birth] | None = None
         """The records that were made, those inside others first; None where nobody wants to know."""
+        self.partly: dict[Path, tuple[Any, ...]] = {}
+        """Lists of which some items could not be read, those REFUSED."""
         self.alike: dict[Path, Path] = {}
         """Of what takes over the values of another mapping: its path and that of the other."""
 

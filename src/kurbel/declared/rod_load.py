@@ -1,7 +1,5 @@
 """The quantities of a compressor's rod load (API 618)."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from kurbel.declared.quantity import Quantity

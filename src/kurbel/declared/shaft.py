@@ -1,7 +1,5 @@
 """The quantities of the crankshaft: its parts, the forces on its bearings, stresses and pressures."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from functools import partial
 

@@ -1,7 +1,5 @@
 """The quantities of harmonics and torsional vibration: orders, modes, critical speeds, what forced vibration makes."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from kurbel.declared.quantity import Quantity, by_id

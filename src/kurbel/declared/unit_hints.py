@@ -1,7 +1,5 @@
 """What was probably meant by a unit that is none of its kind; imported only where one is refused."""
 
-from __future__ import annotations
-
 import re
 
 from kurbel.declared.numerals import NUMBER

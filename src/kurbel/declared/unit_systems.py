@@ -1,7 +1,5 @@
 """Unit systems: in which unit people read a value that kurbel holds in its base."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar

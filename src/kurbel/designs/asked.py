@@ -1,13 +1,12 @@
 """`kurbel.sweep`: what Python asks of many designs of a machine, as arrays."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.unit_systems import SI
 from kurbel.designs.binding import Binder, written_texts
 from kurbel.designs.sweep import Row, Spec, Sweep, kind_of_form
@@ -15,9 +14,6 @@ from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine_file.source import Source, decode
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 
 def sweep(

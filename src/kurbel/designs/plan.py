@@ -1,7 +1,5 @@
 """Which designs there are: a grid of all values, or values side by side, each with every point of the sample."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cached_property
@@ -56,7 +54,7 @@ class Plan:
             raise UsageError(f"--zip: the lists must be of one length; {each}")
 
     @cached_property
-    def _points(self) -> Array:
+    def _points(self) -> "Array":
         from kurbel.designs.sampling import latin_hypercube, sobol
 
         return (sobol if self._sobol else latin_hypercube)(self._sample or 0, len(self._drawn), self._seed)

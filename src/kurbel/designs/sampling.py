@@ -1,15 +1,11 @@
 """Points of a sample in the unit cube: a Latin hypercube, or the sequence of Sobol, by numpy alone."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.errors import UsageError
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _BITS = 32
 _DIRECTIONS = (

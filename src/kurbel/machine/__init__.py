@@ -27,17 +27,18 @@ from kurbel.declared.forms import (
     Uncertainties,
     not_negative,
 )
+from kurbel.declared.forms.figures import Expected
 from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.quantity import Quantity
+from kurbel.declared.reading import REFUSED
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder, crowded
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
 
-    from kurbel.declared.forms.figures import Expected
-    from kurbel.declared.quantity import Quantity
     from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
     from kurbel.machine.crankshaft import Crankshaft
     from kurbel.machine.equal import EqualCylinders
@@ -61,26 +62,15 @@ def _key_values() -> tuple[dict[str, Quantity], tuple[str, ...]]:
     return known, tuple(id for id, quantity in known.items() if quantity.listed)
 
 
-def _standing(
-    cylinders: tuple[Cylinder, ...] | EqualCylinders, order: tuple[int, ...] | None, cycle: str
-) -> tuple[Cylinder, ...]:
-    """Return the cylinders with the crank positions of their firing order; cycle: that of the machine."""
-    from kurbel.machine.equal import fired
-
-    each = cylinders if isinstance(cylinders, tuple) else cylinders.cylinders
-    degrees = 360.0 * max((CYCLES[one.cycle or cycle] for one in each), default=1)
-    if isinstance(cylinders, tuple):
-        return fired(cylinders, order or (), degrees, ("firing_order",))
-    return cylinders.standing(order, degrees)
+def _names(cylinders: Sequence[Cylinder]) -> list[str]:
+    return [one.name or f"cylinder {number}" for number, one in enumerate(cylinders, 1)]
 
 
-def _shaft_line(parts: tuple[ShaftPart | str, ...], cylinders: list[str]) -> ShaftLine:
-    from kurbel.machine.shaft_list import line_of
+def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: tuple[Cylinder, ...] | EqualCylinders) -> list[Fault]:
+    from kurbel.machine.shaft_list import shaft_faults
 
-    try:
-        return line_of(parts, cylinders)
-    except RuleError as error:
-        raise RuleError(*(fault.below(("shaft",)) for fault in error.faults)) from None
+    names = _names(cylinders if isinstance(cylinders, tuple) else cylinders.cylinders)
+    return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
 
 
 @frozen
@@ -231,24 +221,47 @@ class Machine(Described):
         if brake_torque is not None:
             keys["brake_power"] = 2 * math.pi * keys["speed"] * brake_torque
         given = (cylinder,) if cylinder else cylinders
-        if firing_order or not isinstance(given, tuple):
-            given = _standing(given, firing_order, keys.get("cycle", "two-stroke"))
-        named = tuple(c if c.name else replace(c, name=f"cylinder {i}") for i, c in enumerate(given, 1))
-        if shaft is not None:
-            keys["shaft"] = _shaft_line(shaft, [cylinder.name for cylinder in named])
-        return cls(named, load=None if isinstance(load, str) else load, **keys)
+        faults = _shaft_faults(shaft, given) if shaft else []
+        try:
+            if firing_order or not isinstance(given, tuple):
+                from kurbel.machine.equal import in_order
+
+                given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
+            if shaft and not faults:
+                from kurbel.machine.shaft_list import line_of
+
+                keys["shaft"] = line_of(shaft, _names(given))
+            elif not given:
+                refuse(*faults)
+            named = tuple(one if one.name else replace(one, name=name) for one, name in zip(given, _names(given)))
+            machine = cls(named, load=None if isinstance(load, str) else load, **keys)
+        except RuleError as error:
+            raise RuleError(*dict.fromkeys((*error.faults, *faults))) from None
+        refuse(*faults)
+        return machine
+
+    @staticmethod
+    def faults_of_keys(values: Mapping[str, Any]) -> list[Fault]:
+        """Return what is wrong with the shaft line, where other keys could not be read."""
+        shaft, cylinders = values.get("shaft"), values.get("cylinders", (values.get("cylinder", REFUSED),))
+        unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
+        return [] if unknown or not isinstance(shaft, tuple) else _shaft_faults(shaft, cylinders)
 
     def __post_init__(self) -> None:
+        refuse(*self._faults())
+
+    def _faults(self) -> list[Fault]:
+        faults = []
         if not self.cylinders and self.effort is None and self.shaft is None:
             message = "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"
-            refuse(Fault((), f"{message}, or 'effort', a turning-moment diagram known from elsewhere"))
+            faults.append(Fault((), f"{message}, or 'effort', a turning-moment diagram known from elsewhere"))
         if self.cylinders and self.effort is not None:
-            refuse(Fault(("effort",), "'effort' stands instead of cylinders; leave one of them out"))
+            faults.append(Fault(("effort",), "'effort' stands instead of cylinders; leave one of them out"))
         names = [cylinder.name for cylinder in self.cylinders]
         for index, name in enumerate(names):
             if name in names[:index]:
-                refuse(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
-        faults = [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
+                faults.append(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
+        faults += [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
         for index, cylinder in enumerate(self.cylinders):
             rubbing = cylinder.friction.faults_beside(self.crankshaft) if cylinder.friction else ()
             faults += [fault.below(("cylinders", index, "friction")) for fault in rubbing]
@@ -256,7 +269,7 @@ class Machine(Described):
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
                 faults.append(Fault((key, getattr(diagram, "key", "points")), message))
-        refuse(*faults, *self._shaft_faults())
+        return [*faults, *self._shaft_faults()]
 
     def _shaft_faults(self) -> Iterator[Fault]:
         if self.shaft is None:

@@ -1,7 +1,5 @@
 """Points over the crank angle, `[[deg, value], …]`: what every diagram over the angle must keep to."""
 
-from __future__ import annotations
-
 from kurbel.declared.bounds import Point
 from kurbel.errors import Fault, Path
 

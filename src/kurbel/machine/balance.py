@@ -1,7 +1,5 @@
 """What is put on a machine to balance it: counterweights on the crank, balance shafts, the wheels of a locomotive."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Choice, Count, Listing, Number, Physical, not_negative, positive
@@ -52,7 +50,7 @@ class Counterweight(Described):
     }
 
     @classmethod
-    def of_keys(cls, **keys: Any) -> Counterweight:
+    def of_keys(cls, **keys: Any) -> "Counterweight":
         """Return the counterweight that these keys of a machine file describe."""
         return cls(_product(keys), **keys)
 
@@ -124,7 +122,7 @@ class BalanceShaft(Described):
     }
 
     @classmethod
-    def of_keys(cls, sense: str, **keys: Any) -> BalanceShaft:
+    def of_keys(cls, sense: str, **keys: Any) -> "BalanceShaft":
         """Return the shaft that these keys of a machine file describe."""
         return cls(_product(keys), against=sense == "against", **keys)
 

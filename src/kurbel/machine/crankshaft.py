@@ -1,7 +1,5 @@
 """One crank throw between two bearings or overhung beyond one, with a flywheel (Öl- und Gasmaschinen)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import ClassVar
 

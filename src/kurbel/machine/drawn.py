@@ -1,7 +1,5 @@
 """Cards as the indicator drew them: millimetres on the paper, by the length of the card and the scale of its spring."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from kurbel.declared.forms import positive

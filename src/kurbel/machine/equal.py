@@ -1,7 +1,5 @@
 """Equal cylinders described at once, and cranks that follow from a firing order."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
@@ -11,6 +9,7 @@ from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record,
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, Path, refuse
 from kurbel.frozen import frozen
+from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.cylinder import Cylinder
 
 
@@ -54,7 +53,7 @@ class EqualCylinders(Described):
         firing_order: tuple[int, ...] | None = None,
         spacing: float | None = None,
         bank_angles: tuple[float, ...] = (0.0,),
-    ) -> EqualCylinders:
+    ) -> "EqualCylinders":
         """Return the cylinders that these keys of a machine file describe; raises RuleError."""
         if count % len(bank_angles):
             message = f"{len(bank_angles)} angles for {count} cylinders; give one for each bank or for each cylinder"
@@ -89,6 +88,17 @@ def _standing(each: Cylinder, bank: float, place: float | None) -> Cylinder:
         incline = (incline + bank + 180.0) % 360.0 - 180.0 if bank else incline
     along = each.axial_position if place is None else place + (each.axial_position or 0.0)
     return replace(each, bank_angle=each.bank_angle + bank, inclination=incline, axial_position=along)
+
+
+def in_order(
+    cylinders: tuple[Cylinder, ...] | EqualCylinders, order: tuple[int, ...] | None, cycle: str
+) -> tuple[Cylinder, ...]:
+    """Return the cylinders with the crank positions of their firing order; cycle: that of the machine."""
+    each = cylinders if isinstance(cylinders, tuple) else cylinders.cylinders
+    degrees = 360.0 * max((CYCLES[one.cycle or cycle] for one in each), default=1)
+    if isinstance(cylinders, tuple):
+        return fired(cylinders, order or (), degrees, ("firing_order",))
+    return cylinders.standing(order, degrees)
 
 
 def fired(cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: float, where: Path) -> tuple[Cylinder, ...]:

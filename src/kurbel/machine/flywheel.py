@@ -1,12 +1,11 @@
 """The flywheel, and the rim that is to be built for it."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Number, Record, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
 from kurbel.frozen import frozen
 
@@ -16,14 +15,41 @@ CAST_IRON = 7250.0
 
 @frozen
 class Rim(Described):
-    """The rim of a flywheel: mean diameter in m, density in kg/m³, and the tension in Pa that it may bear or None."""
+    """The rim of a flywheel: mean diameter in m, density in kg/m³, and the tension in Pa that it may bear or None.
+
+    depth: of its section along the radius in m, 0 where it is not known; width: of its section along the shaft in m;
+    mass in kg. Width or mass, beside a depth, tell its moment of inertia.
+    """
 
     mean_diameter: float
     density: float = CAST_IRON
     allowable_tension: float | None = None
+    depth: float = 0.0
+    width: float | None = None
+    mass: float | None = None
 
     KEYS: ClassVar[Keys] = {
-        "mean_diameter": positive("length", "Mean diameter of the rim", "D", required=True),
+        "mean_diameter": positive("length", "Mean diameter of the rim", "D", required=True, example="3 m"),
+        "outer_diameter": positive(
+            "length", "Outer diameter of the rim", "D_a", instead="mean_diameter", needs="inner_diameter"
+        ),
+        "inner_diameter": not_negative(
+            "length", "Inner diameter of the rim, 0 of a disc", "D_i", needs="outer_diameter"
+        ),
+        "depth": positive(
+            "length",
+            "Depth of its section along the radius",
+            "h",
+            absent="a thin rim",
+            instead="inner_diameter",
+            needs="mean_diameter",
+        ),
+        "width": positive(
+            "length", "Width of its section along the shaft; with it the rim has its moment of inertia", "b"
+        ),
+        "mass": positive(
+            "mass", "Mass of the rim, which tells its moment of inertia as the width does", "m", instead="width"
+        ),
         "density": positive(
             "density", "Density of its material", "ρ", absent="7250 kg/m³, cast iron", also=("material",)
         ),
@@ -32,9 +58,47 @@ class Rim(Described):
         ),
     }
 
+    @classmethod
+    def of_keys(
+        cls, outer_diameter: float | None = None, inner_diameter: float = 0.0, depth: float = 0.0, **keys: Any
+    ) -> "Rim":
+        """Return the rim with D = (D_a + D_i)/2 and h = (D_a − D_i)/2; raises RuleError."""
+        if outer_diameter is None:
+            return cls(depth=depth, **keys)
+        if inner_diameter >= outer_diameter:
+            outer, inner = show(outer_diameter, "length"), show(inner_diameter, "length")
+            refuse(Fault(("inner_diameter",), f"{inner} leaves no rim inside of the outer diameter ({outer})"))
+        return cls((outer_diameter + inner_diameter) / 2, depth=(outer_diameter - inner_diameter) / 2, **keys)
+
+    def __post_init__(self) -> None:
+        if self.depth > self.mean_diameter:
+            depth, mean = show(self.depth, "length"), show(self.mean_diameter, "length")
+            refuse(Fault(("depth",), f"{depth} is more than the mean diameter ({mean}), that of a disc"))
+        if self.sized_by and not self.depth:
+            message = "give 'outer_diameter' and 'inner_diameter', or 'depth' beside 'mean_diameter'"
+            refuse(Fault((self.sized_by,), f"tells no moment of inertia without the depth of the rim; {message}"))
+
+    @property
+    def sized_by(self) -> str:
+        """What tells its moment of inertia: `mass` or `width`, or an empty text."""
+        return "mass" if self.mass is not None else "width" if self.width is not None else ""
+
+    @property
+    def inertia(self) -> float | None:
+        """J = m (D² + h²)/4 in kg m², which is π/32 ρ b (D_a⁴ − D_i⁴); None where its size is not known."""
+        mass = self.mass
+        if self.width is not None:
+            mass = self.density * self.width * math.pi * self.mean_diameter * self.depth
+        return None if mass is None else mass * self._square / 4
+
+    @property
+    def _square(self) -> float:
+        """D² + h² = (D_a² + D_i²)/2 in m²."""
+        return self.mean_diameter**2 + self.depth**2
+
     def section(self, inertia: float) -> float:
-        """Return the area A in m² of a thin rim with J = ρ A π D (D/2)², arms and hub left out; inertia in kg m²."""
-        return 4 * inertia / (math.pi * self.density * self.mean_diameter**3)
+        """Return the area A in m² of a rim with J = ρ A π D (D² + h²)/4, arms and hub left out; inertia in kg m²."""
+        return 4 * inertia / (math.pi * self.density * self.mean_diameter * self._square)
 
     def speed(self, omega: float) -> float:
         """Return the speed v in m/s of the middle of the rim at an angular velocity in rad/s."""
@@ -73,21 +137,40 @@ class Flywheel(Described):
         ),
         "radius_of_gyration": positive("length", "Radius of gyration", "k", instead="gd2", needs="mass"),
         "fluctuation": Key(
-            Number(above=0, below=2), "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean", "δ"
+            Number(above=0, below=2),
+            "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean",
+            "δ",
+            example="1/80",
         ),
         "rim": Key(
-            Record("kurbel.machine.flywheel:Rim"), "A rim that has the whole moment of inertia", absent="no section"
+            Record("kurbel.machine.flywheel:Rim"),
+            "A rim that has the whole moment of inertia; its sizes tell it, or else its section is told",
+            absent="no section",
         ),
     }
 
     @classmethod
-    def of_keys(cls, **keys: Any) -> Flywheel:
-        """Return the flywheel with J = inertia, GD²/4 or m k²."""
+    def of_keys(cls, **keys: Any) -> "Flywheel":
+        """Return the flywheel with J = inertia, GD²/4, m k², or that of its rim; raises RuleError."""
         mass, radius, gd2 = (keys.pop(name, None) for name in ("mass", "radius_of_gyration", "gd2"))
         if gd2 is not None:
             keys["inertia"] = gd2 / 4
-        return cls(**keys) if mass is None else cls(mass * radius**2, **keys)
+        if mass is not None:
+            keys["inertia"] = mass * radius**2
+        rim = keys.get("rim")
+        if rim and rim.sized_by:
+            if "inertia" in keys:
+                message = (
+                    "the sizes of the rim tell the moment of inertia, which is given besides; leave one of them out"
+                )
+                refuse(Fault(("rim", rim.sized_by), message))
+            keys["inertia"] = rim.inertia
+        return cls(**keys)
 
     def __post_init__(self) -> None:
         if self.inertia is None and self.fluctuation is None:
-            refuse(Fault((), "a flywheel needs 'inertia', 'gd2', 'mass' or the wanted 'fluctuation'"))
+            refuse(
+                Fault(
+                    (), "a flywheel needs 'inertia', 'gd2', 'mass', a 'rim' with its sizes, or the wanted 'fluctuation'"
+                )
+            )

@@ -1,7 +1,5 @@
 """Friction of the crosshead on its guide and of piston rings (Redtenbacher 1862), as a force, in pins and journals."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar
 
@@ -106,7 +104,7 @@ class Friction(Described):
         """The keys of the pins and journals whose coefficient is given."""
         return tuple(name for name in _PINS if getattr(self, name) is not None)
 
-    def faults_beside(self, shaft: Crankshaft | None) -> Iterator[Fault]:
+    def faults_beside(self, shaft: "Crankshaft | None") -> Iterator[Fault]:
         """Yield a diameter that is needed and given nowhere, or given here and in the crankshaft."""
         for name in self.of_pins:
             here, there = _PINS[name]

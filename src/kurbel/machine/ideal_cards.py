@@ -4,8 +4,6 @@ Fractions are fractions of the stroke from the chamber's smallest volume, as on 
 the stroke volume. Exponents are those of p V^n.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, ClassVar, Union
 
@@ -27,7 +25,7 @@ def _pressure(text: str, required: bool = True, absent: str = "") -> Key:
 
 
 def _exponent(text: str, absent: str) -> Key:
-    return Key(Number(above=0, most=10), text, "n", absent=absent)
+    return Key(Number(above=0, most=10), text, "n", absent=absent, example="1.3")
 
 
 def _order_fault(key: str, high: float, low_name: str, low: float) -> list[Fault]:
@@ -160,7 +158,7 @@ _ENGINE_KEYS: Keys = {
 """What every combustion engine gives."""
 
 
-def _peak_fault(peak: float | None, card: _Engine, lift: float) -> str:
+def _peak_fault(peak: float | None, card: "_Engine", lift: float) -> str:
     """Return what to say of a peak below the end of the compression; lift makes the pressures absolute."""
     compressed = after_polytrope(card.intake + lift, 1 + card.clearance, card.clearance, card.exponent) - lift
     # as much as rounding of the clearance may take from a peak that is just that pressure

@@ -10,11 +10,10 @@ from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, Path, refuse
 from kurbel.frozen import frozen
-from kurbel.machine.rectangle import Rectangular
+from kurbel.machine.rectangle import Rectangle, Rectangular
 
 if TYPE_CHECKING:
     from kurbel.machine.drawn import Drawn
-    from kurbel.machine.rectangle import Rectangle
 
 CLEARANCE = Number(least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""

@@ -1,7 +1,5 @@
 """A machine with one measured cycle of its traces in place of the mean of all."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A piston with the pressures on its two sides."""
 
-from __future__ import annotations
-
 import math
 from typing import TYPE_CHECKING, ClassVar
 
@@ -22,7 +20,7 @@ class Piston(Described):
     bore: float
     head_end_rod: float = 0.0
     crank_end_rod: float = 0.0
-    indicator: Indicator | None = None
+    indicator: "Indicator | None" = None
     name: str = "piston"
 
     KEYS: ClassVar[Keys] = {

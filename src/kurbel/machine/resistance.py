@@ -1,7 +1,5 @@
 """What the output of a mechanism works against: the ram of a shaper or a press, the rocker of a four-bar."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from kurbel.declared.forms import not_negative
@@ -26,7 +24,7 @@ class RamForce(Described):
         check(self.KEYS, {"work": self.work, "return": self.back})
 
     @classmethod
-    def of_keys(cls, work: float | None = None, **others: float) -> RamForce:
+    def of_keys(cls, work: float | None = None, **others: float) -> "RamForce":
         """Return the resistance that these keys of a machine file describe; raises RuleError where it has none."""
         if work is None and not others:
             refuse(Fault((), "give 'work', the force on the working stroke, or 'return', or both"))

@@ -1,7 +1,5 @@
 """A point of the connecting rod or coupler, of which the motion is asked."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, ClassVar
 
@@ -38,7 +36,7 @@ class RodPoint(Described):
     }
 
     @classmethod
-    def of_keys(cls, **keys: Any) -> RodPoint:
+    def of_keys(cls, **keys: Any) -> "RodPoint":
         """Return the point that these keys of a machine file describe."""
         return cls(keys.pop("from"), **keys)
 

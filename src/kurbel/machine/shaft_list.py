@@ -1,16 +1,22 @@
 """The list of a shaft line, read along the shaft: what may follow what, and the masses and pieces that it makes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Union
+from typing import Any, Union
 
+from kurbel.declared.reading import REFUSED
 from kurbel.errors import Fault, refuse
 from kurbel.machine.shaft_line import FLYWHEEL, GROUND, Section, ShaftLine, ShaftMass, ShaftPart, ShaftPiece
 from kurbel.near_words import did_you_mean
 
 Part = Union[ShaftPart, str]
+
+
+def shaft_faults(parts: Sequence[Any], cylinders: Sequence[str]) -> list[Fault]:
+    """Return what is wrong with a list; of one with parts that could not be read what can be told of the others."""
+    if REFUSED in parts:
+        return [fault for fault in _of_cylinders(parts, cylinders) if fault.path]
+    return [*_of_cylinders(parts, cylinders), *_of_order(parts), *_of_load(parts)]
 
 
 def _of_cylinders(parts: Sequence[Part], cylinders: Sequence[str]) -> Iterator[Fault]:
@@ -82,7 +88,7 @@ def _of_load(parts: Sequence[Part]) -> Iterator[Fault]:
 
 def line_of(parts: Sequence[Part], cylinders: Sequence[str] = ()) -> ShaftLine:
     """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError."""
-    refuse(*_of_cylinders(parts, cylinders), *_of_order(parts), *_of_load(parts))
+    refuse(*shaft_faults(parts, cylinders))
     kinds = [_kind(part) for part in parts]
     masses: list[ShaftMass] = []
     pieces: list[ShaftPiece] = []

@@ -1,21 +1,17 @@
 """Measured pressure over the crank angle."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, refuse
 from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 PERIODS = (360.0, 720.0)
 _EVEN = 1e-3  # of a step: what rounded angles may miss
@@ -86,7 +82,7 @@ class Trace:
         """angle_zero as the file counts."""
         return 0.0 - self.angle_zero if self.against else self.angle_zero
 
-    def turned_round(self) -> Trace:
+    def turned_round(self) -> "Trace":
         """Return it as if its angles counted the other way."""
         angles, samples = -self.angles[::-1], self.samples[::-1, ::-1]
         return replace(self, angles=angles, samples=samples, angle_zero=-self.angle_zero, against=not self.against)
@@ -123,7 +119,7 @@ class Trace:
         covers = f"the trace covers {self.period:g} deg, a {cycle} cycle has {whole:g} deg"
         return f"{covers}; write 'cycle: {other}' at the top"
 
-    def over(self, period: float) -> Trace:
+    def over(self, period: float) -> "Trace":
         """Return it with laps that are cycles of these degrees; a last turn that has no other is left out."""
         if self.period == period:
             return self
@@ -132,7 +128,7 @@ class Trace:
         angles = np.concatenate((self.angles[:-1], self.angles + self.period))
         return replace(self, angles=angles, samples=joined, completed=True)
 
-    def of_cycle(self, number: int, period: float) -> Trace:
+    def of_cycle(self, number: int, period: float) -> "Trace":
         """Return one cycle of these degrees alone, counted from 1."""
         whole = self.over(period)
         return replace(whole, samples=whole.samples[number - 1 : number])

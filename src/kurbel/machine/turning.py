@@ -1,7 +1,5 @@
 """What works on the shaft: load, a turning-moment diagram known from elsewhere, an elastic coupling."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 from kurbel.declared.bounds import Point, size_faults
@@ -33,7 +31,7 @@ class Effort:
     notes: tuple[str, ...] = ()
 
     @classmethod
-    def of_points(cls, unit: Factor, points: list[Point]) -> Effort:
+    def of_points(cls, unit: Factor, points: list[Point]) -> "Effort":
         """Return the diagram of the points that stand under `points` in a machine file; raises RuleError."""
         refuse(*(angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))))
         up, down = unit
@@ -88,7 +86,7 @@ class Load(Described):
     }
 
     @classmethod
-    def of_keys(cls, power_law: float | None = None, slip: float | None = None, **points: Any) -> Load:
+    def of_keys(cls, power_law: float | None = None, slip: float | None = None, **points: Any) -> "Load":
         """Return the load that these keys of a machine file describe; raises RuleError."""
         return cls(power_law, slip, Effort.of_points(**points) if points else None)
 

@@ -1,7 +1,5 @@
 """The keys of a turning effort known from elsewhere: points, a file of columns, or harmonics."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.declared.bounds import Point, size_faults
@@ -81,7 +79,7 @@ def _from_file(unit: Factor, file: str, angle_zero: float = 0.0, **layout: Any) 
     return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed))
 
 
-def _from_zero(samples: Samples, angle_zero: float) -> tuple[Array, Array]:
+def _from_zero(samples: "Samples", angle_zero: float) -> "tuple[Array, Array]":
     """Return the angles (n,) in degrees from 0 to the end of the cycle, and the torques (n,), straight in between."""
     import numpy as np
 

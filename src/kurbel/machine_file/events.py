@@ -5,8 +5,6 @@ has no use for (anchors, aliases, tags, further documents) is refused when its e
 from it. Numbers stay text: what a scalar means is decided by the key that it stands under.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from kurbel.declared.bounds import MOST_POINTS
@@ -34,7 +32,7 @@ def parse(text: str, reading: Reading) -> Any:
     return root
 
 
-def run(text: str, builder: Builder) -> bool:
+def run(text: str, builder: "Builder") -> bool:
     """Send all events of a text to the builder and return whether the text could be read to its end."""
     import yaml
 

@@ -1,7 +1,5 @@
 """What a machine file gives, key by key, as it was read: with what was set over it, and nothing guessed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,17 +1,12 @@
 """Where samples are missing: refused where no straight line stands for them, else told."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.errors import Fault, RuleError
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 Named = Callable[[int], Fault]
 """The place of a sample as a fault that lacks a message."""

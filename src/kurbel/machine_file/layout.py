@@ -1,7 +1,5 @@
 """What to write about the layout of a file of columns so that it can be read: tried out on its first lines."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 

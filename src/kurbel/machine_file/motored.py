@@ -1,23 +1,19 @@
 """The dead centre found from a motored trace: without combustion the pressure peaks just before it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from os.path import basename
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.forms import FilePath, not_negative
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.frozen import frozen
 from kurbel.machine_file.samples import Layout, samples_of
 from kurbel.numerics.vertex import Vertex, vertex
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _HALF = 6.0
 """Degrees on either side of the peak through which the parabola goes."""

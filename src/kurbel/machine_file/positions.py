@@ -1,7 +1,5 @@
 """Line and column of what is wrong, found by reading the text a second time: a good file pays nothing for it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from kurbel.declared.reading import Reading, StopReading

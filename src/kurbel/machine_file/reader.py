@@ -1,14 +1,12 @@
 """From a machine file to a `Machine`: text, tree, records; or one error with all faults."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.forms import Record
-from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, StopReading, glued_hint, kind_of
+from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, glued_hint, kind_of
 from kurbel.errors import Fault
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
@@ -44,10 +42,14 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
     return read_machine(source.decode(name, text.encode("utf-8", "surrogatepass")), overrides)
 
 
-def read_machine(origin: Source, overrides: Iterable[str] = (), births: list[Birth] | None = None) -> Machine:
-    """Return the machine that a source describes; overrides and errors: see `load`; births: see `Reading`."""
-    reading = Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
-    reading.births = births
+def reading_of(origin: Source) -> Reading:
+    """Return a pass over a source that has not begun."""
+    return Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
+
+
+def read_machine(origin: Source, overrides: Iterable[str] = (), reading: Reading | None = None) -> Machine:
+    """Return the machine that a source describes; overrides and errors: see `load`; reading: see `reading_of`."""
+    reading = reading or reading_of(origin)
     tree = parse(origin.text, reading)
     known = len(reading.faults)  # YAML has told their places
     given = tuple(overrides)
@@ -59,7 +61,7 @@ def read_machine(origin: Source, overrides: Iterable[str] = (), births: list[Bir
     return replace(machine, origin=Origin(origin.name, origin.content, given))
 
 
-def _set_over(tree: Any, overrides: Sequence[str]) -> list[Override]:
+def _set_over(tree: Any, overrides: Sequence[str]) -> "list[Override]":
     """Put the overrides into the tree, and return them."""
     if not overrides or not isinstance(tree, dict):
         return []
@@ -81,7 +83,7 @@ def _machine(reading: Reading, tree: Any, stem: str) -> Any:
         return REFUSED
 
 
-def _located(text: str, faults: list[Fault], set_over: Sequence[Override]) -> list[Fault]:
+def _located(text: str, faults: list[Fault], set_over: "Sequence[Override]") -> list[Fault]:
     """Return the faults with their places in the text, or with the override that they are of."""
     if not faults:
         return []

@@ -4,8 +4,6 @@ A schema cannot know rules between numbers, such as a rod longer than its crank;
 bounds of bare numbers, and which keys exclude each other.
 """
 
-from __future__ import annotations
-
 from kurbel.declared.keys import Schema
 from kurbel.machine_file.reader import ROOT
 

@@ -1,7 +1,5 @@
 """What is wrong with a text that is no YAML, in words that say what to write instead."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A file of a data logger as text, whatever its encoding; what is no text is named as what it is."""
 
-from __future__ import annotations
-
 import os
 
 from kurbel.errors import Fault, RuleError, refuse

@@ -1,12 +1,10 @@
 """The connecting rod or coupler of a mechanism: how it turns, and how any point of it moves."""
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
+from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import bearing, sqrt
-
-if TYPE_CHECKING:
-    from kurbel.mechanisms import Mechanism
 
 
 class Coupler(NamedTuple):
@@ -35,9 +33,7 @@ class PointMotion(NamedTuple):
     acceleration: Any
 
 
-def point_motion(
-    mechanism: "Mechanism", coupler: Coupler, angle: CrankAngle, along: float, across: float
-) -> PointMotion:
+def point_motion(mechanism: Mechanism, coupler: Coupler, angle: CrankAngle, along: float, across: float) -> PointMotion:
     """Return the motion of the point `along` from the crank pin toward the other one, and `across`, to y, in m.
 
     With r = R e^{iφ} + (along + i across) e^{iτ}: |dr/dφ| and |d²r/dφ²|.

@@ -1,7 +1,5 @@
 """The crank pin of a mechanism whose block slides in a slot: speed of the block, force and pressure on the pin."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from kurbel.crank_angle import CrankAngle

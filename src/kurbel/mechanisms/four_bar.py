@@ -1,7 +1,5 @@
 """Four-bar linkage: the crank-rocker (Bogenschubkurbel), R ch. 14 A, and the drag link, whose rocker turns too."""
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
 from typing import Any, ClassVar

@@ -1,10 +1,9 @@
 """Parallel crank (Parallelkurbeltrieb), R ch. 14 A: two equal cranks and a coupler as long as the frame."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import not_negative, positive
 from kurbel.declared.keys import Keys, check
 from kurbel.declared.quantity import Quantity
@@ -12,9 +11,6 @@ from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_motion
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
-
-if TYPE_CHECKING:
-    from kurbel.crank_angle import CrankAngle
 
 
 def _way(id: str, symbol: str, along: str, index: int) -> Offer:

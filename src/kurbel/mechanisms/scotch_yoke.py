@@ -1,9 +1,8 @@
 """Scotch yoke (Kurbelschleife), R p. 616: the slider-crank with an infinite rod, its block sliding across the yoke."""
 
-from __future__ import annotations
+from typing import Any, ClassVar
 
-from typing import TYPE_CHECKING, Any, ClassVar
-
+from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
 from kurbel.frozen import frozen
@@ -12,10 +11,6 @@ from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pres
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.slider_crank import CRANK_KEYS
 from kurbel.numerics.extreme import Extreme
-
-if TYPE_CHECKING:
-    from kurbel.crank_angle import CrankAngle
-
 
 _CALLED = "force on each of the two guides of a yoke"
 _N_PAIR = own_force("N_pair", "N_2", "force", f"{_CALLED.capitalize()}, opposite to one another", _CALLED)
@@ -56,7 +51,7 @@ class ScotchYoke(Mechanism):
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (pin_pressure(bound=200 * 98066.5),)
 
     @classmethod
-    def of_keys(cls, crank: float | None = None, stroke: float = 0.0, **others: float) -> ScotchYoke:
+    def of_keys(cls, crank: float | None = None, stroke: float = 0.0, **others: float) -> "ScotchYoke":
         """Return the Scotch yoke that these keys of a machine file describe; raises RuleError."""
         return cls(stroke / 2 if crank is None else crank, **others)
 

@@ -4,19 +4,14 @@ Steam and pump piston rod lie in one line, joined by a frame in which rod and cr
 slider-crank; the side force N of the rod finds no guide and bends the piston rod.
 """
 
-from __future__ import annotations
+from typing import Any, ClassVar
 
-from typing import TYPE_CHECKING, Any, ClassVar
-
+from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
 from kurbel.frozen import frozen
 from kurbel.mechanisms import Offer, check_lengths, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
-
-if TYPE_CHECKING:
-    from kurbel.crank_angle import CrankAngle
-
 
 _TEXT, _CALLED = "Bending moment of N on the piston rod at its stuffing box", "bending moment of N on the piston rod"
 _M_BEND = own_force("M_bend", "M_b", "torque", _TEXT, _CALLED)

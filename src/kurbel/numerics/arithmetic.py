@@ -1,10 +1,13 @@
 """The few operations beside + − × ÷ that the formulas need, for floats, arrays, jets and high-precision numbers."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from typing import Any
+
+
+def is_number(value: Any) -> bool:
+    """Return whether a value is a float, or a number that brings its own operations."""
+    return isinstance(value, (float, int)) or hasattr(value, "sqrt")
 
 
 def sqrt(value: Any) -> Any:
@@ -63,6 +66,8 @@ def ulp(value: Any) -> Any:
 def _of(value: Any, name: str, in_numpy: str = "") -> Any:
     if isinstance(value, (float, int)):
         return getattr(math, name)(value)
+    if hasattr(value, name):
+        return getattr(value, name)()
     import numpy as np
 
     return getattr(np, in_numpy or name)(value)
@@ -86,12 +91,32 @@ def total(*terms: Any) -> Any:
     """
     if all(isinstance(term, (float, int)) for term in terms):
         return math.fsum(terms)
+    own = next((term for term in terms if hasattr(term, "total")), None)
+    if own is not None:
+        return own.total(terms)
     whole, missed = terms[0], 0.0
     for term in terms[1:]:
         before, whole = whole, whole + term
         of_term = whole - before
         missed = missed + ((before - (whole - of_term)) + (term - of_term))
     return whole + missed
+
+
+_ROUNDING = 16 * 2.0**-52
+"""What is left of terms that cancel, beside the sum of their sizes, is rounding."""
+
+
+def unless_cancelled(whole: Any, sizes: Any) -> Any:
+    """Return a sum, as an array; exactly 0 where nothing is left of its terms but rounding.
+
+    sizes: the sum of the sizes of the terms.
+
+    >>> unless_cancelled(0.1 + 0.2 - 0.3, 0.6), unless_cancelled(0.1, 0.6)
+    (array(0.), array(0.1))
+    """
+    import numpy as np
+
+    return np.where(np.abs(whole) > _ROUNDING * sizes, whole, 0.0)
 
 
 def running_sums(terms: Iterable[float]) -> Iterator[float]:

@@ -25,7 +25,7 @@ class Sampled(NamedTuple):
     @classmethod
     def on(cls, grid: Grid, value: Any) -> "Sampled":
         """Return values at the nodes of a grid with the slopes of the polynomials through them."""
-        value = np.broadcast_to(value, grid.degrees.shape)
+        value = np.broadcast_to(value, grid.shape)
         return cls(value, grid.slopes(value))
 
 
@@ -76,10 +76,14 @@ class Slopes(NamedTuple):
     worth: Any
 
 
-def slopes_worth(grid: Grid, sampled: Sampled, worth: Worth | None) -> Slopes:
-    rows, intervals = worth or Worth(np.arange(len(sampled.slope)), True)
-    slope = sampled.slope[rows]
-    return Slopes(rows, slope, grid.slopes(slope, rows), intervals)
+def slopes_worth(grid: Grid, sampled: Sampled, worth: Worth) -> Slopes:
+    slope = _of_rows(sampled.slope, worth.rows)
+    return Slopes(worth.rows, slope, grid.slopes(slope, worth.rows), worth.intervals)
+
+
+def _of_rows(values: Array, rows: Indices) -> Array:
+    """Return the values (pieces, nodes) of these pieces, node by node in memory as they were."""
+    return np.asarray(values.T.take(rows, axis=1).T)
 
 
 def _reach(grid: Grid, sampled: Sampled) -> Array:
@@ -88,14 +92,14 @@ def _reach(grid: Grid, sampled: Sampled) -> Array:
     Slope times width is four times what a parabola with these slopes rises above its ends.
     """
     steepest = np.maximum(sampled.slope.max(axis=1), -sampled.slope.min(axis=1))
-    return np.asarray(steepest * grid.half_widths * grid.widest)
+    return np.asarray(steepest * grid.half_widths * grid.gaps.max())
 
 
 def _between_nodes(grid: Grid, sampled: Sampled, rows: Indices) -> tuple[Array, Array, Array]:
     """Return values at both ends of the intervals of these rows, and the reach in each, (k, nodes − 1)."""
-    value, slope = sampled.value[rows], np.abs(sampled.slope[rows])
-    widths = grid.half_widths[rows][:, None] * np.diff(grid.nodes)
-    return value[:, :-1], value[:, 1:], np.maximum(slope[:, :-1], slope[:, 1:]) * widths
+    value, slope = _of_rows(sampled.value, rows), np.abs(_of_rows(sampled.slope, rows))
+    rise = np.maximum(slope[:, :-1], slope[:, 1:]) * grid.half_widths[rows, None] * grid.gaps
+    return value[:, :-1], value[:, 1:], rise
 
 
 _FLAT = 32 * np.finfo(float).eps
@@ -106,13 +110,17 @@ def may_be_extreme(grid: Grid, sampled: Sampled) -> Worth:
     """Return where a quantity may be larger or smaller than at every node of its variant."""
     reach, high, low = _reach(grid, sampled), sampled.value.max(axis=1), sampled.value.min(axis=1)
     varies = reach > _FLAT * np.maximum(high, -low)
-    pieces = np.diff(np.append(grid.first, len(high)))
-    top = np.repeat(np.maximum.reduceat(high, grid.first), pieces)
-    bottom = np.repeat(np.minimum.reduceat(low, grid.first), pieces)
+    top = grid.of_each(np.maximum.reduceat(high, grid.first))
+    bottom = grid.of_each(np.minimum.reduceat(low, grid.first))
     rows = np.flatnonzero(varies & ((high + reach >= top) | (low - reach <= bottom)))
     before, after, rise = _between_nodes(grid, sampled, rows)
-    above = np.maximum(before, after) + rise >= top[rows][:, None]
-    return Worth(rows, above | (np.minimum(before, after) - rise <= bottom[rows][:, None]))
+    above = np.maximum(before, after) + rise >= top[rows, None]
+    return Worth(rows, above | (np.minimum(before, after) - rise <= bottom[rows, None]))
+
+
+def everywhere(grid: Grid) -> Worth:
+    """Return that every interval is worth a search."""
+    return Worth(np.arange(len(grid.low)), True)
 
 
 def may_be_zero(grid: Grid, sampled: Sampled) -> Worth:
@@ -154,7 +162,7 @@ def _dips(grid: Grid, owner: int, asked: Slopes) -> tuple[Brackets, Array]:
     toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0) & asked.worth
     rows, nodes = np.nonzero(toward)
     low, high, bend, next_bend = (part[rows, nodes] for part in (low, high, bend, next_bend))
-    width = grid.half_widths[asked.rows[rows]] * np.diff(grid.nodes)[nodes]
+    width = grid.half_widths[asked.rows[rows]] * grid.gaps[nodes]
     lowest = low + bend * (high - low - next_bend * width) / (bend - next_bend)
     beyond = lowest * low <= 0
     share = bend / (bend - next_bend)
@@ -186,7 +194,7 @@ def at_brackets(grid: Grid, brackets: Brackets, evaluate: Evaluate) -> Callable[
 
 
 _SETTLED = 1e-9
-"""Of half a piece: what follows a step of Newton so short, by the polynomial through the nodes, is its square."""
+"""Of half a piece, where a polynomial through its nodes is as steep as high: a step so short leaves its square."""
 _STEPS = 3
 
 
@@ -196,9 +204,10 @@ def roots(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str, nodal: 
     nodal: those values or slopes at the nodes of the grid, (pieces, nodes), of every quantity. The polynomial through
     them has a root beside each, from which Newton's method needs a step or two; where it needs more, the bracket tells.
     """
-    degrees, rise = _roots_of_polynomials(grid, brackets, nodal)
+    degrees, rise, size = _roots_of_polynomials(grid, brackets, nodal)
     values, left = np.empty_like(degrees), np.arange(len(degrees))
     half = (grid.high - grid.low)[brackets.row] / 2
+    short = _SETTLED * half * np.minimum(np.abs(rise) * half / size, 1.0)
     for _ in range(_STEPS):
         if not len(left):
             return degrees, values
@@ -207,7 +216,7 @@ def roots(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str, nodal: 
         step = getattr(found, part) / rise[left]
         values[left] = found.value
         degrees[left] = np.clip(degrees[left] - step, own.low, own.high)
-        left = left[~(np.abs(step) <= _SETTLED * half[left])]
+        left = left[~(np.abs(step) <= short[left])]
     own = brackets.at(left)
     at = at_brackets(grid, own, evaluate)
     ends = own.low, own.high, own.f_low, own.f_high
@@ -216,8 +225,11 @@ def roots(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str, nodal: 
     return degrees, values
 
 
-def _roots_of_polynomials(grid: Grid, brackets: Brackets, nodal: list[Array]) -> tuple[Array, Array]:
-    """Return where the polynomials through the nodes of pieces are zero in brackets, and their slopes by degree."""
+def _roots_of_polynomials(grid: Grid, brackets: Brackets, nodal: list[Array]) -> tuple[Array, Array, Array]:
+    """Return where the polynomials through the nodes of pieces are zero in brackets, and their slopes by degree there.
+
+    Also the largest size that they have at a node.
+    """
     along = np.empty((len(grid.nodes), len(brackets.low)))
     for owner, one in enumerate(nodal):
         own = brackets.owner == owner
@@ -232,7 +244,8 @@ def _roots_of_polynomials(grid: Grid, brackets: Brackets, nodal: list[Array]) ->
         low, high = np.where(before, place, low), np.where(before, high, place)
         place = place - value / slope
         place = np.where((low <= place) & (place <= high), place, (low + high) / 2)
-    return middle + half * place, _of_polynomials(coefficients, place)[1] / half
+    rise = _of_polynomials(coefficients, place)[1] / half
+    return middle + half * place, rise, np.abs(along).max(axis=0, initial=0.0)
 
 
 def _of_polynomials(coefficients: Array, place: Array) -> tuple[Array, Array]:

@@ -1,13 +1,8 @@
 """Equations joined round a cycle: each has the unknowns of one place and of the next, the last those of the first."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
+from kurbel.arrays import Array
 
 
 def around(before: Array, after: Array, sides: Array) -> Array:

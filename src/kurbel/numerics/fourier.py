@@ -1,14 +1,10 @@
 """Fourier coefficients of a smooth periodic function, to the rounding of its values."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray
 
 _FEWEST, _MOST = 2**11, 2**18  # samples; more than are needed take the rounding of the values out of the mean
 

@@ -1,7 +1,5 @@
 """Rules of Gauss-Legendre and of Lobatto for integrals over a piece."""
 
-from __future__ import annotations
-
 Rule = tuple[tuple[float, ...], tuple[float, ...]]
 """Nodes and weights on (−1, 1)."""
 

@@ -6,12 +6,11 @@ return the exact derivative of whatever they compute, with no second set of form
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
+from kurbel.arrays import Array
 
 
 class Jet:

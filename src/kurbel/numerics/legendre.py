@@ -1,13 +1,8 @@
 """Legendre polynomials on −1 … 1, by their recurrence."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
+from kurbel.arrays import Array
 
 
 def legendre(x: Array, degree: int) -> Array:

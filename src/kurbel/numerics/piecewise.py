@@ -1,18 +1,13 @@
 """A quantity given at the points of a grid, as a polynomial on every piece: its values, slopes and integrals."""
 
-from __future__ import annotations
-
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.numerics.arithmetic import running_sums
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
 
 
 class Piecewise:

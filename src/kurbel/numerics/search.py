@@ -9,6 +9,7 @@ from kurbel.numerics.arithmetic import where
 from kurbel.numerics.brackets import (
     Brackets,
     Worth,
+    everywhere,
     may_be_extreme,
     may_be_zero,
     roots,
@@ -22,6 +23,8 @@ from kurbel.numerics.grid import Grid
 
 _ROUNDING = 8 * np.finfo(float).eps
 """What is no larger than this beside the largest value of its quantity is rounding and has no sign."""
+_ALIKE = 4 * np.finfo(float).eps
+"""By which values beside each other differ that are one but for rounding."""
 _REPEATED = 64 * np.finfo(float).eps
 """By which, beside the largest value, equal summits of a curve differ that is summed over cylinders and the cycle."""
 
@@ -87,53 +90,102 @@ def extremes(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dic
 
     samples: the quantities on the grid, (pieces, nodes).
     """
-    worth = {name: may_be_extreme(grid, sampled) for name, sampled in samples.items()}
-    return {name: extremes_of(curve) for name, curve in curves(grid, samples, evaluate, worth).items()}
-
-
-def zeros(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
-    """Return the angles of `sign_changes` of quantities of which no extremes are wanted."""
-    worth = {name: may_be_zero(grid, sampled) for name, sampled in samples.items()}
-    return sign_changes(grid, curves(grid, samples, evaluate, worth), evaluate, size)
-
-
-def curves(
-    grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, worth: dict[str, Worth] | None = None
-) -> dict[str, Curve]:
-    """Return several quantities as curves; of pieces that are not worth a search only their ends.
-
-    samples: the quantities on the grid, (pieces, nodes).
-    """
-    asked = [slopes_worth(grid, sampled, worth[name] if worth else None) for name, sampled in samples.items()]
-    brackets = slope_brackets(grid, asked, evaluate)
-    peaks, heights = roots(grid, brackets, evaluate, "slope", [sampled.slope for sampled in samples.values()])
+    worth = [may_be_extreme(grid, sampled) for sampled in samples.values()]
+    turns = _turning_points(grid, samples, evaluate, worth)
     return {
-        name: _with_peaks(grid, sampled.value, asked[k].rows, brackets, peaks, heights, brackets.owner == k)
+        name: extremes_of(_extreme_pieces(grid, sampled.value, turns.of(k)))
         for k, (name, sampled) in enumerate(samples.items())
     }
 
 
-def _with_peaks(
-    grid: Grid, value: Array, rows: Indices, brackets: Brackets, peaks: Array, heights: Array, own: Flags
-) -> Curve:
-    """Return the values (pieces, nodes) as a curve with those of the peaks (n,) that are its own, each in its place.
+def zeros(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
+    """Return the angles of `sign_changes` of quantities of which no extremes are wanted."""
+    worth = [may_be_zero(grid, sampled) for sampled in samples.values()]
+    return sign_changes(grid, _curves(grid, samples, evaluate, worth), evaluate, size)
 
-    rows: of the pieces of which all nodes stand in it; of the others their ends do.
+
+def curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dict[str, Curve]:
+    """Return several quantities as curves.
+
+    samples: the quantities on the grid, (pieces, nodes).
     """
-    kept = np.zeros(value.shape, dtype=bool)
-    kept[:, 0] = kept[:, -1] = True
-    kept[rows] = True
-    row, node = np.nonzero(kept)
+    return _curves(grid, samples, evaluate, [everywhere(grid)] * len(samples))
+
+
+def _curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, worth: list[Worth]) -> dict[str, Curve]:
+    """Return several quantities as curves; of pieces that are not worth a search only their ends."""
+    turns = _turning_points(grid, samples, evaluate, worth)
+    found = {}
+    for k, (name, sampled) in enumerate(samples.items()):
+        kept = np.zeros(sampled.value.shape, dtype=bool)
+        kept[:, 0] = kept[:, -1] = True
+        kept[worth[k].rows] = True
+        row, node = np.nonzero(kept)
+        found[name] = _curve(grid, sampled.value, row, node, turns.of(k))
+    return found
+
+
+class _Turns(NamedTuple):
+    """Where quantities turn round between two nodes: which one, row of the piece, node before, angle, value, (n,)."""
+
+    owner: Indices
+    row: Indices
+    node: Indices
+    degrees: Array
+    value: Array
+
+    def at(self, which: Flags) -> "_Turns":
+        """Return those for which a flag (n,) is set."""
+        parts: list[Any] = [part[which] for part in self]
+        return _Turns(*parts)
+
+    def of(self, owner: int) -> "_Turns":
+        """Return those of one quantity."""
+        return self.at(self.owner == owner)
+
+
+def _turning_points(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, worth: list[Worth]) -> _Turns:
+    asked = [slopes_worth(grid, sampled, one) for sampled, one in zip(samples.values(), worth)]
+    brackets = slope_brackets(grid, asked, evaluate)
+    found = roots(grid, brackets, evaluate, "slope", [sampled.slope for sampled in samples.values()])
+    turns = _Turns(brackets.owner, brackets.row, brackets.node, *found)
+    return turns.at(_apart_from_ends(samples, turns))
+
+
+def _apart_from_ends(samples: dict[str, Sampled], turns: _Turns) -> Flags:
+    """Return which do not, but for rounding, turn at the end of a piece: a dead centre is told as the angle it is."""
+    apart = np.ones(len(turns.row), dtype=bool)
+    for owner, sampled in enumerate(samples.values()):
+        own = np.flatnonzero(turns.owner == owner)
+        for end, node in ((0, 0), (-1, sampled.value.shape[1] - 2)):
+            value = sampled.value[turns.row[own], end]
+            alike = np.abs(turns.value[own] - value) <= _ALIKE * np.abs(value)
+            apart[own[alike & (turns.node[own] == node)]] = False
+    return apart
+
+
+def _extreme_pieces(grid: Grid, value: Array, turns: _Turns) -> Curve:
+    """Return the curve of the pieces that reach the largest or the smallest value but for rounding."""
+    high, low = value.max(axis=1), value.min(axis=1)
+    np.maximum.at(high, turns.row, turns.value)
+    np.minimum.at(low, turns.row, turns.value)
+    top, bottom = np.maximum.reduceat(high, grid.first), np.minimum.reduceat(low, grid.first)
+    slack = _REPEATED * np.maximum(np.abs(top), np.abs(bottom))
+    reached = ~((high < grid.of_each(top - slack)) & (low > grid.of_each(bottom + slack)))
+    rows, nodes = np.flatnonzero(reached), value.shape[1]
+    row, node = np.repeat(rows, nodes), np.tile(np.arange(nodes), len(rows))
+    return _curve(grid, value, row, node, turns.at(reached[turns.row]))
+
+
+def _curve(grid: Grid, value: Array, row: Indices, node: Indices, turns: _Turns) -> Curve:
+    """Return the values (pieces, nodes) at some nodes (n,), in order, as a curve with the turns, each in its place."""
     nodes = value.shape[1]
-    place = np.searchsorted(row * nodes + node, brackets.row[own] * nodes + brackets.node[own]) + 1
-    order = np.lexsort((peaks[own], place))
+    place = np.searchsorted(row * nodes + node, turns.row * nodes + turns.node) + 1
+    order = np.lexsort((turns.degrees, place))
     into = place[order]
-
-    def whole(at_nodes: Any, at_peaks: Any) -> Any:
-        return np.insert(at_nodes, into, at_peaks[own][order])
-
-    pieces = whole(row, brackets.row)
-    degrees, values = whole(grid.degrees[row, node], peaks), whole(value[row, node], heights)
+    pieces = np.insert(row, into, turns.row[order])
+    degrees = np.insert(grid.degrees[row, node], into, turns.degrees[order])
+    values = np.insert(value[row, node], into, turns.value[order])
     turning = into + np.arange(len(into))
     return Curve(degrees, pieces, values, np.searchsorted(pieces, grid.first), grid, turning, value)
 
@@ -207,11 +259,15 @@ def _first_at(curve: Curve, best: Array, size: Array, sign: float) -> Extreme:
     high = np.flatnonzero(curve.value * sign >= level)
     # ... and what only lies beside a summit, as high but for that, is none
     owner = np.searchsorted(curve.first, high, side="right") - 1
-    first, end = curve.first[owner], np.append(curve.first[1:], len(curve.value))[owner]
-    following = np.where(high + 1 == end, first, high + 1)
-    preceding = np.where(high == first, end - 1, high - 1)
-    value, slack = curve.value[high] * sign, 4 * np.finfo(float).eps * np.abs(best)[owner]
-    beside = np.maximum(curve.value[following] * sign, curve.value[preceding] * sign)
+    first, last = curve.first[owner], np.append(curve.first[1:], len(curve.value))[owner] - 1
+    following, preceding = np.where(high == last, first, high + 1), np.where(high == first, last, high - 1)
+    round_it = curve.grid.counts[owner]
+    ahead = curve.row[following] - curve.row[high] + np.where(high == last, round_it, 0)
+    behind = curve.row[high] - curve.row[preceding] + np.where(high == first, round_it, 0)
+    value, slack = curve.value[high] * sign, _ALIKE * np.abs(best)[owner]
+    # pieces between which others are left out do not stand beside each other
+    after = np.where(ahead <= 1, curve.value[following] * sign, -np.inf)
+    beside = np.maximum(after, np.where(behind <= 1, curve.value[preceding] * sign, -np.inf))
     summit = high[value >= beside - slack]
     degrees = np.full(len(best), np.inf)
     np.minimum.at(degrees, owner[value >= beside - slack], curve.degrees[summit])

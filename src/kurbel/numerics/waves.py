@@ -1,14 +1,10 @@
 """Sums of waves A_h cos hx …, as complex amplitudes: Re Σ A_h e^{ihx}, h whole numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray, Indices
+from kurbel.arrays import Array, ComplexArray, Indices
 
 _PER_WAVE = 10
 """Samples at least to a period of the shortest wave, …"""

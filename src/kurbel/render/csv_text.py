@@ -1,17 +1,12 @@
 """CSV: one head row, one row per crank angle, numbers in full; names of the columns in ASCII with their units."""
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Iterable, Iterator
 from itertools import repeat
-from typing import TYPE_CHECKING
 
+from kurbel.render import Look
 from kurbel.render.numbers import exact, whole_if_integral
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import Column, Part, Report, Value
+from kurbel.report.tables import Column, Part, Report, Value
 
 _FIRST = {"ratios": "rod_ratio", "bearings": "bearing"}
 """Group of the parts of a report -> head of the column that tells them apart, if not `cylinder`."""

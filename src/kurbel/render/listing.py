@@ -1,7 +1,5 @@
 """A check as text: head lines with their entries, one to a line."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 from kurbel.render import Look

@@ -1,7 +1,5 @@
 """Where the text goes: standard output, a terminal, or a file; and what its encoding and width are."""
 
-from __future__ import annotations
-
 import errno
 import os
 import stat
@@ -14,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 from kurbel.errors import UsageError
 from kurbel.render import Look, pieces
 from kurbel.render.charset import Charset
+from kurbel.report.tables import Report
 
 if TYPE_CHECKING:
     from kurbel.render.lines import Line
-    from kurbel.report.tables import Report
 
 _MOST_COLOURED_LINES = 400
 _SAYING_UTF_8 = ("html", "latex")
@@ -43,7 +41,7 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
     write_stdout(pieces(report, look), encoding)
 
 
-def write_coloured(page: Iterable[Line], look: Look) -> bool:
+def write_coloured(page: "Iterable[Line]", look: Look) -> bool:
     """Write lines in colour and return True, unless there is no terminal, or it or its user would rather not."""
     if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
         return False

@@ -1,18 +1,13 @@
 """The printed page: title, tables, key values, and what was left out, from top to bottom."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from kurbel.render import Look
 from kurbel.render.lines import BLANK, Line, line
 from kurbel.render.prose import folded, prose
 from kurbel.render.sheet import sheets
 from kurbel.report.alike import told_once
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.tables import Report
+from kurbel.report.tables import Report
 
 
 def page(report: Report, look: Look) -> Iterator[Line]:

@@ -1,26 +1,19 @@
 """A long report as one page of HTML: contents with links, tables, and pictures that are part of the page."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from html import escape
 from itertools import chain
-from typing import TYPE_CHECKING
 
 from kurbel import __version__
+from kurbel.render import Look
 from kurbel.render.html import grid, item_list, page, tables
 from kurbel.render.pictures.layout import scene
 from kurbel.render.pictures.style import css
 from kurbel.render.pictures.svg import svg
 from kurbel.render.prose import sentence_text
-from kurbel.report.document import Grid, Pair
+from kurbel.report.document import Document, Grid, Item, Pair, Section
 from kurbel.report.pictures.picture import Picture
-from kurbel.report.tables import Report
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.document import Document, Item, Section
-    from kurbel.report.tables import Provenance
+from kurbel.report.tables import Provenance, Report
 
 _STYLE = (
     "header{border-bottom:2px solid var(--ink);margin-bottom:1rem}nav ul{columns:16rem;padding-left:1.2rem}\n"
@@ -29,7 +22,7 @@ _STYLE = (
     ".pair{display:grid;grid-template-columns:1fr 1fr;gap:1rem}.pair>*{min-width:0}"
     "@media (max-width:64rem){.pair{grid-template-columns:1fr}}\n"
     "@media print{figure svg{min-width:0;max-height:24cm}nav{break-after:page}a{color:inherit;text-decoration:none}"
-    ".pair{break-inside:avoid;gap:0}.pair svg{max-height:10.5cm}}\n"
+    ".pair{display:block;break-inside:avoid}}\n"
 )
 
 

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import Any, NamedTuple
 
+from kurbel.designs.chosen import Unit
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.csv_text import _harmless, _quoted
@@ -58,8 +59,14 @@ def csv_rows(titles: Titles, rows: Iterable[Any], look: Look, headed: bool = Tru
     separator = ";" if look.comma else ","
     if headed:
         yield separator.join(_quoted(_harmless(name), separator) for name in titles.whole) + "\n"
+    plain = float if look.digits is None and not look.comma else None
     for row in rows:
-        yield separator.join([_csv_cell(value, look, separator) for value in titles.values(row)]) + "\n"
+        cells = [
+            # most are numbers in full, which `exact` writes like this in five times the time
+            repr(value + 0.0) if type(value) is plain else _csv_cell(value, look, separator)
+            for value in titles.values(row)
+        ]
+        yield separator.join(cells) + "\n"
 
 
 def _csv_cell(value: Any, look: Look, separator: str) -> str:
@@ -95,6 +102,8 @@ def _cell(value: Any, look: Look, in_full: bool = False) -> str:
     """Return a value as text, its number to four digits, or in full as csv has it."""
     if value is None:
         return ""
+    if isinstance(value, Unit) and not in_full:
+        return look.charset.unit(value)
     if isinstance(value, str):
         return _harmless(look.charset.text(value)) if in_full else look.charset.text(value)
     if isinstance(value, tuple):
@@ -138,21 +147,13 @@ _WRITERS: dict[str, Callable[..., Iterator[str]]] = {
 
 
 class SweepOutput:
-    """The output of a sweep; rows: those that are still to be computed, fewer where a file has the first ones already.
+    """The output of a sweep; headed: with a head; kept: bytes of the file that stay, 0 to begin it anew."""
 
-    resume: go on at the end of the file. Raises UsageError for a file of another sweep.
-    """
-
-    def __init__(self, titles: Titles, look: Look, file_name: str | None, rows: range, resume: bool = False) -> None:
+    def __init__(self, titles: Titles, look: Look, file_name: str | None, headed: bool = True, kept: int = 0) -> None:
         self.titles = titles
         self._file_name = None if file_name == "-" else file_name
         self._look = look if self._file_name else look._replace(encoding=stdout_look().encoding)
-        self._resumed = 0
-        self.rows = rows
-        if resume:
-            assert self._file_name is not None
-            self._resumed, last = _written(self._file_name, titles, self._look)
-            self.rows = rows[max(last - rows.start, 0) :]
+        self._headed, self._kept = headed, kept
 
     def write(self, rows: Iterable[Any]) -> None:
         """Write the rows; a reader that leaves early is no fault. Raises UsageError."""
@@ -164,8 +165,7 @@ class SweepOutput:
 
     def _texts(self, rows: Iterable[Any]) -> Iterator[str]:
         if self._look.format == "csv":
-            headed = not self._resumed and self.rows.start == 0
-            return csv_rows(self.titles, rows, self._look, headed)
+            return csv_rows(self.titles, rows, self._look, self._headed)
         return _WRITERS[self._look.format](self.titles, rows, self._look)
 
     @contextmanager
@@ -175,9 +175,9 @@ class SweepOutput:
                 sys.stdout.flush()
                 yield getattr(sys.stdout, "buffer", sys.stdout)
                 return
-            mode = "r+b" if self._resumed else "wb"
+            mode = "r+b" if self._kept else "wb"
             with open(self._file_name, mode) as file:
-                file.seek(self._resumed)
+                file.seek(self._kept)
                 file.truncate()
                 yield file
         except BrokenPipeError:
@@ -234,33 +234,3 @@ def _put(ready: list[bytes], file: Any) -> None:
     ready.clear()
     file.write(lines)
     file.flush()
-
-
-def _written(file_name: str, titles: Titles, look: Look) -> tuple[int, int]:
-    """Return how many bytes of whole lines a file has, and the number of the last row in it."""
-    try:
-        with open(file_name, "rb") as file:
-            content = file.read()
-    except FileNotFoundError:
-        return 0, 0
-    except OSError as error:
-        raise UsageError(f"cannot read {file_name}: {error.strerror}") from None
-    whole = content[: content.rfind(b"\n") + 1]
-    lines = whole.decode("utf-8", "replace").splitlines()
-    if not lines:
-        return 0, 0
-    head = next(csv_rows(titles, (), look)).rstrip("\n") if look.format == "csv" else ""
-    ours = lines[0] == head or _number_of(lines[0], look)  # a later shard has no head
-    last = 0 if len(lines) == 1 and lines[0] == head else _number_of(lines[-1], look)
-    if not ours or last is None:
-        raise UsageError(f"--resume: {file_name} is not of this sweep; it begins with {lines[0][:60]!r}")
-    return len(whole), last
-
-
-def _number_of(line: str, look: Look) -> int | None:
-    try:
-        if look.format == "json":
-            return int(json.loads(line)["row"])
-        return int(line.partition(";" if look.comma else ",")[0])
-    except (ValueError, KeyError, TypeError):
-        return None

@@ -1,18 +1,13 @@
 """Colours for a terminal; the lines themselves are those of the plain page."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.text import Text
 
+from kurbel.render import Look
 from kurbel.render.charset import width
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.render.lines import Line
+from kurbel.render.lines import Line
 
 _STYLES = {
     "title": "bold",

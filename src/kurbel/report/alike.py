@@ -1,7 +1,5 @@
 """Equal cylinders, told once to people: programs read each of them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import groupby

@@ -1,7 +1,5 @@
 """The crank angles at which a table is printed."""
 
-from __future__ import annotations
-
 import math
 from array import array
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The report of `kurbel balance`: free forces and moments over the crank angle, their orders, the best weights."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -78,10 +76,23 @@ def _notes(balance: MachineBalance) -> Iterable[str]:
     yield "φ is the angle of crank 1; F_x and M_x count along the stroke line of cylinder 1, F_y and M_y across it."
     if balance.free.moment is not None and balance.z_0 is not None:
         yield f"Moments are taken about z = {show(balance.z_0, 'length')}."
+    if balance.free.higher and balance.omega is not None:
+        yield _higher(balance.free, balance.omega * balance.omega)
     if balance.counterweights or balance.machine.balance_shafts:
         yield "Counterweights and shafts of the file count in all that is free; the best weights stand in their place."
     if balance.roll:
         yield "M_roll is −M of kurbel flywheel, less what turns the masses themselves about the shaft."
+
+
+def _higher(free: Free, square: float) -> str:
+    """Say what the orders are together that no table tells; square: ω²."""
+    most = show(free.at_most(free.force) * square, "force")
+    if free.moment is not None:
+        most += f", of the moment {show(free.at_most(free.moment) * square, 'torque')}"
+    return (
+        f"{len(free.higher)} more orders follow, n = {free.higher[0]} to {free.higher[-1]}, which the rod brings, "
+        f"hardly longer than the crank: of the force they are at most {most}, together."
+    )
 
 
 def _balance_tables(balance: MachineBalance, system: str, compare: bool) -> Iterator[PlaceTable]:

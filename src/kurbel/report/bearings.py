@@ -1,7 +1,5 @@
 """The report of `kurbel bearings`: the load on every pin and main bearing, each a part of its own."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from kurbel.declared.unit_systems import show

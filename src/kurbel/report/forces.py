@@ -1,7 +1,5 @@
 """The report of `kurbel forces`."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -87,7 +85,7 @@ def subjects(case: Case) -> Iterable[Subject]:
     """Yield every cylinder, with its forces and its motion."""
 
     @cache
-    def found() -> Sequence[Note]:
+    def found() -> "Sequence[Note]":
         from kurbel.report.notes import machine_notes
 
         return machine_notes(case.machine, case)
@@ -96,7 +94,7 @@ def subjects(case: Case) -> Iterable[Subject]:
         yield _subject(case, forces, found)
 
 
-def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[Note]]) -> Subject:
+def _subject(case: Case, forces: CylinderForces, found: "Callable[[], Sequence[Note]]") -> Subject:
     cylinder = forces.drive.cylinder
 
     def at(degrees: Any) -> Any:
@@ -121,4 +119,4 @@ def _subject(case: Case, forces: CylinderForces, found: Callable[[], Sequence[No
             why = "are within the noise of the trace and no Druckwechsel"
             yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
 
-    return Subject(cylinder.name, forces.answering, at, forces.lists, left, warnings, source=forces)
+    return Subject(cylinder.name, tuple(forces.answering), at, forces.lists, left, warnings, source=forces)

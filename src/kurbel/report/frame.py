@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kurbel.declared.quantities import COMMON, Lists
-from kurbel.declared.quantity import Quantity
+from kurbel.declared.quantity import Quantity, called
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, Nowhere, UsageError
 from kurbel.machine import Machine
@@ -169,22 +169,36 @@ class Frame(NamedTuple):
         """Raise UsageError for a column that was asked for and that no part has."""
         printed = {column.id for part in parts for column in part.columns}
         for name in self.columns or ():
-            if name in printed:
-                continue
-            there = tuple(dict.fromkeys(id for subject in subjects for id in subject.has(self.command)))
-            known = tuple(every_quantity().columns(self.command))
-            if name not in known:
-                others = ", ".join(one for one in known if one not in there)
-                has = (
-                    f"this machine has {', '.join(there)}" if there else "",
-                    others and f"other machines also {others}",
-                )
-                raise UsageError(
-                    f"--columns: '{shown(name)}' is no column of kurbel {self.command}"
-                    f"{did_you_mean(name, there) or did_you_mean(name, known)} ({'; '.join(filter(None, has))})"
-                )
-            if there:
-                raise UsageError(f"--columns: '{name}' is left out for this machine, which has {', '.join(there)}")
+            if name not in printed:
+                raise UsageError(f"--columns: {self._absent(name, subjects)}")
+
+    def _absent(self, name: str, subjects: Sequence[Subject]) -> str:
+        """Return why there is no such column, and which there are."""
+        every = every_quantity()
+        known = every.columns(self.command)
+        there = {id: known[id] for subject in subjects for id in subject.has(self.command)}
+        has = f"has {', '.join(map(_with_symbol, there.values()))}" if there else ""
+        if name in known:
+            return f"'{name}' is left out for this machine" + (f", which {has}" if has else "")
+        key_values = every.key_values(self.command)
+        for found in called(name, key_values.values()):
+            symbol = key_values[found].symbol
+            return f"'{name}' is a key value and no column: a line below the table, --key-values | grep '{symbol} '"
+        others = [one for one in known if one not in there]
+        near = (did_you_mean(name, _names(one)) for one in (there.values(), known.values()))
+        also = f"other machines also {', '.join(others)}" if others else ""
+        return (
+            f"'{shown(name)}' is no column of kurbel {self.command}{next(filter(None, near), '')} "
+            f"({'; '.join(filter(None, (has and f'this machine {has}', also)))})"
+        )
+
+
+def _with_symbol(one: Quantity) -> str:
+    return one.id if one.id == one.symbol else f"{one.id} ({one.symbol})"
+
+
+def _names(quantities: Iterable[Quantity]) -> tuple[str, ...]:
+    return tuple(name for one in quantities for name in (one.id, one.symbol))
 
 
 # what every command has in its own file, by its word

@@ -1,7 +1,5 @@
 """The report of `kurbel friction`: the inclined plane of Redtenbacher 1862, D 1 to 5."""
 
-from __future__ import annotations
-
 import math
 
 from kurbel.declared.quantity import Quantity

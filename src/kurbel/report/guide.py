@@ -1,7 +1,5 @@
 """What is told of the guide of a lying machine whose sense of rotation is known, R p. 602."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 

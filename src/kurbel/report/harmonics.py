@@ -1,14 +1,14 @@
 """The report of `kurbel harmonics`: orders of the torque of every cylinder and of the whole machine."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray
 from kurbel.declared.torsion import TORQUE_ORDERS
 from kurbel.errors import UsageError
+from kurbel.machine import Machine
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import flywheel_left_out, left_out
 from kurbel.report.notes import of_machine
@@ -16,10 +16,6 @@ from kurbel.report.shown import counted, shown_column
 from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
 from kurbel.solver.turning.harmonics import CylinderOrders, MachineOrders, Orders, Spectrum
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
-    from kurbel.machine import Machine
 
 _HIGHEST = 1000
 

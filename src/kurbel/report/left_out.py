@@ -1,7 +1,5 @@
 """What a machine leaves out, and why: decided from the description alone, so that nothing is computed to find out."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from kurbel.machine import Cylinder, Machine
@@ -118,7 +116,12 @@ def flywheel_left_out(machine: Machine) -> tuple[LeftOut, ...]:
         for cylinder, ones in list(zip(machine.cylinders, of_each))[: 1 if alike else None]
         for one in ones
     ]
-    return (*found, *missing(turning_stages(machine)))
+    return (*found, *_beside_rim(machine), *missing(turning_stages(machine)))
+
+
+def _beside_rim(machine: Machine) -> Iterable[LeftOut]:
+    if machine.flywheel and machine.flywheel.rim and machine.flywheel.rim.sized_by:
+        yield LeftOut("arms and hub of the flywheel", "J is that of the rim, whose sizes are given")
 
 
 def turning_stages(machine: Machine) -> dict[str, str]:

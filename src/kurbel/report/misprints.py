@@ -4,8 +4,6 @@ F. Rötscher, Die Maschinenelemente (1927), p. 602 f., read from the scan. None 
 in the fold between the two pages.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from kurbel.errors import UsageError

@@ -1,7 +1,5 @@
 """The report of `kurbel motion`."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from kurbel.machine import Machine

@@ -1,7 +1,5 @@
 """What a report was made from."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from contextlib import suppress

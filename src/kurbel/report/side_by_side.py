@@ -1,7 +1,5 @@
 """Two machines side by side: what they were given differently, key values with their differences, pictures in pairs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import zip_longest

@@ -1,7 +1,5 @@
 """The report of `kurbel stress`: stresses place by place, forces on the bearings over the crank angle, key values."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether the peak of a trace stands where that of an engine can: dead centre, firing turn, and sense of the angle."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from kurbel.report.trace_readings import Reading, zero_text

@@ -1,7 +1,5 @@
 """A trace as it is, and as it would be if it were read otherwise: what notes on measured traces are judged by."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -74,19 +72,19 @@ class Reading:
         """Exponent of the compression; None where the clearance is not known."""
         return exponent(self.pressure, COMPRESSION)
 
-    def otherwise(self, **changes: Any) -> Reading:
+    def otherwise(self, **changes: Any) -> "Reading":
         """Return the reading of the trace with other fields."""
         return Reading(TracePressure(replace(self.pressure.trace, **changes), self.pressure.setting))
 
-    def reversed(self) -> Reading:
+    def reversed(self) -> "Reading":
         """Return the reading of the trace as if it ran the other way."""
         return Reading(TracePressure(self.pressure.trace.turned_round(), self.pressure.setting))
 
-    def put_at(self, angle_zero: float) -> Reading:
+    def put_at(self, angle_zero: float) -> "Reading":
         """Return the reading with another angle of the dead centre, as the trace counts."""
         return self.otherwise(angle_zero=angle_zero)
 
-    def against(self, other: Reading) -> str:
+    def against(self, other: "Reading") -> str:
         """Return p_i of another reading, and of this one."""
         now, then = in_bar(self.pressure.area), in_bar(other.pressure.area)
         return f"p_i is then {then} instead of {now}" if now != then else f"p_i stays {now}"

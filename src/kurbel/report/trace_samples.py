@@ -1,7 +1,5 @@
 """What looks wrong with the samples of a trace: drift, angles that stand twice, turns that belong together."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from kurbel.report.trace_readings import Reading, in_bar

@@ -1,7 +1,5 @@
 """What looks wrong in measurements and results: said as warnings, the same whichever command computes them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from itertools import islice
@@ -9,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
+from kurbel.machine import Machine
+from kurbel.report.given import LARGEST_PEAK
 from kurbel.report.guide import guide_warnings
+from kurbel.solver.case import Case
 from kurbel.solver.cylinder.brake import Brake
+from kurbel.solver.cylinder.forces import CylinderForces
 
 if TYPE_CHECKING:
-    from kurbel.machine import Machine
-    from kurbel.solver.case import Case
-    from kurbel.solver.cylinder.forces import CylinderForces
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
     from kurbel.solver.turning.flywheel import MachineTurning
 
@@ -27,6 +26,7 @@ def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
         forces.refuse_locking()  # first, with an angle that does not depend on the step
         yield from _balance_warnings(forces)
         yield from _bound_warnings(forces)
+        yield from _pressure_warnings(forces)
         yield from _reversal_warnings(forces)
         yield from guide_warnings(forces)
 
@@ -97,6 +97,16 @@ def _bound_warnings(forces: CylinderForces) -> Iterable[str]:
             yield f"{quantity.text[0].lower()}{quantity.text[1:]}: {shown} is above {most}"
 
 
+def _pressure_warnings(forces: CylinderForces) -> Iterable[str]:
+    """Yield a pressure that no engine has had; pumps and compressors have more, and traces are judged by themselves."""
+    highest, traced = forces.p_max, any(gas.traced for gas in forces.drive.gas)
+    if highest and not traced and highest.value > LARGEST_PEAK and (forces.mean_pressure or 0.0) > 0:
+        yield (
+            f"a pressure of {show(highest.value, 'pressure')} is more than engines have, at most "
+            f"{show(LARGEST_PEAK, 'pressure')}; is its unit right?"
+        )
+
+
 _LEAST_REVERSAL = 15.0, 0.03
 """Degrees of crank angle, and share of the larger load, that API 618 asks of the reversed rod load."""
 
@@ -117,7 +127,7 @@ def _reversal_warnings(forces: CylinderForces) -> Iterable[str]:
         )
 
 
-def _of_turning(turning: MachineTurning) -> Iterable[str]:
+def _of_turning(turning: "MachineTurning") -> Iterable[str]:
     machine = turning.machine
     if turning.deficit is not None:
         word = "more" if turning.deficit > 0 else "less"
@@ -139,7 +149,7 @@ def _of_turning(turning: MachineTurning) -> Iterable[str]:
     yield from _rim_warnings(turning)
 
 
-def _wish_warnings(turning: MachineTurning) -> Iterable[str]:
+def _wish_warnings(turning: "MachineTurning") -> Iterable[str]:
     """Yield by how much the flywheel of the books misses the wish, which is for the speed under the true load."""
     if turning.J_needed is None or turning.delta_needed is None or not turning.misses_the_wish:
         return
@@ -150,7 +160,7 @@ def _wish_warnings(turning: MachineTurning) -> Iterable[str]:
     )
 
 
-def _rim_warnings(turning: MachineTurning) -> Iterable[str]:
+def _rim_warnings(turning: "MachineTurning") -> Iterable[str]:
     rim = turning.machine.flywheel.rim if turning.machine.flywheel else None
     if rim and rim.allowable_tension and turning.rim_stress and turning.rim_stress > rim.allowable_tension:
         yield (
@@ -159,7 +169,7 @@ def _rim_warnings(turning: MachineTurning) -> Iterable[str]:
         )
 
 
-def _coupling_warnings(turning: MachineTurning) -> Iterable[str]:
+def _coupling_warnings(turning: "MachineTurning") -> Iterable[str]:
     if not turning.elastic:
         return
     for near in turning.elastic.resonances:
@@ -181,7 +191,7 @@ _SHELLS = (
 """p_m v of the crank pin in kgf m/(cm² s), and what G says of it up to there."""
 
 
-def shell_verdict(strength: CrankshaftStrength) -> tuple[bool, tuple[str, ...]]:
+def shell_verdict(strength: "CrankshaftStrength") -> tuple[bool, tuple[str, ...]]:
     """Return whether all shells stand p_m v of the crank pin, and a sentence that tells (G); none without a speed."""
     found = strength.pressure_velocity("pin")
     if found is None:

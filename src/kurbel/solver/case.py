@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kurbel.arrays import Array
 from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import called
 from kurbel.errors import UsageError
@@ -14,7 +15,6 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Figure, Results, Shown
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.solver.balance.machine_balance import MachineBalance
     from kurbel.solver.bearings.shaft_bearings import ShaftBearings
     from kurbel.solver.strength.crankshaft import CrankshaftStrength

@@ -1,7 +1,5 @@
 """Forces and work: masses of any size, cards without area, jumps, noisy traces, friction up to self-locking."""
 
-from __future__ import annotations
-
 from decimal import Decimal
 
 from kurbel.accuracy.decimals import pi

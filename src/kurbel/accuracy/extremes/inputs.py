@@ -1,7 +1,5 @@
 """Input that a reader could misunderstand: it is understood as written, or refused with its place."""
 
-from __future__ import annotations
-
 from decimal import Decimal
 
 from kurbel.accuracy.extremes import Probe, Refusal

@@ -1,7 +1,5 @@
 """Put the cases to the program, and hold its answers against what was expected."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from decimal import Decimal

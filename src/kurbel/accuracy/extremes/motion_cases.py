@@ -1,7 +1,5 @@
 """Motion: rods from infinite to just longer than the crank, offsets to their limit, lengths and angles of any size."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from decimal import Decimal
 from functools import partial

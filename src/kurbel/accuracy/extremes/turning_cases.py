@@ -1,7 +1,5 @@
 """Turning effort and speed: no flywheel, or an enormous one; loads up to a slip of 1e-9; machines that stall."""
 
-from __future__ import annotations
-
 from decimal import Decimal
 
 from kurbel.accuracy.decimals import pi

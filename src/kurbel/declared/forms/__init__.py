@@ -1,7 +1,5 @@
 """What may stand under a key of the machine file; each form reads, explains and describes itself."""
 
-from __future__ import annotations
-
 from kurbel.declared.forms.alike import Alike
 from kurbel.declared.forms.column_range import ColumnRange
 from kurbel.declared.forms.figures import Expectations, Limits

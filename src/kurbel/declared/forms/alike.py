@@ -1,7 +1,5 @@
 """Form of a list of records, of which one may be like another."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from kurbel.declared.bounds import MOST_ITEMS

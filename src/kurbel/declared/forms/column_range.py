@@ -1,7 +1,5 @@
 """Form of several columns of a file."""
 
-from __future__ import annotations
-
 from kurbel.declared.forms.scalars import Patterned, refused
 
 _ONE = r"[1-9][0-9]{0,4}(\s*-\s*[1-9][0-9]{0,4})?"

@@ -3,19 +3,16 @@
 import re
 from abc import abstractmethod
 from collections.abc import Callable, Collection
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from kurbel.declared.forms.scalars import Number, Physical, refused
 from kurbel.declared.keys import Form, Schema
 from kurbel.declared.numerals import NUMBER, familiar
-from kurbel.declared.quantity import ambiguity, called
+from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import REFUSED, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path
 from kurbel.near_words import did_you_mean
-
-if TYPE_CHECKING:
-    from kurbel.declared.quantity import Quantity
 
 Known = Callable[[], tuple[dict[str, "Quantity"], Collection[str]]]
 """Returns the key values by id, and the ids of those that are lists; asked only where a machine names some."""
@@ -63,7 +60,7 @@ class _Figures(Form):
         self.known = known
 
     @abstractmethod
-    def figure(self, quantity: "Quantity") -> Form:
+    def figure(self, quantity: Quantity) -> Form:
         """Return the form of a figure for this quantity."""
 
     def schema(self, definitions: Schema) -> Schema:
@@ -93,7 +90,7 @@ class _Figures(Form):
                 found[id] = read if read is REFUSED else read.named(name)
         return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
 
-    def _meant(self, name: str, known: "dict[str, Quantity]", lists: Collection[str]) -> tuple[str, str]:
+    def _meant(self, name: str, known: dict[str, Quantity], lists: Collection[str]) -> tuple[str, str]:
         """Return the id that a name stands for, and what is wrong with it."""
         found = called(name, known.values())
         if not found:
@@ -111,7 +108,7 @@ class Limits(_Figures):
 
     what = "bound"
 
-    def figure(self, quantity: "Quantity") -> Form:
+    def figure(self, quantity: Quantity) -> Form:
         return _LimitOfRatio() if quantity.kind == "ratio" else _Limit(quantity.kind)
 
     def expected(self) -> str:
@@ -136,7 +133,7 @@ class Expectations(_Figures):
 
     what = "expectation"
 
-    def figure(self, quantity: "Quantity") -> Form:
+    def figure(self, quantity: Quantity) -> Form:
         return _Figure(Number() if quantity.kind == "ratio" else Physical(quantity.kind), quantity.kind)
 
     def expected(self) -> str:

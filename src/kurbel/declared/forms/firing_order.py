@@ -1,7 +1,5 @@
 """Form of a firing order."""
 
-from __future__ import annotations
-
 import re
 
 from kurbel.declared.bounds import MOST_ITEMS

@@ -1,7 +1,5 @@
 """Form of a list of pairs, `[[x, y], …]`, read quickly enough for a measurement of 1e5 of them."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The form of standard uncertainties: dotted keys of the machine file, each with what its value may be off by."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,19 +1,14 @@
 """A grid of characters to draw on: eight dots of Braille to a character, or one letter where there are none."""
 
-from __future__ import annotations
-
 from itertools import groupby
 from operator import itemgetter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.render.charset import width
 from kurbel.render.lines import Line, Piece
 from kurbel.render.pictures.style import LOOKS
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _BLANK = 0x2800
 _DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
@@ -31,14 +26,13 @@ class Canvas:
         self._bits = np.zeros((rows, columns), dtype=int)
         self._letters = [[" "] * columns for _ in range(rows)]
         self._roles = [["text"] * columns for _ in range(rows)]
-        self._written = np.zeros((rows, columns), dtype=bool)
 
     @property
     def fine(self) -> tuple[int, int]:
         """Dots across and down."""
         return (2 * self.columns, 4 * self.rows) if self.braille else (self.columns, self.rows)
 
-    def line(self, x: Array, y: Array, look: int, role: str, dashed: tuple[float, ...] = ()) -> None:
+    def line(self, x: Array, y: Array, role: str) -> None:
         """Draw a line through places (n,), counted in dots from the upper left corner; what lies beyond is cut off."""
         across, down = self.fine
         steps = np.maximum(np.ceil(np.maximum(np.abs(np.diff(x)), np.abs(np.diff(y)))), 1).astype(int)
@@ -53,17 +47,8 @@ class Canvas:
             np.bitwise_or.at(self._bits, (rows, columns), dots)
         for column, row in set(zip(columns.tolist(), rows.tolist())):
             if not self.braille and (role.startswith("curve") or self._letters[row][column] == " "):
-                self._letters[row][column] = LOOKS[look].character if role.startswith("curve") else "."
+                self._letters[row][column] = LOOKS[int(role[5:])].character if role.startswith("curve") else "."
             self._roles[row][column] = role
-
-    def free(self, column: int, row: int, text: str, blank: bool = False) -> bool:
-        """Whether a text may stand there: inside, on no other text, and, where asked, on no line."""
-        end = column + width(text)
-        if not (0 <= row < self.rows and column >= 0 and end <= self.columns):
-            return False
-        taken = self._written[row, max(column - 1, 0) : end + 1].any()
-        lined = blank and (self._bits[row, column:end].any() or "".join(self._letters[row][column:end]).strip())
-        return not taken and not lined
 
     def write(self, column: int, row: int, text: str, role: str) -> None:
         """Write a text over what is drawn."""
@@ -76,7 +61,6 @@ class Canvas:
                 self._letters[row][place] = letter if place == start else ""
                 self._bits[row, place] = 0
                 self._roles[row][place] = role
-                self._written[row, place] = True
 
     @property
     def used(self) -> tuple[int, int]:

@@ -1,19 +1,14 @@
 """Where pictures go: to the terminal, or to a file whose suffix says what it is."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator
 from itertools import chain
-from typing import TYPE_CHECKING
 
 from kurbel.errors import UsageError
+from kurbel.render import Look
 from kurbel.render.lines import BLANK, Line, plain
 from kurbel.render.output import replaced, stdout_charset, stdout_width, write_coloured, write_file, write_stdout
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.pictures.picture import Picture
+from kurbel.report.pictures.picture import Picture
 
 SUFFIXES = (".svg", ".png", ".pdf")
 

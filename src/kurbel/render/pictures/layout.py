@@ -1,20 +1,15 @@
 """From a neutral picture to a scene: every panel gets its place, its axes, its lines and its labels."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from kurbel.render import Look
 from kurbel.render.pictures.labels import Box, figure_text, symbol
 from kurbel.render.pictures.panel_items import panel_items
 from kurbel.render.pictures.scale import Scale, scale_of, taller
 from kurbel.render.pictures.scene import Dots, Item, Scene, Text
 from kurbel.render.pictures.style import LOOKS, SHAPES
 from kurbel.render.prose import folded
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.pictures.picture import Panel, Picture
+from kurbel.report.pictures.picture import Panel, Picture
 
 WIDTH = 720.0
 _HEIGHT, _SHORT = 250.0, 170.0

@@ -1,16 +1,12 @@
 """A scene as PNG or PDF, by matplotlib: the same lines, areas and texts at the same places as in SVG."""
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from kurbel.render import Look
 from kurbel.render.pictures.scene import Dots, Item, Line, Text
 from kurbel.render.pictures.style import FAINT, GAIN, GRID, INK, LOOKS, LOSS, PAPER
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.pictures.picture import Picture
+from kurbel.report.pictures.picture import Picture
 
 _POINT = 0.75
 """Of a point of matplotlib in one of a scene, 96 to the inch."""

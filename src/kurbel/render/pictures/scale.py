@@ -1,12 +1,11 @@
 """Scales: from the values of an axis to places on paper or in a terminal, and where its ticks stand."""
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from kurbel.report.pictures.picture import Axis, Panel
+from kurbel.report.pictures.picture import Axis, Panel
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
@@ -37,7 +36,7 @@ class Scale(NamedTuple):
         return self._replace(start=start, end=end)
 
 
-def scale_of(panel: "Panel", part: str) -> Scale:
+def scale_of(panel: Panel, part: str) -> Scale:
     """Return the scale from 0 to 1 that holds all that stands on an axis (x or y) of a panel."""
     axis: Axis = getattr(panel, part)
     low, high = _extent(panel, part)
@@ -60,7 +59,7 @@ def taller(scale: Scale, height: float) -> Scale:
     return scale if spare <= 0 else scale._replace(low=scale.low - spare, high=scale.high + spare)
 
 
-def _extent(panel: "Panel", part: str) -> tuple[float, float]:
+def _extent(panel: Panel, part: str) -> tuple[float, float]:
     """Return the smallest and the largest value on an axis."""
     drawn = [getattr(piece, part) for curve in panel.curves for piece in curve.pieces]
     for shade in panel.shades:
@@ -74,7 +73,7 @@ def _extent(panel: "Panel", part: str) -> tuple[float, float]:
     return min((low for low, _ in every), default=0.0), max((high for _, high in every), default=0.0)
 
 
-def ticks(scale: Scale, axis: "Axis", most: int) -> list[float]:
+def ticks(scale: Scale, axis: Axis, most: int) -> list[float]:
     """Return the values, at most so many or a few more, at which an axis has ticks."""
     low, high = sorted((scale.low, scale.high))
     if axis.names:

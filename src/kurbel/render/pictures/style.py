@@ -1,9 +1,8 @@
 """How pictures look: the colours and strokes of their curves, in light and dark, told apart without colour, too."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-if TYPE_CHECKING:
-    from kurbel.report.pictures.picture import Panel
+from kurbel.report.pictures.picture import Panel
 
 
 class Look(NamedTuple):
@@ -29,7 +28,7 @@ LOOKS = (
 """After Okabe and Ito, whom the colour-blind can tell apart, darkened or lightened to a contrast of 4.5."""
 
 
-def looks_of(panel: "Panel") -> list[int]:
+def looks_of(panel: Panel) -> list[int]:
     """Return the look of each curve of a panel: lines take one after the other."""
     found, following = [], 0
     for curve in panel.curves:

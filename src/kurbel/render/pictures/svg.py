@@ -1,17 +1,12 @@
 """A scene as SVG: text stays text, colours and strokes are classes, and what moves, moves without a script."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from html import escape
-from typing import TYPE_CHECKING
 
+from kurbel.render import Look
 from kurbel.render.pictures.scene import Dots, Item, Places, Scene, Text
 from kurbel.render.pictures.style import css
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
-    from kurbel.report.pictures.picture import Picture
+from kurbel.report.pictures.picture import Picture
 
 
 def svg_file(pictures: list[Picture], look: Look) -> Iterator[str]:

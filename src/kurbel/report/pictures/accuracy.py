@@ -1,7 +1,5 @@
 """The work-precision picture of `kurbel accuracy`: time over error, one panel for each quantity."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The pictures of one cylinder: indicator cards, piston force with its inertia line, forces, T in polar form."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from functools import partial
 from itertools import pairwise
@@ -9,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.unit_systems import convert
 from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Piece, Shade, Words
@@ -16,7 +15,6 @@ from kurbel.report.pictures.sampling import Samples, pieces
 from kurbel.report.pictures.source import PHI, Source, level, mark
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.solver.cylinder.gas import PistonGas
 
 _V, _P, _P_0 = Words("V", "V"), Words("P", "P"), Words("P_0", "P_0")
@@ -34,7 +32,7 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
 cards_over_volume = partial(cards, over_volume=True)
 
 
-def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
+def _card(source: Source, gas: "PistonGas", over_volume: bool) -> Panel:
     """Return the pressures of one piston over the way, or over the volume of each chamber."""
     piston, several = gas.piston, len(source.results.drive.gas) > 1
     ends = [(name, end) for name, end in (("p_head", gas.head), ("p_crank", gas.crank)) if end]
@@ -63,7 +61,7 @@ def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
     return Panel(x, y, (*curves, ambient), marks=marks, title=piston.name if several else "")
 
 
-def _volume(gas: PistonGas, end: str, way: Array) -> Array:
+def _volume(gas: "PistonGas", end: str, way: Array) -> Array:
     """Return the volume in m³ of a chamber: what the piston has swept, and the clearance where it is known."""
     indicator, stroke = gas.piston.indicator, gas.stroke
     at_head = end == "p_head"

@@ -1,20 +1,16 @@
 """The mechanism itself, to scale, with the forces on it as arrows; it moves, where no angles are asked for."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.unit_systems import convert
 from kurbel.mechanisms.sketch import PIN, Point, Sketch
 from kurbel.report.pictures.picture import Arrow, Axis, Curve, Panel, Piece, Words
 from kurbel.report.pictures.source import PHI, Source
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _FRAMES = 72
 _LONGEST = 1.1

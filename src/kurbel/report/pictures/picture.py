@@ -1,9 +1,8 @@
 """What a picture is made of, whatever draws it: curves, shades and marks on panels with two axes, in units as shown."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
+from kurbel.arrays import Array
 
 
 class Words(NamedTuple):
@@ -34,10 +33,10 @@ class Piece(NamedTuple):
     degrees, within: at which crank angles they were computed, and on which side of jumps; None where they have none.
     """
 
-    x: "Array"
-    y: "Array"
-    degrees: "Array | None" = None
-    within: "Array | None" = None
+    x: Array
+    y: Array
+    degrees: Array | None = None
+    within: Array | None = None
 
 
 class Curve(NamedTuple):
@@ -77,9 +76,9 @@ class Shade(NamedTuple):
     figure: what is written into it, at its widest place.
     """
 
-    x: "Array"
-    low: "Array"
-    high: "Array"
+    x: Array
+    low: Array
+    high: Array
     gain: bool = True
     figure: Figure | None = None
 

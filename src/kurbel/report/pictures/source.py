@@ -1,13 +1,12 @@
 """Where a picture takes its values from: the results of one command, sampled, in the units in which they are shown."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
@@ -15,9 +14,6 @@ from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Pie
 from kurbel.report.pictures.sampling import Samples, Values, pieces, sampled
 from kurbel.report.shown import too_large
 from kurbel.solver.figures import answered
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 PHI = "phi"
 

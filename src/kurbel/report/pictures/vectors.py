@@ -1,21 +1,16 @@
 """The ways of the tips of vectors over the cycle: what is free of the whole machine, and the loads on its bearings."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.unit_systems import convert
+from kurbel.numerics.extreme import Extreme
 from kurbel.report.pictures.picture import Axis, Curve, Panel, Words
 from kurbel.report.pictures.sampling import Samples, pieces
 from kurbel.report.pictures.source import Source, mark
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
-    from kurbel.numerics.extreme import Extreme
 
 _FRAMES = {
     "load_throw": "throw: outward →",

@@ -1,7 +1,5 @@
 """The pictures of the whole machine: turning effort with its lobes, orders as bars, vibrations of the shaft line."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 

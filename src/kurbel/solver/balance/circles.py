@@ -1,21 +1,19 @@
 """A vector in the plane that returns after a turn, as a sum of circles that it runs through in either sense."""
 
-from __future__ import annotations
-
+import math
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.extreme import Extreme
-from kurbel.numerics.roots import bracketed_roots
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
+from kurbel.numerics.roots import roots_by_slope
 
 _ALIKE = 64 * np.finfo(float).eps
 """By which summits of one height differ by rounding, relatively."""
+_ROUNDING = 8 * np.finfo(float).eps
+"""Of samples, beside the sum of the sizes that make them."""
 
 
 def unit_vectors(degrees: float | Array) -> ComplexArray:
@@ -31,30 +29,30 @@ class Circles:
         self.forward, self.backward = forward, backward
         self._orders = np.flatnonzero((forward != 0) | (backward != 0)) + 1
 
-    def turned_by(self, weight: complex) -> Circles:
+    def turned_by(self, weight: complex) -> "Circles":
         """Return the sum of this and a vector that turns once with φ."""
         forward = self.forward.copy()
         forward[0] += weight
         return Circles(forward, self.backward)
 
     @property
-    def along(self) -> Circles:
+    def along(self) -> "Circles":
         """The component along the real axis alone."""
         half = (self.forward + self.backward.conj()) / 2
         return Circles(half, half.conj())
 
     def at(self, degrees: Array) -> ComplexArray:
         """Return the vectors (m,) at angles (m,) in degrees."""
-        return self._summed(self._turned(degrees), 0)
+        (vectors,) = self._derivatives(degrees, 1)
+        return np.asarray(vectors)
 
-    def _turned(self, degrees: Array) -> ComplexArray:
-        return unit_vectors(np.multiply.outer(np.asarray(degrees, float), self._orders))
-
-    def _summed(self, turned: ComplexArray, derivative: int) -> ComplexArray:
-        """Return the vectors, or the first derivative by φ, per radian, from e^{inφ} (m, K)."""
-        rates = (1j * self._orders) ** derivative
+    def _derivatives(self, degrees: Array, count: int) -> ComplexArray:
+        """Return the vectors and their derivatives by φ, per radian, at angles (m,) in degrees, (count, m)."""
+        turned = unit_vectors(np.multiply.outer(np.asarray(degrees, float), self._orders))
+        rates = (1j * self._orders) ** np.arange(count)[:, None]
         forward, backward = self.forward[self._orders - 1] * rates, self.backward[self._orders - 1] * rates.conj()
-        return np.asarray(turned @ forward + turned.conj() @ backward)
+        # either sense by itself, so that what is mirrored cancels to the last digit
+        return np.asarray(forward @ turned.T + backward @ turned.T.conj())
 
     @cached_property
     def summits(self) -> tuple[Extreme, ...]:
@@ -83,22 +81,23 @@ class Circles:
         angles: Array = np.linspace(0.0, 360.0, count + 1)
         slopes = self._sampled_slopes(count)
         falling = np.flatnonzero((slopes[:-1] > 0) & (slopes[1:] <= 0))
-        low, high = angles[falling], angles[falling + 1]
-        if not len(falling):
-            return low
-        return bracketed_roots(self._slopes_of_square, low, high, slopes[falling], slopes[falling + 1])
+        ends = (angles[falling], angles[falling + 1], slopes[falling], slopes[falling + 1])
+        return roots_by_slope(self._slopes_of_square, *ends)
 
-    def _slopes_of_square(self, degrees: Array) -> Array:
-        """Return half the derivative by φ of |F|²."""
-        turned = self._turned(degrees)
-        return np.asarray((self._summed(turned, 0).conj() * self._summed(turned, 1)).real)
+    def _slopes_of_square(self, degrees: Array) -> tuple[Array, Array]:
+        """Return half the derivative by φ, in radians, of |F|², and its own derivative by φ in degrees."""
+        vector, slope, bend = self._derivatives(degrees, 3)
+        turning = np.abs(slope) ** 2 + (vector.conj() * bend).real
+        return (vector.conj() * slope).real, turning * (math.pi / 180)
 
     def _sampled_slopes(self, count: int) -> Array:
-        """Return the same at equal angles, both ends of the turn included."""
-        spectrum = np.zeros(count, complex)
+        """Return the slopes of the square at equal angles, both ends of the turn included; 0 what is rounding."""
         orders = self._orders
+        spectrum = np.zeros(count, complex)
         spectrum[orders], spectrum[-orders] = self.forward[orders - 1], self.backward[orders - 1]
-        turns = 1j * np.fft.fftfreq(count, 1 / count)
-        vectors, slopes = np.fft.ifft(spectrum), np.fft.ifft(turns * spectrum)
+        turns = np.fft.fftfreq(count, 1 / count)
+        vectors, slopes = np.fft.ifft((spectrum, 1j * turns * spectrum), norm="forward")
         found = np.asarray((vectors.conj() * slopes).real)
+        steepest = np.abs(spectrum).sum() * np.abs(turns * spectrum).sum()
+        found = np.where(np.abs(found) > _ROUNDING * steepest, found, 0.0)
         return np.append(found, found[:1])

@@ -9,17 +9,24 @@ from kurbel.solver.balance.products import Products
 
 _SHOWN = 1e-9
 """Orders that are smaller in every throw and weight, beside the largest one, are not told."""
+_MOST = 24
+"""Orders that are told one by one; a rod hardly longer than the crank has thousands, which die away ever so slowly."""
 
 
 class Free(NamedTuple):
     """The force over ω² in kg m and the moment over ω² in kg m², None where a place along the shaft is not known.
 
-    orders: those that some throw or weight has, whether or not they cancel.
+    orders: the lowest of those that some throw or weight has, whether or not they cancel; higher: the others.
     """
 
     force: Circles
     moment: Circles | None
     orders: tuple[int, ...]
+    higher: tuple[int, ...] = ()
+
+    def at_most(self, vector: Circles) -> float:
+        """Return what the force or the moment of the higher orders is at most, whatever the angle."""
+        return float(sum(np.abs(part[self.orders[-1] :]).sum() for part in (vector.forward, vector.backward)))
 
     @classmethod
     def of(cls, products: Products, z_0: float | None) -> "Free":
@@ -28,5 +35,5 @@ class Free(NamedTuple):
         known = z_0 is not None and len(places) == len(products.places)
         moment = products.summed(np.array(places) - z_0) if known else None
         sizes = (np.abs(products.forward) + np.abs(products.backward)).max(axis=0)
-        orders = np.flatnonzero(sizes > _SHOWN * sizes.max()) + 1
-        return cls(products.summed(), moment, tuple(orders.tolist()))
+        orders = tuple((np.flatnonzero(sizes > _SHOWN * sizes.max()) + 1).tolist())
+        return cls(products.summed(), moment, orders[:_MOST], orders[_MOST:])

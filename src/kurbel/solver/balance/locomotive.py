@@ -1,18 +1,13 @@
 """What the balance of a locomotive does to its wheels, its drawbar and its course."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING
 
+from kurbel.machine.balance import Locomotive
 from kurbel.numerics.extreme import Extreme
+from kurbel.solver.balance.machine_balance import MachineBalance
 from kurbel.solver.shaft.weights import Weight, levered
-
-if TYPE_CHECKING:
-    from kurbel.machine.balance import Locomotive
-    from kurbel.solver.balance.machine_balance import MachineBalance
 
 
 class LocomotiveBalance:

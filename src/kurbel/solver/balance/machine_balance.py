@@ -1,7 +1,5 @@
 """What `kurbel balance` answers for the whole machine: free forces and moments, their orders, and the best weights."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable, Sequence
@@ -10,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
@@ -25,7 +24,6 @@ from kurbel.solver.shaft.weights import OwnThrow, Weight, counterweights_of, mid
 from kurbel.solver.turning.torques import Sum
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
     from kurbel.solver.balance.locomotive import LocomotiveBalance
 
 _REAL = 1e-12
@@ -130,18 +128,23 @@ class MachineBalance(Results):
     @cached_property
     def free(self) -> Free:
         """What is free, with the counterweights and balance shafts of the machine file."""
-        return Free.of(self._throws_alone.with_weights((*self.counterweights, *shafts_of(self.machine))), self.z_0)
+        return Free.of(self._throws_alone.with_weights(self._given), self.z_0) if self._given else self.bare
+
+    @cached_property
+    def _given(self) -> tuple[Weight, ...]:
+        """The weights of the machine file, on the crank and on shafts."""
+        return (*self.counterweights, *shafts_of(self.machine))
 
     @cached_property
     def book(self) -> Free | None:
         """The same by the acceleration of first order, R 291; None where the book has none for a mechanism."""
         found = of_throws(self.throws, book=True)
-        return found and Free.of(found.with_weights((*self.counterweights, *shafts_of(self.machine))), self.z_0)
+        return found and Free.of(found.with_weights(self._given), self.z_0)
 
     @property
     def cycle(self) -> float:
         """Degrees after which everything repeats: a turn, or with gas in the rolling moment that of the machine."""
-        return 360.0 * (self.machine.revolutions if any(one.drive.gas for one in self._cylinders) else 1)
+        return 360.0 * (self.machine.revolutions if any(one.drive.has_gas for one in self._cylinders) else 1)
 
     @cached_property
     def roll(self) -> Sum | None:
@@ -176,9 +179,10 @@ class MachineBalance(Results):
     def _roll_extremes(self) -> Extremes | None:
         if not self.roll:
             return None
-        from kurbel.solver.turning.excess import Excess
+        from kurbel.solver.turning.excess import torque_extremes
 
-        return Excess(self.roll).effort_extremes
+        grid = self.roll.cuts.first_of(self.roll.repeats).grid()
+        return torque_extremes(self.roll, grid, self.roll.torque(grid.degrees, grid.within))
 
     M_roll_max = passed_on("_roll_extremes", "largest", "Largest rolling moment on the frame in N m.")
     M_roll_min = passed_on("_roll_extremes", "smallest", "Smallest rolling moment on the frame in N m.")
@@ -263,7 +267,7 @@ class MachineBalance(Results):
         return shafts(self.bare.force, self.bare.moment, self.z_0)
 
     @cached_property
-    def locomotive(self) -> LocomotiveBalance | None:
+    def locomotive(self) -> "LocomotiveBalance | None":
         """What of it concerns the wheels of a locomotive; None of another machine."""
         given = self.machine.locomotive
         if given is None:

@@ -9,12 +9,10 @@ from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.mechanisms import Mechanism
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.fourier import coefficients
 from kurbel.solver.balance.circles import Circles, unit_vectors
 from kurbel.solver.shaft.weights import OwnThrow, Weight
-
-_ROUNDING = 16 * np.finfo(float).eps
-"""What is left of terms that cancel, beside the sum of their sizes, is rounding."""
 
 
 class Products(NamedTuple):
@@ -43,8 +41,7 @@ class Products(NamedTuple):
 
 
 def _sum(terms: ComplexArray) -> ComplexArray:
-    total, sizes = terms.sum(axis=0), np.abs(terms).sum(axis=0)
-    return np.where(np.abs(total) > _ROUNDING * sizes, total, 0.0)
+    return np.asarray(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0)))
 
 
 def of_throws(throws: Sequence[OwnThrow], book: bool = False) -> Products | None:

@@ -1,7 +1,5 @@
 """The rolling moment on the frame about the shaft: against the turning effort, and what the masses add to it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,14 +1,12 @@
 """The pins and main bearings of a machine, from the forces of its cylinders."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kurbel import crank_formulas as formulas
+from kurbel.arrays import Array
 from kurbel.crank_angle import jet_angle
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -20,9 +18,6 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.pins import on_crosshead_pin, on_pin
 from kurbel.solver.shaft.line import ShaftLine, Throw, shaft_obstacle
 from kurbel.solver.shaft.statics import Vector, norm, turned
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 
 class RodPin(Bearing):

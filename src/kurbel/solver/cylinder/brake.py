@@ -1,7 +1,5 @@
 """What the brake has measured against what the indicator shows."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cached_property
@@ -20,7 +18,7 @@ class Brake:
     other way round.
     """
 
-    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
+    def __init__(self, machine: Machine, cylinders: "Sequence[CylinderForces]") -> None:
         self.machine = machine
         self.cylinders = cylinders
 

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle, jet_angle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
@@ -16,14 +15,13 @@ from kurbel.machine.variants import taken
 from kurbel.mechanisms import fan
 from kurbel.numerics.arithmetic import some, sqrt, where
 from kurbel.numerics.gauss import LOBATTO_12
-from kurbel.numerics.grid import Cuts, Grid
+from kurbel.numerics.grid import Cuts, Grid, Pieces
+from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
     from kurbel.machine.resistance import RamForce
     from kurbel.solver.cylinder.gas import PistonGas
-    from kurbel.solver.cylinder.inside import Inside
     from kurbel.solver.cylinder.pins import PinFriction
     from kurbel.solver.cylinder.rod import ExactRod
 
@@ -130,6 +128,11 @@ class Drive:
         indicated = [number for number, piston in enumerate(self.cylinder.pistons) if piston.indicator]
         return tuple(self._gas_on(number) for number in indicated)
 
+    @property
+    def has_gas(self) -> bool:
+        """Whether any piston has an indicator."""
+        return any(piston.indicator for piston in self.cylinder.pistons)
+
     def _gas_on(self, number: int) -> PistonGas:
         from kurbel.solver.cylinder.gas import PistonGas
 
@@ -146,7 +149,7 @@ class Drive:
     @cached_property
     def has_force(self) -> bool:
         """Whether any force acts along the stroke line, or a moment on what swings."""
-        return bool(self.gas) or self.has_inertia or self.weight is not None or self.resistance is not None
+        return self.has_gas or self.has_inertia or self.weight is not None or self.resistance is not None
 
     @property
     def resistance(self) -> RamForce | None:
@@ -217,11 +220,10 @@ class Drive:
         """Return the state with slopes by φ at crank angles (n,), on the sides of jumps that hold `within`."""
         return State(self, jet_angle(degrees, beyond), within)
 
-    def on(self, grid: Grid, rows: Any = np.s_[:]) -> State:
-        """Return the state at the nodes of a grid, or of these pieces of it."""
-        drive = self if grid.variant is None else self.taken(grid.variant[rows][:, None])
-        within = np.broadcast_to(grid.within[rows, :1], grid.degrees[rows].shape)
-        return State(drive, CrankAngle.of(np.asfortranarray(grid.degrees[rows]), grid.beyond[rows]), within)
+    def on(self, pieces: Pieces) -> State:
+        """Return the state at the nodes of pieces, each on its side of every jump."""
+        drive = self if pieces.variant is None else self.taken(pieces.variant[:, None])
+        return State(drive, CrankAngle.of(pieces.degrees, pieces.beyond, pieces.right_angle), pieces.within)
 
     @cached_property
     def cuts(self) -> Cuts:

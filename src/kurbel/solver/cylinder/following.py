@@ -1,16 +1,11 @@
 """One cylinder among several, told at the angles of crank 1."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
+from kurbel.arrays import Array
 from kurbel.numerics.grid import Cuts
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.state import State
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 
 class Following:

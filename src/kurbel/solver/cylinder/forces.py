@@ -1,14 +1,15 @@
 """Forces and key values of one cylinder; each is computed when it is asked for, and none depends on a step."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.quantities import Lists
 from kurbel.machine import Cylinder, Machine
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.arithmetic import every, total, where
@@ -16,18 +17,16 @@ from kurbel.numerics.extreme import Extreme, largest, smallest
 from kurbel.numerics.grid import Pieces, integral
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.cylinder.searched import Searched
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.figures import Results, crank_angles
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
-    from kurbel.declared.quantities import Lists
     from kurbel.solver.cylinder.brake import Brake
     from kurbel.solver.cylinder.guide_load import GuideLoad
     from kurbel.solver.cylinder.indicated import Indicated
     from kurbel.solver.cylinder.pin_works import PinWorks
-    from kurbel.solver.cylinder.rod_load import RodLoad
 
 
 class CylinderForces(Searched, Results):
@@ -54,19 +53,18 @@ class CylinderForces(Searched, Results):
         return self.drive.name
 
     @property
-    def answering(self) -> tuple[Any, ...]:
-        """What answers key values, the first that knows one."""
-        gas, brake = self.drive.own_gas, self.drive.machine.brake_power
-        return (
-            self,
-            self.motion,
-            *((self.rod_load, self.pin_works, self.guide_load) if self.drive.has_force else ()),
-            *((self.indicated,) if gas else ()),
-            *((self.brake,) if gas and brake is not None else ()),
-        )
+    def answering(self) -> Iterator[Any]:
+        """What answers key values, the first that knows one; the others need not be made for it."""
+        yield from (self, self.motion)
+        if self.drive.has_force:
+            yield from (self.rod_load, self.pin_works, self.guide_load)
+        if self.drive.own_gas:
+            yield self.indicated
+            if self.drive.machine.brake_power is not None:
+                yield self.brake
 
     @cached_property
-    def pin_works(self) -> PinWorks:
+    def pin_works(self) -> "PinWorks":
         """Works of friction in pins and journals."""
         from kurbel.solver.cylinder.pin_works import PinWorks
 
@@ -80,21 +78,21 @@ class CylinderForces(Searched, Results):
         return RodLoad(self)
 
     @property
-    def guide_load(self) -> GuideLoad:
+    def guide_load(self) -> "GuideLoad":
         """How hard the crosshead presses on its guide."""
         from kurbel.solver.cylinder.guide_load import GuideLoad
 
         return GuideLoad(self)
 
     @cached_property
-    def indicated(self) -> Indicated:
+    def indicated(self) -> "Indicated":
         """What the traces of the cylinder's own piston tell."""
         from kurbel.solver.cylinder.indicated import Indicated
 
         return Indicated(self.drive.own_gas)
 
     @cached_property
-    def brake(self) -> Brake | None:
+    def brake(self) -> "Brake | None":
         """What the brake tells, where this is the only cylinder."""
         from kurbel.solver.cylinder.brake import Brake
 

@@ -1,7 +1,5 @@
 """Friction of a crosshead and of piston rings, after Redtenbacher 1862 (D) and with signs for every quadrant."""
 
-from __future__ import annotations
-
 import math
 from typing import TYPE_CHECKING
 
@@ -13,7 +11,7 @@ if TYPE_CHECKING:
     from kurbel.machine.friction import Rings
 
 
-def ring_force(rings: Rings, bore: float) -> float:
+def ring_force(rings: "Rings", bore: float) -> float:
     """Return the friction force n π d h p_r f of n piston rings in N (D, Kolbenreibung); bore d in m."""
     return rings.count * math.pi * bore * rings.height * rings.pressure * rings.coefficient
 

@@ -1,22 +1,18 @@
 """The force and the work of gas, steam or water on one piston."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from copy import copy
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from kurbel.arrays import Indices
 from kurbel.machine.piston import Piston
 from kurbel.machine.variants import taken
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import total
 from kurbel.numerics.cycles import later
 from kurbel.solver.pressure import Pressure, Setting, pressure_in
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Indices
 
 
 class PistonGas:
@@ -41,7 +37,7 @@ class PistonGas:
         self.crank = None if crank is None else pressure_in(crank, at_crank)
         self.stroke = mechanism.stroke
 
-    def taken(self, index: Indices) -> PistonGas:
+    def taken(self, index: Indices) -> "PistonGas":
         """Return the gas of these variants, at angles of the shape of the index."""
         other = copy(self)
         other.piston, other.stroke = taken(self.piston, index), taken(self.stroke, index)

@@ -1,7 +1,5 @@
 """How hard the crosshead's shoe presses on its guide, and wears it."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any
 
 from kurbel.numerics.arithmetic import some
@@ -14,7 +12,7 @@ if TYPE_CHECKING:
 class GuideLoad:
     """Loads of one guide. Attributes are named by the ids of the key values, in SI; None without a shoe."""
 
-    def __init__(self, forces: CylinderForces) -> None:
+    def __init__(self, forces: "CylinderForces") -> None:
         self._forces = forces
         self._area = forces.drive.guide_area
 

@@ -1,14 +1,13 @@
 """Motion of one cylinder's mechanism: dead centres, strokes, velocities, accelerations and their exact extremes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle, jet_angle
 from kurbel.machine.variants import count_of, taken
 from kurbel.mechanisms import Mechanism
@@ -17,9 +16,6 @@ from kurbel.numerics.cycles import cycles_of_turns
 from kurbel.numerics.extreme import Extreme, largest, smallest
 from kurbel.numerics.grid import Grid, ascending
 from kurbel.numerics.search import Extremes, Sampled, extremes, zeros
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
 
 
 class Motion:
@@ -113,7 +109,7 @@ class Motion:
     def _acceleration(self) -> Extremes:
         return self._extremes(_curvature, 2, self.mechanism.acceleration_extremes())
 
-    def _extremes(self, function: Kinematic, order: int, closed: tuple[Extreme, ...] = ()) -> Extremes:
+    def _extremes(self, function: "Kinematic", order: int, closed: tuple[Extreme, ...] = ()) -> Extremes:
         """Return the extremes over a turn of a function of the crank angle times ω^order.
 
         closed: where the mechanism has them. The search is as exact, and takes a sweep over them four times as long.
@@ -123,7 +119,7 @@ class Motion:
         found = _of_closed(closed) if closed else self._searched(function)
         return Extremes(*(Extreme(one.value * scale, one.degrees) for one in found))
 
-    def _searched(self, function: Kinematic) -> Extremes:
+    def _searched(self, function: "Kinematic") -> Extremes:
         """Search the extremes of a kinematic quantity over one revolution by the roots of its slope."""
         evaluate = _Evaluated(self.mechanism, function)
         return extremes(self._turn, evaluate.on(self._turn), evaluate)["it"]
@@ -219,7 +215,7 @@ class _Evaluated:
     def __call__(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         return {"it": Sampled.of(self.function(self.mechanism, jet_angle(degrees)), degrees.shape)}
 
-    def of(self, variant: Indices) -> _Evaluated:
+    def of(self, variant: Indices) -> "_Evaluated":
         """Return the same of these variants."""
         return _Evaluated(taken(self.mechanism, variant), self.function)
 

@@ -1,18 +1,16 @@
 """The works of friction in the pins of a connecting rod and in the journals of its throw."""
 
-from __future__ import annotations
-
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.grid import Pieces, integral
 from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.solver.cylinder.forces import CylinderForces
 
 
@@ -22,7 +20,7 @@ class PinWorks:
     None without the coefficient, or without a force.
     """
 
-    def __init__(self, forces: CylinderForces) -> None:
+    def __init__(self, forces: "CylinderForces") -> None:
         self._forces = forces
         friction = forces.drive.cylinder.friction
         self._given = friction.of_pins if friction and forces.drive.has_force else ()

@@ -6,8 +6,6 @@ mass goes to and fro with the piston. The second pulls at the pin with its centr
 is carried by the guide and the crank pin, two equal forces square to the stroke line.
 """
 
-from __future__ import annotations
-
 from functools import cached_property
 from typing import Any
 

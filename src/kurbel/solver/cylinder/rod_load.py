@@ -4,8 +4,6 @@ Unless crosshead pin and bush part once in every turn, no oil comes between them
 for 15° of crank angle and 3 % of the larger load in the other direction. It takes both every 5°, kurbel at the roots.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -20,7 +18,7 @@ if TYPE_CHECKING:
     from kurbel.solver.cylinder.state import State
 
 
-def rod_load(state: State, without: float = 0.0) -> Any:
+def rod_load(state: "State", without: float = 0.0) -> Any:
     """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft.
 
     without: mass in kg that is left out beside the connecting rod's share. None without a gas force, and without a
@@ -38,7 +36,7 @@ def rod_load(state: State, without: float = 0.0) -> Any:
 class RodLoad:
     """Loads of gas and moving parts on one rod. Attributes are named by the ids of the key values, in SI, or None."""
 
-    def __init__(self, forces: CylinderForces) -> None:
+    def __init__(self, forces: "CylinderForces") -> None:
         self._forces = forces
 
     @property

@@ -1,7 +1,5 @@
 """The cycle of one cylinder, searched: extremes of every column, changes of sign, and the angles of a value."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from functools import cached_property
@@ -9,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
@@ -28,11 +27,10 @@ from kurbel.solver.cylinder.assembled import Assembled
 from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.state import State
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array, Indices
     from kurbel.numerics.where import Where
-    from kurbel.solver.cylinder.state import State
 
 
 _SURE = 4.0
@@ -60,7 +58,7 @@ class Quantities:
         """Return them in the state at the nodes of a grid."""
         return {name: Sampled.on(grid, getattr(state, name)) for name in self.names}
 
-    def of(self, variant: Indices) -> Quantities:
+    def of(self, variant: Indices) -> "Quantities":
         """Return the same of these variants (n,)."""
         return Quantities(self.drive.taken(variant), self.names, self.rubs)
 
@@ -154,7 +152,7 @@ class Searched:
         high, low = zip(*found, strict=True)
         return Extremes(largest(*high), smallest(*low))
 
-    def angles_where(self, column: str, value: float) -> Where | None:
+    def angles_where(self, column: str, value: float) -> "Where | None":
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         if getattr(self.samples, column) is None:
             return None

@@ -1,13 +1,12 @@
 """Everything that can be said of one cylinder at given crank angles, each quantity computed when it is asked for."""
 
-from __future__ import annotations
-
 from functools import cached_property, reduce
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
 from kurbel.mechanisms import every_quantity
@@ -18,7 +17,6 @@ from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.rod_load import rod_load
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.solver.cylinder.drive import Drive
     from kurbel.solver.cylinder.pins import Rubbing
     from kurbel.solver.pressure import Pressure
@@ -33,7 +31,7 @@ class State:
     A quantity that the machine does not have is None. What the mechanism offers is one of them.
     """
 
-    def __init__(self, drive: Drive, angle: CrankAngle, within: Array | Inside | None = None) -> None:
+    def __init__(self, drive: "Drive", angle: CrankAngle, within: Array | Inside | None = None) -> None:
         self.drive = drive
         self.angle = angle
         if within is None:
@@ -148,7 +146,7 @@ class State:
         """+1 on the outstroke, −1 on the return stroke; +1 for what turns on and on."""
         return self.inside.direction
 
-    def pressure(self, end: Pressure) -> Any:
+    def pressure(self, end: "Pressure") -> Any:
         """Return the gauge pressure in Pa at an end of a piston."""
         return end(self.way, self.angle, self.inside.held(end))
 
@@ -233,7 +231,7 @@ class State:
         return self.P - self.direction * steady if some(steady != 0) else self.P
 
     @cached_property
-    def rubbing(self) -> Rubbing | None:
+    def rubbing(self) -> "Rubbing | None":
         """Moments of friction in pins and journals in N m; None where there is none."""
         friction = self.drive.pin_friction if self.inside.rubs else None
         if friction is None or self.P is None:
@@ -241,7 +239,7 @@ class State:
         return friction.moments(self.unrubbed)
 
     @property
-    def unrubbed(self) -> State:
+    def unrubbed(self) -> "State":
         """The state as it would be if pins and journals did not rub: the loads that make them rub."""
         return State(self.drive, self.angle, self.inside.unrubbed)
 

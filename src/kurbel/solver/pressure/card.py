@@ -4,7 +4,7 @@ import math
 from copy import copy
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,15 +12,13 @@ from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle, within_cycle
 from kurbel.machine.angle_points import CYCLES
 from kurbel.machine.indicator import STROKES, Card, Line
+from kurbel.machine.rectangle import Rectangle
 from kurbel.mechanisms import fan
 from kurbel.numerics.arithmetic import sqrt, where
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.pressure import Setting
 from kurbel.solver.pressure.places import segments_over
 from kurbel.solver.pressure.segments import Process, Processes, Segment, Stroke, polytropic_exponent
-
-if TYPE_CHECKING:
-    from kurbel.machine.rectangle import Rectangle
 
 
 class Held(NamedTuple):
@@ -126,7 +124,7 @@ _ROUNDING = 3e-13
 """Degrees of crank angle by which the angle of a corner may be off: a few units in the last place of 720."""
 
 
-def rectangle_process(card: "Rectangle", setting: Setting) -> Process:
+def rectangle_process(card: Rectangle, setting: Setting) -> Process:
     """Return the process of a rectangular card: the mean pressure stands on the stroke that drives, or is driven."""
     level = setting.base if card.level is None else card.level
     above = {"expansion": max(card.mean, 0.0), "compression": max(-card.mean, 0.0)}

@@ -1,16 +1,10 @@
 """What a trace is freed from before it counts: drift over the cycle, and a level that the sensor does not know."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.machine.trace import Pegging, Trace
 from kurbel.solver.pressure import Setting
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _AROUND = 2.5
 """Degrees on either side of the pegging angle over which a cycle's level is the mean: one sample is noise."""

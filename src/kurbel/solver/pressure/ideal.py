@@ -3,8 +3,6 @@
 Every line is closed: pressures at its corners follow from p V^n = const with absolute pressures, and so does its area.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

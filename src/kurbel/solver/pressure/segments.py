@@ -2,15 +2,13 @@
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Indices
 from kurbel.machine.variants import count_of
-
-if TYPE_CHECKING:
-    from kurbel.solver.pressure import Setting
+from kurbel.solver.pressure import Setting
 
 
 class Segment(NamedTuple):
@@ -66,7 +64,7 @@ class Processes(NamedTuple):
     each: tuple[Process, ...]
     which: Indices | None = None
 
-    def variants(self, setting: "Setting") -> int | None:
+    def variants(self, setting: Setting) -> int | None:
         """Return of how many variants they are in this setting; None where all have the same."""
         return count_of(setting.mechanism) if self.which is None else len(self.which)
 

@@ -1,19 +1,13 @@
 """A chain of masses on pieces of shaft, as numbers: J θ̈ + C θ̇ + K θ = M."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray
 from kurbel.frozen import frozen
 from kurbel.machine.shaft_line import ShaftLine
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
-
 
 _ARRAYS = ("inertias", "stiffnesses", "piece_damping", "mass_damping", "loss")
 
@@ -34,7 +28,7 @@ class Chain:
     ground: str = ""
 
     @classmethod
-    def of(cls, line: ShaftLine, inertias: Sequence[float]) -> Chain:
+    def of(cls, line: ShaftLine, inertias: Sequence[float]) -> "Chain":
         """Return the chain of a shaft line; inertias: those of its masses in kg m², with all that stands there."""
         each = np.array([(piece.stiffness, piece.damping, piece.loss_factor) for piece in line.pieces]).T
         damping = np.array([mass.damping for mass in line.masses])
@@ -64,7 +58,7 @@ class Chain:
         """Whether anything damps it."""
         return bool(self.piece_damping.any() or self.mass_damping.any() or self.loss.any())
 
-    def reversed(self) -> Chain:
+    def reversed(self) -> "Chain":
         """Return the same chain read from its other end."""
         ground = {"before": "after", "after": "before"}.get(self.ground, "")
         turned = {name: getattr(self, name)[::-1] for name in _ARRAYS}

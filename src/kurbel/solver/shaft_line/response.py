@@ -4,17 +4,10 @@
 larger of two rows first.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from kurbel.arrays import Array, ComplexArray
 from kurbel.solver.shaft_line.chain import Chain
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array, ComplexArray
-
 
 _AT_ONCE = 2048
 """Orders at speeds that are solved together: what the nearest memory holds."""

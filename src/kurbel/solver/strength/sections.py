@@ -4,8 +4,6 @@ All functions are pointwise: numbers, arrays (n,) or jets, in N, N m and m, give
 length at a time: the product of three tiny ones would be zero.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -4,13 +4,11 @@ What is damped by the speed has an equation over the angle, `kurbel.solver.shaft
 it is known of single orders only.
 """
 
-from __future__ import annotations
-
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.machine.shaft_line import ShaftLine
 from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.elements import STAGES
@@ -23,9 +21,6 @@ from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed_lines import speed_law
 from kurbel.solver.turning.torques import Sum, Torque
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 _MOST_WORK = 5e7
 """Multiplications that one solution of all elements may take; with what refines them that is about a second."""

@@ -1,12 +1,11 @@
 """What `kurbel flywheel` tells over the angle of crank 1."""
 
-from __future__ import annotations
-
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.numerics.jet import Jet
 from kurbel.numerics.search import Sampled
 from kurbel.solver.figures import Columns
@@ -15,7 +14,6 @@ from kurbel.solver.turning.speed import SpeedLine
 from kurbel.solver.turning.torques import Sum, Torque
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.solver.turning.coupling import ElasticCoupling
 
 
@@ -32,20 +30,20 @@ class TurningCurves:
     def __init__(self, turned: MachineEffort, crank: float | None, phi: Array, within: Array) -> None:
         self._turned, self._crank, self._phi, self._within = turned, crank, phi, within
 
-    def columns(self, speed: SpeedLine | ElasticCoupling | None) -> Columns:
+    def columns(self, speed: "SpeedLine | ElasticCoupling | None") -> Columns:
         """Return the columns."""
         own = {id: partial(self._value, id) for id in ("M", "M_load", "T", "T_inertia")}
-        elastic = None if isinstance(speed, SpeedLine) else speed
-        of_speed = {
-            "omega": lambda: speed and speed.omega(self._phi),
-            "alpha": lambda: speed and speed.alpha(self._phi),
-            "M_coupling": lambda: elastic and elastic.torque(self._phi),
-        }
+        of_speed = {id: partial(self._of_speed, speed, id) for id in OF_SPEED}
         return Columns(self._phi, {**own, "E": lambda: self._turned.excess.at(self._phi), **of_speed})
 
     def _value(self, column: str) -> Array | None:
         found = self.curve(column)
         return found and np.asarray(found.value)
+
+    def _of_speed(self, speed: "SpeedLine | ElasticCoupling | None", column: str) -> Array | None:
+        angles = np.mod(self._phi, self._turned.cycle)
+        found = speed.curves(angles, angles).get(column) if speed else None
+        return None if found is None else found.value
 
     def curve(self, column: str) -> Sampled | None:
         """Return a column of the torques, or their work, with its slope by φ; None for one left out."""

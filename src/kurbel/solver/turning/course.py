@@ -1,19 +1,14 @@
 """What drives and what moves over the turn, whatever the flywheel: found once for all flywheels that are tried."""
 
-from __future__ import annotations
-
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
 from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.machine_effort import MovingInertia
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 
 class Place:

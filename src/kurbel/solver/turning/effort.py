@@ -1,15 +1,15 @@
 """What cylinders give to the shaft, over the angle of crank 1: its torque, that of its masses, their inertia."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.alike import gathered, work_alike
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.brackets import Sampled
 from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
@@ -18,8 +18,8 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.state import State
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
+_SAME_PLACE = 1e-12
+"""Degrees by which cranks at equal distances, as of a firing order, stand elsewhere by rounding."""
 
 
 class CylinderEffort:
@@ -41,12 +41,21 @@ class CylinderEffort:
         cuts = own_cuts(self._alike[0])
         return Cuts.joined([cuts.shifted(behind, self._cycle) for behind in self._positions.tolist()])
 
+    @cached_property
+    def repeats(self) -> int:
+        """How often it comes back in the cycle: as often as the cranks stand alike over that of a cylinder."""
+        own = self._drive.cycle
+        stand = np.sort(np.mod(self._positions, own))
+        parts = (each for each in range(len(stand), 0, -1) if len(stand) % each == 0)
+        return next(each for each in parts if _same_places(stand, own / each, own)) * round(self._cycle / own)
+
     def torque(self, degrees: Array, within: Array | Inside) -> Jet:
         """Return the torque; see `Torque`."""
         angles = degrees - self._behind(degrees)
         inside = within if isinstance(within, Inside) else (within - self._behind(within)).ravel()
         every = Sampled.of(self._torque_in(self._drive.jets_at(angles.ravel(), inside)), (angles.size,))
-        return Jet(*(part.reshape(angles.shape).sum(axis=0) for part in every))
+        values, slopes = (part.reshape(angles.shape) for part in every)
+        return Jet(unless_cancelled(values.sum(axis=0), np.abs(values).sum(axis=0)), slopes.sum(axis=0))
 
     def inside(self, within: Array) -> Inside:
         """Return what all angles in the pieces share that hold these (n,)."""
@@ -54,6 +63,12 @@ class CylinderEffort:
 
     def _behind(self, degrees: Array) -> Array:
         return self._positions.reshape(-1, *(1 for _ in degrees.shape))
+
+
+def _same_places(places: Array, turn: float, cycle: float) -> bool:
+    """Return whether places (n,) in degrees over a cycle are the same ones, but for rounding, when each is turned."""
+    apart = np.subtract.outer(places + turn, places)
+    return bool((np.abs(apart - cycle * np.rint(apart / cycle)).min(axis=1) <= _SAME_PLACE).all())
 
 
 def efforts(

@@ -3,24 +3,22 @@
 One sampling of both torques on the grid of their common pieces serves the mean, the extremes, the crossings and E.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.grid import Grid
+from kurbel.numerics.jet import Jet
 from kurbel.numerics.piecewise import Piecewise
 from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
 from kurbel.solver.turning.torques import Sum, Torque, Uniform
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
-    from kurbel.numerics.jet import Jet
 
 _ROUNDING = 1e-13
 """Beside the largest torque: a mean that is less is none, as that of masses without gas, but rounding."""
@@ -68,8 +66,7 @@ class Excess:
     @cached_property
     def effort_extremes(self) -> Extremes:
         """Largest and smallest turning effort in N m, one-sided values at jumps included."""
-        sampled = Sampled.of(self._sampled_effort, self.grid.degrees.shape)
-        return extremes(self.grid, {"M": sampled}, _Evaluated(Sum((1.0, self.effort))))["M"]
+        return torque_extremes(Sum((1.0, self.effort)), self.grid, self._sampled_effort)
 
     @cached_property
     def crossings(self) -> tuple[float, ...]:
@@ -86,7 +83,13 @@ class Excess:
         """Return E in J at crank angles (…,) in degrees, counted from φ = 0; an angle's E hangs on no other one."""
         if not self.crossings:
             return np.zeros_like(degrees)
-        return self.line.integral_to(np.mod(degrees, self.cycle))
+        found = self.line.integral_to(np.mod(degrees, self.cycle))
+        return np.asarray(unless_cancelled(found, self._to_and_fro))
+
+    @cached_property
+    def _to_and_fro(self) -> float:
+        """The works in J that speed up and slow down, all counted positive: what E is the difference of."""
+        return self.grid.integral(np.abs(self._sampled.value))
 
     @cached_property
     def _heights(self) -> Array:
@@ -123,6 +126,14 @@ class Excess:
     def dE(self) -> float:
         """ΔE in J, the largest swing of the excess work."""
         return self.largest.value - self.smallest.value if self.largest and self.smallest else 0.0
+
+
+def torque_extremes(torque: Sum, grid: Grid, sampled: Jet) -> Extremes:
+    """Return largest and smallest value in N m of a torque, one-sided values at jumps included.
+
+    sampled: the torque on the grid, which is the cycle or a part of it that comes back.
+    """
+    return extremes(grid, {"M": Sampled.of(sampled, grid.degrees.shape)}, _Evaluated(torque))["M"]
 
 
 class _Evaluated:

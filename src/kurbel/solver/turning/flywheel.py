@@ -1,12 +1,11 @@
 """What `kurbel flywheel` answers for the whole machine: turning effort, excess work, flywheel, coupling, speed line."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError
 from kurbel.machine import Machine
@@ -19,11 +18,10 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Columns, Results, passed_on
 from kurbel.solver.turning.columns import OF_SPEED, TurningCurves
 from kurbel.solver.turning.machine_effort import MachineEffort
-from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedLine, floquet
+from kurbel.solver.turning.speed import SpeedLine
 from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law, turning
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.machine.flywheel import Rim
     from kurbel.numerics.where import Where
     from kurbel.solver.turning.coupling import ElasticCoupling
@@ -63,7 +61,7 @@ class MachineTurning(Results):
         """The crank angles in degrees between which every quantity is smooth."""
         return self.excess.grid.breaks
 
-    def angles_where(self, column: str, value: float) -> Where | None:
+    def angles_where(self, column: str, value: float) -> "Where | None":
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         from kurbel.numerics.where import where
 
@@ -152,7 +150,7 @@ class MachineTurning(Results):
         return self.machine.flywheel.inertia if self.machine.flywheel else None
 
     @property
-    def _rim(self) -> Rim | None:
+    def _rim(self) -> "Rim | None":
         return self.machine.flywheel.rim if self.machine.flywheel else None
 
     @property
@@ -210,7 +208,7 @@ class MachineTurning(Results):
         return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
 
     @cached_property
-    def elastic(self) -> ElasticCoupling | None:
+    def elastic(self) -> "ElasticCoupling | None":
         """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
 
         Raises NoSolutionError where no motion of it repeats.
@@ -236,7 +234,7 @@ class MachineTurning(Results):
         return self.J == self.J_needed == 0 and not self.dE and not self.turned.masses
 
     @cached_property
-    def speed(self) -> SpeedLine | ElasticCoupling | None:
+    def speed(self) -> "SpeedLine | ElasticCoupling | None":
         """The speed of the crank shaft over the turn; None without a flywheel or a speed.
 
         Raises NoSolutionError where the machine stalls.
@@ -272,10 +270,12 @@ class MachineTurning(Results):
 
     @property
     def multiplier(self) -> float | None:
-        """Floquet multiplier per cycle; None where the load does not depend on the speed."""
-        if self.elastic:
-            return floquet(self.elastic.growth) if self._lines and self._lines.law else None
-        return self.speed.multiplier if isinstance(self.speed, SpeedDependentLoad) else None
+        """Floquet multiplier: what is left of a small disturbance after one cycle; stable below 1.
+
+        μ = exp(−∮ ∂M_load/∂ω/(J ω) dφ), or the largest float; None where the load does not depend on the speed.
+        """
+        minds = self._lines is not None and self._lines.law is not None
+        return math.exp(min(self.speed.growth, 709.7)) if minds and self.speed else None
 
     # the wanted δ, held against the speed line
 

@@ -5,15 +5,14 @@ z changes by the excess of the turning effort at uniform rotation, inertia force
 speed. Nothing cancels, whether the flywheel is heavy or the load stiff.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.errors import UsageError
 from kurbel.numerics.collocation import Periodic, Standstill, periodic
 from kurbel.numerics.elements import Elements
@@ -22,55 +21,50 @@ from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import Extremes, Sampled, extremes
 from kurbel.solver.turning.course import Course, Inertia, Place
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
+SpeedLaw = Callable[[Array], tuple[Array, Array]]
+"""How a load rises with the speed: takes r = (ω/ω_n)² − 1 (…,) and returns its torque less that at the nominal speed in
+N m, and the derivative of that by r, (…,) each."""
 
 
-class SpeedLaw(Protocol):
-    """How a load rises with the speed: its torque less that at the nominal speed, over r = (ω/ω_n)² − 1."""
-
-    def __call__(self, ratio: Array) -> tuple[Array, Array]:
-        """Return the rise in N m and its derivative by r, (…,)."""
-        ...
+def constant_law(ratio: Array) -> tuple[Array, Array]:
+    """A load that does not mind the speed; see `SpeedLaw`."""
+    return np.zeros_like(ratio), np.zeros_like(ratio)
 
 
-class PowerLaw:
-    """M_m ((ω/ω_n)^k − 1)."""
+def power_law(mean: float, exponent: float) -> SpeedLaw:
+    """Return M_m ((ω/ω_n)^k − 1)."""
 
-    def __init__(self, mean: float, exponent: float) -> None:
-        self.mean, self.exponent = mean, exponent
+    def law(ratio: Array) -> tuple[Array, Array]:
+        half, logarithm = exponent / 2, np.log1p(ratio)
+        return mean * np.expm1(half * logarithm), mean * half * np.exp((half - 1) * logarithm)
 
-    def __call__(self, ratio: Array) -> tuple[Array, Array]:
-        """See `SpeedLaw`."""
-        half = self.exponent / 2
-        logarithm = np.log1p(ratio)
-        return self.mean * np.expm1(half * logarithm), self.mean * half * np.exp((half - 1) * logarithm)
+    return law
 
 
-class SlipLaw:
-    """|M_m| (ω/ω_n − 1)/s: an induction machine on the grid, generator or motor."""
+def slip_law(mean: float, slip: float) -> SpeedLaw:
+    """Return |M_m| (ω/ω_n − 1)/s: an induction machine on the grid, generator or motor."""
+    steepness = abs(mean) / slip
 
-    def __init__(self, mean: float, slip: float) -> None:
-        self.steepness = abs(mean) / slip
-
-    def __call__(self, ratio: Array) -> tuple[Array, Array]:
-        """See `SpeedLaw`."""
+    def law(ratio: Array) -> tuple[Array, Array]:
         root = np.sqrt(1 + ratio)
-        return self.steepness * ratio / (1 + root), self.steepness / (2 * root)
+        return steepness * ratio / (1 + root), steepness / (2 * root)
+
+    return law
 
 
 class SpeedLine(ABC):
     """ω over the turn. `z(place)` is the kinetic energy beyond that of uniform rotation, in J.
 
-    grid, nodes: on which it is searched. Its extremes, and what hangs on them, raise Standstill where ω falls to
+    law: of the load; grid, nodes: on which it is searched; growth: logarithm of what is left of a small disturbance
+    after a cycle. Its extremes, and what hangs on them, raise Standstill where ω falls to
     SLOWEST times the nominal speed.
     """
 
     SLOWEST = 0.0
+    growth = 0.0
 
-    def __init__(self, course: Course, inertia: Inertia, grid: Grid, nodes: Place) -> None:
-        self.course = course
-        self.inertia = inertia
+    def __init__(self, course: Course, law: SpeedLaw, inertia: Inertia, grid: Grid, nodes: Place) -> None:
+        self.course, self.law, self.inertia = course, law, inertia
         self.grid = grid
         self._nodes = nodes
         self.cycle = float(grid.breaks[-1])
@@ -79,19 +73,11 @@ class SpeedLine(ABC):
     def z(self, place: Place) -> Array:
         """Return z in J at crank angles (…,) within the cycle."""
 
-    def _rise(self, ratio: Array) -> Array:
-        """Return what the load takes beyond its torque at the nominal speed, in N m; ratio: (ω/ω_n)² − 1."""
-        return np.zeros_like(ratio)
-
-    def _rise_slope(self, ratio: Array) -> Array:
-        """Return the derivative of that by the ratio."""
-        return np.zeros_like(ratio)
-
     def _ratio(self, place: Place) -> Sampled:
         """Return (ω/ω_n)² − 1 with its slope by φ."""
         energy = self.inertia.energy(place)
         ratio = self.z(place) / energy.value
-        return Sampled(ratio, (place.torque.value - self._rise(ratio) - ratio * energy.slope) / energy.value)
+        return Sampled(ratio, (place.torque.value - self.law(ratio)[0] - ratio * energy.slope) / energy.value)
 
     @cached_property
     def _samples(self) -> Sampled:
@@ -108,11 +94,6 @@ class SpeedLine(ABC):
         if not found.smallest.value > self.SLOWEST**2 - 1:
             raise Standstill(found.smallest.degrees)
         return found
-
-    def omega(self, degrees: Array) -> Array:
-        """Return the angular velocity in rad/s at crank angles (n,) in degrees."""
-        angles = np.mod(degrees, self.cycle)
-        return np.asarray(self.inertia.omega * np.sqrt(1 + self._ratio(self.course.at(angles, angles)).value))
 
     def curves(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return ω in rad/s and its derivative by time in rad/s², each with its slope by φ."""
@@ -141,15 +122,10 @@ class SpeedLine(ABC):
         """
         energy, bend = self.inertia.energy(place), self.inertia.energy_curvature(place)
         ratio, slope = self._ratio(place)
-        rising = self._rise_slope(ratio) * slope
+        rising = self.law(ratio)[1] * slope
         curvature = (place.torque.slope - rising - 2 * slope * energy.slope - ratio * bend) / energy.value
         half = self.inertia.omega**2 / 2
         return Sampled(half * slope, half * curvature)
-
-    def alpha(self, degrees: Array) -> Array:
-        """Return the angular acceleration in rad/s² at crank angles (n,) in degrees, just after a jump."""
-        angles = np.mod(degrees, self.cycle)
-        return self._alpha(self.course.at(angles, angles)).value
 
     @cached_property
     def alpha_extremes(self) -> Extremes:
@@ -183,7 +159,7 @@ class ConstantLoad(SpeedLine):
     SLOWEST = 0.01
 
     def __init__(self, course: Course, inertia: Inertia) -> None:
-        super().__init__(course, inertia, *course.fine)
+        super().__init__(course, constant_law, inertia, *course.fine)
         self.constant = self._constant()
 
     def z(self, place: Place) -> Array:
@@ -210,11 +186,6 @@ class ConstantLoad(SpeedLine):
         return constant
 
 
-def floquet(growth: float) -> float:
-    """Return the multiplier e^growth; what is beyond the range of a float is the end of it."""
-    return math.exp(min(growth, 709.7))
-
-
 class SpeedEquation:
     """z′ = M − M_load(ω), ω from z; see `collocation.Equation`."""
 
@@ -227,7 +198,7 @@ class SpeedEquation:
         place = self.course.at(degrees, within)
         return np.stack((place.torque.value, self.inertia.energy(place).value + self._more))
 
-    def eased(self, by: float) -> SpeedEquation:
+    def eased(self, by: float) -> "SpeedEquation":
         """See `collocation.Equation`: so much more inertia, as ½ J ω_n² in J."""
         return SpeedEquation(self.course, self.law, self.inertia, self.noise, by)
 
@@ -251,27 +222,13 @@ class SpeedDependentLoad(SpeedLine):
         torque = max(abs(extreme.value) for extreme in excess.effort_extremes)
         energy = inertia.energy(course.on(excess.grid)).value.min()
         noise = 1e-16 * min(torque, float(energy))
-        self._law = law
         self.solution: Periodic = periodic(
             SpeedEquation(course, law, inertia, noise), Elements.over(excess.grid.breaks)
         )
+        self.growth = self.solution.growth
         grid = Grid(np.append(self.solution.elements.low, excess.cycle))
-        super().__init__(course, inertia, grid, course.on(grid))
+        super().__init__(course, law, inertia, grid, course.on(grid))
 
     def z(self, place: Place) -> Array:
         """Return z in J; see `SpeedLine`."""
         return np.asarray(self.solution.at(place.degrees, place.within)[..., 0])
-
-    def _rise(self, ratio: Array) -> Array:
-        return self._law(ratio)[0]
-
-    def _rise_slope(self, ratio: Array) -> Array:
-        return self._law(ratio)[1]
-
-    @property
-    def multiplier(self) -> float:
-        """Floquet multiplier: what is left of a small disturbance of the energy after one cycle; stable below 1.
-
-        μ = exp(−∮ ∂M_load/∂ω/(J ω) dφ).
-        """
-        return floquet(self.solution.growth)

@@ -1,7 +1,5 @@
 """The speed line of a machine with any flywheel: rigid or elastic, under a load that minds the speed or does not."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cached_property
@@ -15,11 +13,11 @@ from kurbel.solver.turning.course import Course, Inertia
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed import (
     ConstantLoad,
-    PowerLaw,
-    SlipLaw,
     SpeedDependentLoad,
     SpeedLaw,
     SpeedLine,
+    power_law,
+    slip_law,
 )
 
 if TYPE_CHECKING:
@@ -37,8 +35,8 @@ def speed_law(turned: MachineEffort) -> SpeedLaw | None:
     if load is None or not excess.mean:
         return None
     if load.slip is not None:
-        return SlipLaw(excess.mean, load.slip)
-    return PowerLaw(excess.mean, load.power) if load.power else None
+        return slip_law(excess.mean, load.slip)
+    return power_law(excess.mean, load.power) if load.power else None
 
 
 class SpeedLines:
@@ -60,7 +58,7 @@ class SpeedLines:
 
         return float(Modes(coupled(self._coupling, own)).omegas[1]) / self.omega
 
-    def elastic(self, flywheel: float) -> ElasticCoupling | None:
+    def elastic(self, flywheel: float) -> "ElasticCoupling | None":
         """Return the line on an elastic coupling; None where there is none, or one as good as rigid."""
         if self._coupling is None or (self.natural_order(flywheel) or 0.0) > RIGID_ABOVE:
             return None
@@ -88,7 +86,7 @@ class SpeedLines:
             angle = float(moving.grid.degrees.ravel()[np.argmin(moving.values)])
             raise UsageError(f"nothing that turns has any inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
 
-    def line(self, flywheel: float) -> SpeedLine | ElasticCoupling:
+    def line(self, flywheel: float) -> "SpeedLine | ElasticCoupling":
         """Return the speed line; raises Standstill, Unsettled, NoSolutionError, UsageError."""
         return turning(self.elastic(flywheel) or self.rigid(flywheel))
 
@@ -109,7 +107,7 @@ class SpeedLines:
         return _smallest(lambda inertia: math.isfinite(self.delta(inertia)), least, start, exact=bool(more))
 
 
-def turning(line: SpeedLine | ElasticCoupling) -> SpeedLine | ElasticCoupling:
+def turning(line: "SpeedLine | ElasticCoupling") -> "SpeedLine | ElasticCoupling":
     """Return the line if it never stands still; raises Standstill."""
     if not line.omega_min.value > 0:
         raise Standstill(line.omega_min.degrees)

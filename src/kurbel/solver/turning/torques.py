@@ -1,18 +1,16 @@
 """Torques on the shaft over the crank angle, whatever they come from: one interface, sums, and the simple ones."""
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
 
 if TYPE_CHECKING:
-    from kurbel.arrays import Array
     from kurbel.machine.turning import Effort, Harmonics
 
 
@@ -39,6 +37,11 @@ class Sum:
     def cuts(self) -> Cuts:
         """The cuts of all parts."""
         return Cuts.joined([part.cuts for _, part in self.parts])
+
+    @property
+    def repeats(self) -> int:
+        """How often it comes back in the cycle, as far as its parts know that of themselves."""
+        return math.gcd(*(getattr(part, "repeats", 1) for _, part in self.parts))
 
     def torque(self, degrees: Array, within: Array | tuple[Any, ...]) -> Jet:
         """Return the sum with its slope; see `Torque`. within: angles, or what `inside` made of them."""
@@ -68,7 +71,7 @@ class Uniform:
 class HarmonicTorque:
     """A torque by harmonics, over a cycle in degrees."""
 
-    def __init__(self, given: Harmonics, cycle: float) -> None:
+    def __init__(self, given: "Harmonics", cycle: float) -> None:
         self._mean = given.mean
         self._orders, self._cos, self._sin = np.array(given.terms).T
         # the nodes of one piece resolve a quarter of the shortest period
@@ -88,7 +91,7 @@ class HarmonicTorque:
 class Diagram:
     """A turning-moment diagram by points, straight between them, that repeats from its last angle on."""
 
-    def __init__(self, points: Effort, cycle: float) -> None:
+    def __init__(self, points: "Effort", cycle: float) -> None:
         angles, torques = np.array(points.angles), np.array(points.torques)
         self.period = float(angles[-1])
         width = np.diff(angles)
@@ -106,7 +109,7 @@ class Diagram:
         return Jet(self._torques[piece] + rise * (degrees - turn - self._starts[piece]), np.degrees(rise))
 
 
-def known_torque(effort: Effort | Harmonics, cycle: float) -> Torque:
+def known_torque(effort: "Effort | Harmonics", cycle: float) -> Torque:
     """Return the torque of an effort that is known from elsewhere, over a cycle in degrees."""
     from kurbel.machine.turning import Harmonics
 

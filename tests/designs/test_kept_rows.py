@@ -1,0 +1,104 @@
+"""`kurbel sweep --resume`: it goes on in the file of the same sweep only."""
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel as command
+
+CONFIGS = Path(__file__).parent.parent.parent / "configs"
+ASKED = ("--vary", "rod_ratio=3:6:0.3", "--columns", "c_max,T_max")
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Path:
+    file = tmp_path / "engine.yaml"
+    file.write_text((CONFIGS / "waterworks.yaml").read_text())
+    return file
+
+
+def run(machine: Path, *args: str) -> Result:
+    return CliRunner().invoke(command, ["sweep", str(machine), *args])
+
+
+def interrupted(machine: Path, *args: str, rows: int = 6) -> Path:
+    """Return a file with the first rows of a sweep."""
+    file = machine.with_name("rows.json" if "json" in args else "rows.csv")
+    assert run(machine, *args, "-o", str(file)).exit_code == 0
+    lines = file.read_text().splitlines(keepends=True)
+    file.write_text("".join(lines[: rows + (file.suffix == ".csv")]))
+    return file
+
+
+@pytest.mark.parametrize("written", ["csv", "json"])
+@pytest.mark.parametrize(
+    ("others", "message"),
+    [
+        (("--set", "speed=60 rpm"), "row 6 has 2.1"),
+        (("--vary", "rod_ratio=3:6:0.2"), "row 2 has 3.3 rod_ratio in it, and 3.2 now"),
+        (("--vary", "rod_ratio=3:4:0.3"), "it has row 5, these are rows 1 to 4"),
+        (("--vary", "rod_ratio=6:3:-0.3"), "row 1 has 3.0 rod_ratio in it, and 6.0 now"),
+        (("--where", "rod_ratio > 7"), "which --where leaves out"),
+        (("--shard", "2/2"), "it "),
+        (("--columns", "c_max,N_max"), ""),
+        (("--columns", "c_max"), ""),
+    ],
+)
+def test_another_sweep_does_not_go_on(machine: Path, written: str, others: tuple[str, ...], message: str) -> None:
+    file = interrupted(machine, *ASKED, "-f", written)
+    before = file.read_bytes()
+    asked = others if others[0] == "--vary" else ASKED[:2] + others
+    asked += () if "--columns" in others else ASKED[2:]
+    result = run(machine, *asked, "-f", written, "-o", str(file), "--resume")
+    assert result.exit_code == 2
+    assert f"--resume: {file} is not of this sweep: " in result.output
+    assert message in result.output
+    assert file.read_bytes() == before
+
+
+def test_a_changed_machine_file_does_not_go_on(machine: Path) -> None:
+    file = interrupted(machine, *ASKED)
+    machine.write_text(machine.read_text().replace("bore: 450 mm", "bore: 460 mm"))
+    result = run(machine, *ASKED, "-o", str(file), "--resume")
+    assert (result.exit_code, "row 6 has" in result.output, "T_max_N" in result.output) == (2, True, True)
+
+
+def test_other_digits_do_not_go_on(machine: Path) -> None:
+    file = interrupted(machine, *ASKED)
+    assert "row 6 has 2." in run(machine, *ASKED, "--digits", "3", "-o", str(file), "--resume").output
+
+
+def test_answers_are_compared_though_the_last_rows_have_none(machine: Path) -> None:
+    asked = ("--vary", "rod_ratio=5,4,0.5,0.4,3", "--columns", "c_max")
+    file = interrupted(machine, *asked, rows=4)
+    assert "row 2 has" in run(machine, *asked, "--set", "speed=60 rpm", "-o", str(file), "--resume").output
+    assert run(machine, *asked, "-o", str(file), "--resume").exit_code == 0
+    assert len(file.read_text().splitlines()) == 6
+
+
+def test_chosen_rows_go_on_where_they_end(machine: Path) -> None:
+    asked = (*ASKED, "--where", "T_max < 88.5 kN")
+    whole = interrupted(machine, *asked, rows=99).read_bytes()
+    file = interrupted(machine, *asked, rows=2)
+    assert run(machine, *asked, "-o", str(file), "--resume").exit_code == 0
+    assert file.read_bytes() == whole
+    file = interrupted(machine, *asked, rows=2)
+    assert "is missing in it" in run(machine, *ASKED, "-o", str(file), "--resume").output
+
+
+@pytest.mark.parametrize("content", ["something else", "a,b\n1,2\n", "row,rod_ratio,c_max_m/s,T_max_N,failure\n1,x\n"])
+def test_a_file_of_something_else_stays(machine: Path, content: str) -> None:
+    file = machine.with_name("rows.csv")
+    file.write_text(content)
+    result = run(machine, *ASKED, "-o", str(file), "--resume")
+    assert (result.exit_code, file.read_text()) == (2, content)
+    assert "is not of this sweep: it " in result.output
+
+
+def test_last_digits_of_another_processor_are_no_other_sweep(machine: Path) -> None:
+    file = interrupted(machine, *ASKED)
+    text = file.read_text()
+    last = text.splitlines()[-1].split(",")
+    file.write_text(text.replace(last[3], repr(float(last[3]) * (1 + 3e-16))))
+    assert run(machine, *ASKED, "-o", str(file), "--resume").exit_code == 0
