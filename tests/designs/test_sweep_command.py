@@ -107,11 +107,19 @@ def test_a_summary_tells_quantiles_and_ranks() -> None:
     assert told["rod_ratio"]["rows"] == 60
 
 
+def test_a_summary_writes_units_as_tables_do() -> None:
+    asked = ("--vary", "rod_ratio=4,5", "--columns", "b_max", "--summary")
+    assert "  m/s²  " in run(*asked).stdout
+    assert "| m/s² |" in run(*asked, "-f", "markdown").stdout
+    assert ",m/s^2," in run(*asked, "-f", "csv").stdout
+
+
 def test_parts_one_after_another_are_the_whole_byte_for_byte() -> None:
-    asked = ("--vary", "rod_ratio=3:6:0.3", "--columns", "T_max", "-f", "csv")
+    """Each row in the company that it has in the whole: numpy 1.24 rounds otherwise in arrays of another length."""
+    asked = ("--vary", "rod_ratio=3:6:0.1", "--columns", "T_max", "-f", "csv")
     whole = run(*asked).stdout
     assert "".join(run(*asked, "--shard", f"{k}/4").stdout for k in (1, 2, 3, 4)) == whole
-    assert len(whole.splitlines()) == 12
+    assert len(whole.splitlines()) == 32
 
 
 def test_resuming_ends_in_the_same_file(tmp_path: Path) -> None:
@@ -131,14 +139,17 @@ def test_resuming_ends_in_the_same_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_an_interrupt_leaves_whole_rows(tmp_path: Path) -> None:
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
     file = tmp_path / "rows.csv"
     asked = ["--vary", "rod_ratio=3:6:0.00002", "--columns", "T_max", "-o", str(file)]
-    process = subprocess.Popen([sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *asked], env=dict(os.environ))
+    command = [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *asked, "--jobs", jobs]
+    process = subprocess.Popen(command, start_new_session=True, stderr=subprocess.PIPE, text=True)
     while not (file.exists() and file.stat().st_size):
         time.sleep(0.05)
-    process.send_signal(signal.SIGINT)
-    assert process.wait() == 130
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does, the processes that compute among them
+    assert process.communicate() == (None, "")
+    assert process.returncode == 130
     text = file.read_text()
     assert text.endswith("\n")
     assert all(line.count(",") == 3 for line in text.splitlines())
@@ -147,7 +158,14 @@ def test_an_interrupt_leaves_whole_rows(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_processes_answer_as_one() -> None:
     asked = ("--vary", "rod_ratio=3:6:0.1", "--columns", "T_max", "-f", "csv")
-    assert run(*asked, "--jobs", "2").stdout == run(*asked).stdout
+    assert run(*asked, "--jobs", "2").stdout == run(*asked, "--jobs", "1").stdout
+
+
+def test_as_many_processes_as_there_are_cores_for_many_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: set(range(16)), raising=False)
+    assert [workers.likely_jobs(rows) for rows in (1, 9_999, 10_000, 10**7)] == [1, 1, 2, 4]
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {3}, raising=False)
+    assert workers.likely_jobs(10**7) == 1
 
 
 def test_chunks_that_others_compute_keep_their_order(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -172,11 +190,11 @@ def test_chunks_that_others_compute_keep_their_order(monkeypatch: pytest.MonkeyP
 def test_a_row_is_computed_in_the_same_company_by_every_run() -> None:
     """The last digits hang on how many rows are computed at once: with numpy 1.24 one alone differs from many."""
     found = swept("rod_ratio=3:6:0.005", "stroke")
-    whole = list(found.chunks(range(found.rows)))
-    assert whole == [(0, 20), (20, 200), (200, 400), (400, 600), (600, 601)]
-    assert list(found.chunks(range(19, 21))) == whole[:2]
-    assert list(found.chunks(range(399, 401))) == whole[2:4]
-    assert list(found.chunks(range(20, 200))) == whole[1:2]
+    company = [range(0, 20), range(20, 200), range(200, 400), range(400, 600), range(600, 601)]
+    assert list(found.chunks(range(found.rows))) == [*zip(company, company)]
+    assert list(found.chunks(range(19, 21))) == [(company[0], range(19, 20)), (company[1], range(20, 21))]
+    assert list(found.chunks(range(399, 401))) == [(company[2], range(399, 400)), (company[3], range(400, 401))]
+    assert list(found.chunks(range(20, 200))) == [(company[1], company[1])]
     assert [row.number for row in workers.rows_of(found, range(598, 601))] == [599, 600, 601]
 
 

@@ -4,7 +4,7 @@ A record (`Cylinder`, `Piston`, …) carries a table `KEYS` of these.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.declared.reading import REFUSED, Reading, Tree
@@ -51,6 +51,10 @@ class Form(ABC):
         """Return in what way a value is too small or too large, with the bound; '' when it is not."""
         return ""
 
+    def numbers(self, texts: Sequence[str]) -> list[float] | None:
+        """Return what texts become that are plain numbers, all of them; None where each must be read by itself."""
+        return None
+
     def read(self, reading: Reading, value: Any, path: Path) -> Any:
         """Return what a value of the tree becomes, or REFUSED after noting every fault."""
         if value is REFUSED:
@@ -71,6 +75,10 @@ class Form(ABC):
     def moved(self, name: str, mapping: Tree) -> dict[str, str]:
         """Return the names that do not stand in this mapping but below this key or in a list, each with that place."""
         return {}
+
+    def called_from(self, words: str, mapping: Tree) -> str:
+        """Return words for the place of a key as that place is called from this mapping."""
+        return words
 
     def flat(self, fault: Fault, mapping: Tree) -> Fault:
         """Return a fault of the record as one of its mapping, whatever list the record has made of it."""

@@ -17,7 +17,7 @@ from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import answers_of, stands_beside
-from kurbel.designs.binding import Binder, Unbound, tree_of, written
+from kurbel.designs.binding import Binder, tree_of, written
 from kurbel.designs.columns import Answer, subjects
 from kurbel.designs.sampling import latin_hypercube
 from kurbel.designs.sweep import kind_of_form
@@ -93,19 +93,15 @@ class Uncertainty:
         if wrong:
             raise WrongUncertainty(wrong)
 
-    def _machine(self, shifts: Sequence[float]) -> Machine | None:
-        """Return the machine with inputs off by so many of their uncertainties each; None where there is none."""
+    def _texts(self, shifts: Sequence[float]) -> list[str]:
+        """Return the texts of the inputs where each is off by so many of its uncertainties."""
         values = (value + shift * spread for value, shift, spread in zip(self._values, shifts, self._spreads))
-        try:
-            return self._binder.bound([f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._kinds)])
-        except Unbound:
-            return None
+        return [f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._kinds)]
 
     def _answers(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer]) -> Any:
         """Return the answers (machines, asked) as floats, nan where there are none."""
-        machines = [self._machine(one) for one in shifts]
-        found = iter(answers_of([one for one in machines if one], asked))
-        rows = [next(found) if one else "" for one in machines]
+        found = answers_of(self._binder.bound([self._texts(one) for one in shifts]).lots, asked)
+        rows = [found.get(row, "") for row in range(len(shifts))]
         blank = [math.nan] * len(asked)
         return np.array([blank if isinstance(row, str) else [_float(value) for value in row] for row in rows])
 

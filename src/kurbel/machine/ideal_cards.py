@@ -26,7 +26,7 @@ def _pressure(text: str, required: bool = True, absent: str = "") -> Key:
 
 
 def _exponent(text: str, absent: str) -> Key:
-    return Key(Number(above=0, most=10), text, "n", absent=absent)
+    return Key(Number(above=0, most=10), text, "n", absent=absent, example="1.3")
 
 
 def _order_fault(key: str, high: float, low_name: str, low: float) -> list[Fault]:

@@ -9,6 +9,7 @@ from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, con
 from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, glued_hint, kind_of
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.near_words import near
+from kurbel.numerics.arithmetic import is_number
 
 _TOO_EXTREME = "these numbers are too large or too small to compute with"
 
@@ -144,7 +145,7 @@ class Record(Form):
             other_words |= key.form.meant(name, key)
         listed = False
         for name in unknown:
-            home = reading.where_it_belongs(name, path)
+            home = self._as_here(reading.where_it_belongs(name, path), mapping)
             meant = "" if name in elsewhere else _meant(name, mapping[name], known, other_words, home)
             message = elsewhere.get(name) or _unknown_message(name, meant, home)
             if not message:
@@ -153,6 +154,12 @@ class Record(Form):
             reading.fault((*path, name), message, at_key=True)
             if meant and meant not in mapping:
                 yield meant
+
+    def _as_here(self, words: str, mapping: Tree) -> str:
+        """Return words for places as they are called from this mapping: those of a cylinder in an item of the list."""
+        for key in self.keys.values() if words else ():
+            words = key.form.called_from(words, mapping)
+        return words
 
     def schema(self, definitions: Schema) -> Schema:
         name = self.target.split(":")[1]
@@ -214,11 +221,11 @@ def _unknown_message(name: str, meant: str, home: str) -> str:
 
 def _finite(born: Any, values: Tree) -> bool:
     """Return whether every number of a record is finite, or infinite by a word of the file or by default."""
-    meant = any(value == math.inf for value in values.values() if isinstance(value, float))
+    meant = any(value == math.inf for value in values.values() if is_number(value))
     return all(
-        math.isfinite(value) or (value == math.inf and (meant or getattr(type(born), name, 0) == math.inf))
+        abs(value) < math.inf or (value == math.inf and (meant or getattr(type(born), name, 0) == math.inf))
         for name, value in vars(born).items()
-        if isinstance(value, float)
+        if is_number(value)
     )
 
 

@@ -1,6 +1,7 @@
 """Forms made of others: lists, alternatives, mappings with one telling key, records whose keys stand among others."""
 
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from kurbel.declared.bounds import MOST_ITEMS
@@ -78,6 +79,9 @@ class OneOf(Form):
         if alike:  # of a word and a number, the one that it looks like
             return next((form for form in alike if form.suits(value)), alike[0]).read(reading, value, path)
         return refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+
+    def numbers(self, texts: Sequence[str]) -> list[float] | None:
+        return next((form.numbers(texts) for form in self.forms if form.shape is str and form.suits(texts[0])), None)
 
     def parts(self) -> Iterable[tuple[str, Form]]:
         return [("", form) for form in self.forms]
@@ -177,6 +181,13 @@ class Inline(Form):
         there = f"'{self.unless}.each'" if isinstance(mapping[self.unless], dict) else f"the items of '{self.unless}'"
         message = f"belongs {self._item}; move it into {there}"
         return dict.fromkeys(self.record.all_names(mapping), message)
+
+    def called_from(self, words: str, mapping: Tree) -> str:
+        if self.unless not in mapping:
+            return words
+        item = f"{self.unless}.{'each' if isinstance(mapping[self.unless], dict) else 0}"
+        own = self.record.all_names(mapping)
+        return re.sub(r"under '(\w+)", lambda one: f"under '{item}.{one[1]}" if one[1] in own else one[0], words)
 
     def flat(self, fault: Fault, mapping: Tree) -> Fault:
         if len(fault.path) < 2 or fault.path[0] != self.unless or not isinstance(fault.path[1], int):
