@@ -155,6 +155,20 @@ def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
     assert all(line.count(",") == 3 for line in text.splitlines())
 
 
+def test_rows_that_are_answered_one_after_another_are_handed_over_early() -> None:
+    """In the company of others, so that they read as ever; a limit on delta makes the rows of any column slow."""
+    spec = sweep.Spec(source.read(WATERWORKS), ("limits.delta=1/20",), ("rod_ratio=3:6:0.1",), columns=("S_peak",))
+    chunks = list(sweep.Sweep(spec).chunks(range(5, 31)))
+    assert chunks == [
+        (range(20), range(5, 15)),
+        (range(20), range(15, 20)),
+        (range(20, 31), range(20, 30)),
+        (range(20, 31), range(30, 31)),
+    ]
+    without = sweep.Sweep(spec._replace(overrides=("limits={}",)))
+    assert list(without.chunks(range(5, 31))) == [(range(20), range(5, 20)), (range(20, 31), range(20, 31))]
+
+
 @pytest.mark.slow
 def test_processes_answer_as_one() -> None:
     asked = ("--vary", "rod_ratio=3:6:0.1", "--columns", "T_max", "-f", "csv")

@@ -46,10 +46,13 @@ def answers_of(lots: Sequence[Lot], asked: Sequence[Answer], rows: Container[int
 
 def stands_beside(machine: Machine, asked: Answer) -> bool:
     """Return whether many such machines answer this side by side, in little more time than one of them."""
-    if not (asked.of_cylinder and _stands_beside(asked.quantity)):
-        return False
-    cylinder = next(one for one in machine.cylinders if one.name == asked.subject)
-    return Kinds().of(machine, cylinder) is not None
+    return _stands_beside(asked.quantity) and not is_slow(machine, asked)
+
+
+def is_slow(machine: Machine, asked: Answer) -> bool:
+    """Return whether what is asked is of the whole machine, or of a cylinder that must be answered alone."""
+    own = (one for one in machine.cylinders if one.name == asked.subject and asked.of_cylinder)
+    return all(Kinds().of(machine, one) is None for one in own)
 
 
 def _stands_beside(quantity: Quantity) -> bool:

@@ -9,7 +9,7 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity, plain_quantities
-from kurbel.designs.answers import Values, answers_of
+from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, asked_answers, subjects
 from kurbel.designs.inputs import Input, read_input
@@ -24,6 +24,8 @@ CHUNK = 200
 """Rows that are computed together: what memory holds at once, and what a run computes anew that begins amid them."""
 _FIRST = 20
 """Rows of the first chunk, so that a reader sees something at once."""
+_SLOWLY = 10
+"""Rows that are handed over together where they are answered one after another."""
 _STARTS = 100
 """Rows that are tried for one that makes a machine."""
 
@@ -194,8 +196,15 @@ class Sweep:
         for start in range(rows.start - rows.start % CHUNK, rows.stop, CHUNK):
             cuts = (start, start + CHUNK) if start else (0, _FIRST, CHUNK)
             for low, high in pairwise(cuts):
-                if low < rows.stop and rows.start < high:
-                    yield range(low, min(high, self.rows)), range(max(low, rows.start), min(high, rows.stop))
+                for first in range(max(low, rows.start), min(high, rows.stop), self._at_once):
+                    last = min(first + self._at_once, high, rows.stop)
+                    yield range(low, min(high, self.rows)), range(first, last)
+
+    @cached_property
+    def _at_once(self) -> int:
+        """Rows that are answered and handed over at once: few where each takes long."""
+        every = (*self.asked, *(answer for answer, _ in self._limits))
+        return _SLOWLY if any(is_slow(self._binder.machine, one) for one in every) else CHUNK
 
 
 _AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")
