@@ -3,6 +3,7 @@
 import os
 import re
 from abc import abstractmethod
+from collections.abc import Sequence
 from functools import cache
 from operator import ge, gt, le, lt
 from typing import Any, NoReturn
@@ -13,9 +14,10 @@ from kurbel.declared.kinds import KINDS
 from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio, plain
 from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import example, parse_quantity, unit_example, unit_factor, unit_names
+from kurbel.declared.units import example, parse_quantity, plain_quantities, unit_example, unit_factor, unit_names
 from kurbel.errors import Fault, Path, RuleError, UnitError
 from kurbel.near_words import did_you_mean
+from kurbel.numerics.arithmetic import is_number
 
 Words = tuple[tuple[str, float], ...]
 
@@ -81,8 +83,23 @@ class _Bounded(Scalar):
             value = self.number(text)
         except UnitError as error:
             refused(f"{error}{glued_hint(text)}")
-        wrong = self.out_of_bounds(value) or out_of_size(value, self.kind)
+        wrong = self._wrong(value)
         return refused(f"{text} {wrong}") if wrong else value
+
+    def numbers(self, texts: Sequence[str]) -> list[float] | None:
+        """Return what texts become that are plain numbers within the bounds; None where one is not."""
+        found = plain_quantities(texts, self.kind)
+        if found is None:
+            return None
+        from kurbel.numerics.varied import Parted, varied
+
+        try:
+            return None if self._wrong(varied(found)) else found
+        except Parted:
+            return None
+
+    def _wrong(self, value: Any) -> str:
+        return self.out_of_bounds(value) or out_of_size(value, self.kind)
 
     @abstractmethod
     def number(self, text: str) -> float:
@@ -109,7 +126,7 @@ class _Bounded(Scalar):
             (self.below, lt, "is too large; it must be less than"),
             (self.most, le, "is too large; it must be at most"),
         ):
-            if bound is not None and isinstance(value, (int, float)) and not holds(value, bound):
+            if bound is not None and is_number(value) and not holds(value, bound):
                 return f"{wrong} {show(bound, self.kind) if bound else '0'}"
         return ""
 
@@ -197,6 +214,9 @@ class Count(_Bounded):
         if self.most == self.least != whole:
             refused(f"{whole} is not supported; it must be {self.least}")
         return whole
+
+    def numbers(self, texts: Sequence[str]) -> None:
+        """Return nothing: what is no whole number must be told."""
 
     def expected(self) -> str:
         return "a whole number"
