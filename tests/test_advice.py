@@ -14,6 +14,7 @@ from schemas import whole_schema
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 ONE, TWO = str(CONFIGS / "waterworks.yaml"), str(CONFIGS / "waterworks-two-cranks.yaml")
+NAMED, FOUR = str(CONFIGS / "compressor-two-stage.yaml"), str(CONFIGS / "four-in-line.yaml")
 BARE = "crank: 1 m\nrod: 5 m\n"
 
 
@@ -25,9 +26,41 @@ def run(*words: str, text: str = "") -> Result:
     ("words", "says"),
     [
         (("forces", ONE, "--set", "crank=["), "close the '[' or '{' that is open"),
-        (("forces", TWO, "--set", "cylinders.-1.crank=3 m"), "its items are 0 to 1: write cylinders[1].crank=…"),
-        (("forces", TWO, "--set", "cylinders.-2.crank=3 m"), "its items are 0 to 1: write cylinders[0].crank=…"),
-        (("forces", TWO, "--set", "cylinders.7.crank=3 m"), "its items are 0 to 1: write cylinders[1].crank=…"),
+        (("forces", TWO, "--set", "cylinders.-1.crank=3 m"), "its items are 0 to 1: write cylinders.1.crank=…"),
+        (("forces", TWO, "--set", "cylinders.-2.crank=3 m"), "its items are 0 to 1: write cylinders.0.crank=…"),
+        (("forces", TWO, "--set", "cylinders.7.crank=3 m"), "its items are 0 to 1: write cylinders.1.crank=…"),
+        (
+            ("forces", NAMED, "--set", "cylinders.low pressure.stroke=3 m"),
+            "its items are 0 to 1: write cylinders.0.stroke=…",
+        ),
+        (
+            ("forces", NAMED, "--set", "cylinders.high pressure.stroke=3 m"),
+            "its items are 0 to 1: write cylinders.1.stroke=…",
+        ),
+        (
+            ("sweep", NAMED, "--vary", "cylinders.low pressure.stroke=3,4 m"),
+            "its items are 0 to 1: write cylinders.0.stroke=…",
+        ),
+        (
+            ("forces", NAMED, "--uncertainty", "cylinders.low pressure.stroke=1 mm"),
+            "no value stands under this key in the file; did you mean 'cylinders.0.stroke'?",
+        ),
+        (
+            ("forces", NAMED, "--uncertainty", "stroke=1 mm"),
+            "no value stands under this key in the file; did you mean 'cylinders.0.stroke'?",
+        ),
+        (
+            ("sweep", NAMED, "--vary", "suction=0,1 bar"),
+            "suction: does not belong here; it belongs under 'cylinders.0.indicator.head_end.compressor'",
+        ),
+        (
+            ("forces", NAMED, "--set", "cylinders.1.suction=1 bar"),
+            "cylinders[1].suction: does not belong here; it belongs under 'indicator.head_end.compressor'",
+        ),
+        (
+            ("forces", FOUR, "--set", "suction=1 bar"),
+            "it belongs under 'cylinders.each.indicator.head_end.compressor'",
+        ),
         (("keys", ""), "no key is named; 'kurbel keys' without one lists them all"),
         (("keys", "."), "no key is named"),
     ],

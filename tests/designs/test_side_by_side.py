@@ -114,8 +114,9 @@ def test_random_machines_answer_as_each_alone() -> None:
 
 
 @pytest.mark.slow
-def test_a_thousand_random_machines_answer_as_each_alone() -> None:
-    largest, failures, kinds = worst(11, 1000)
+def test_many_random_machines_answer_as_each_alone() -> None:
+    """So many that of most kinds several stand side by side."""
+    largest, failures, kinds = worst(11, 400)
     assert kinds > 80
     assert failures > 10
     assert largest <= 1e-12

@@ -75,15 +75,15 @@ def test_a_name_can_do_nothing_to_a_terminal() -> None:
 def test_the_canvas_sets_the_dots_of_braille() -> None:
     """Dots 1 2 3 7 down the left, 4 5 6 8 down the right, as Unicode numbers them."""
     canvas = Canvas(1, 1, braille=True)
-    canvas.line(np.array([0.0, 0.0]), np.array([0.0, 3.0]), 0, "curve0")
+    canvas.line(np.array([0.0, 0.0]), np.array([0.0, 3.0]), "curve0")
     assert canvas.line_of(0)[0].text == chr(0x2800 + 0b01000111)
-    canvas.line(np.array([1.0, 1.0]), np.array([0.0, 3.0]), 0, "curve0")
+    canvas.line(np.array([1.0, 1.0]), np.array([0.0, 3.0]), "curve0")
     assert canvas.line_of(0)[0].text == "⣿"
 
 
 def test_what_lies_beyond_the_canvas_is_cut_off() -> None:
     canvas = Canvas(4, 2, braille=True)
-    canvas.line(np.array([-50.0, 50.0]), np.array([-50.0, 50.0]), 0, "curve0")
+    canvas.line(np.array([-50.0, 50.0]), np.array([-50.0, 50.0]), "curve0")
     assert [canvas.line_of(row)[0].text for row in range(2)] == ["⠑⢄", "  "]
 
 

@@ -76,6 +76,10 @@ class Form(ABC):
         """Return the names that do not stand in this mapping but below this key or in a list, each with that place."""
         return {}
 
+    def called_from(self, words: str, mapping: Tree) -> str:
+        """Return words for the place of a key as that place is called from this mapping."""
+        return words
+
     def flat(self, fault: Fault, mapping: Tree) -> Fault:
         """Return a fault of the record as one of its mapping, whatever list the record has made of it."""
         return fault

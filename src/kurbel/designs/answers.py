@@ -8,6 +8,7 @@ import numpy as np
 from kurbel.declared.quantity import Quantity
 from kurbel.designs.columns import Answer, answered_alone
 from kurbel.errors import KurbelError
+from kurbel.machine import Machine
 from kurbel.machine.side_by_side import Kinds, side_by_side
 from kurbel.machine.variants import Lot
 from kurbel.numerics.cycles import Unlike
@@ -21,8 +22,8 @@ _ALONE = ("energy_residual",)
 """Key values whose quadrature cuts the pieces of each machine until they agree, and answers one machine at a time."""
 _FEWEST = 3
 """Machines of one kind; fewer are answered as quickly alone."""
-AT_ONCE = 200
-"""Machines side by side: enough to share the overhead of one run, few enough for the cache of a processor."""
+AT_ONCE = 1000
+"""Machines side by side: enough to share the overhead of one run; more would only take memory."""
 
 Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, an Extreme, a tuple or None each; or why it answers nothing."""
@@ -41,6 +42,14 @@ def answers_of(lots: Sequence[Lot], asked: Sequence[Answer], rows: Container[int
             return together
         alone = _Answers(lots, [one for one, beside in zip(asked, side_by_side) if not beside], True).found(rows)
     return {row: _merged(first, alone[row], side_by_side) for row, first in together.items()}
+
+
+def stands_beside(machine: Machine, asked: Answer) -> bool:
+    """Return whether many such machines answer this side by side, in little more time than one of them."""
+    if not (asked.of_cylinder and _stands_beside(asked.quantity)):
+        return False
+    cylinder = next(one for one in machine.cylinders if one.name == asked.subject)
+    return Kinds().of(machine, cylinder) is not None
 
 
 def _stands_beside(quantity: Quantity) -> bool:

@@ -15,7 +15,7 @@ from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.variants import Lot, joined, one_kind, sort_of
 from kurbel.machine_file.events import parse
-from kurbel.machine_file.overrides import overridden, read_override
+from kurbel.machine_file.overrides import by_numbers, overridden, read_override
 from kurbel.machine_file.reader import read_machine, reading_of
 from kurbel.machine_file.source import Source
 from kurbel.near_words import did_you_mean
@@ -239,9 +239,15 @@ def written(tree: Tree, key: str) -> str:
     except (KeyError, IndexError, TypeError):
         node = None
     if not isinstance(node, str):
-        near = did_you_mean(key, tuple(_keys_with_value(tree)))
-        raise UsageError(f"no value stands under this key in the file{near}")
+        raise UsageError(f"no value stands under this key in the file{_meant(tree, key)}")
     return node
+
+
+def _meant(tree: Tree, key: str) -> str:
+    """Return which key with a value was probably meant by one without, or an empty text."""
+    known = tuple(one for one in _keys_with_value(tree) if not one.startswith("uncertainty."))
+    ending = next((f"; did you mean '{one}'?" for one in known if one.endswith(f".{key}")), "")
+    return ending or did_you_mean(by_numbers(tree, key), known)
 
 
 def _keys_with_value(tree: Tree, below: str = "") -> Iterator[str]:

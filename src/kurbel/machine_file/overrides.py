@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
-from kurbel.errors import Fault, MachineFileError, Path, UsageError, path_text
+from kurbel.errors import Fault, MachineFileError, Path, UsageError
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.source import decode
 
@@ -28,6 +28,8 @@ def read_override(text: str) -> Override:
     steps = [step.strip() for step in key.replace("[", ".").replace("]", "").split(".")]
     if not equals or not all(steps):
         raise UsageError(f"--set {shown(text)}: write KEY=VALUE, such as --set cylinders.0.bore='450 mm'")
+    if any(step.endswith(":") for step in steps):
+        raise UsageError(f"--set {shown(text)}: write KEY=VALUE, without the colon")
     reading = Reading()
     try:
         # an argument that is no UTF-8 has its bytes as surrogates
@@ -54,32 +56,59 @@ def _set(node: Any, one: Override, place: int, step: str | int) -> Any:
     last = place == len(one.path) - 1
     if isinstance(node, list):
         if not isinstance(step, int) or step >= len(node):
-            where, number = path_text(one.path[:place]), len(node)
-            instead = path_text((*one.path[:place], _near(step, number), *one.path[place + 1 :]))
+            where, instead = _dotted(one.path[:place]), (*one.path[:place], _near(step, node), *one.path[place + 1 :])
             raise UsageError(
-                f"--set {shown(one.text)}: '{where}' is a list; its items are 0 to {number - 1}: write {instead}=…"
+                f"--set {shown(one.text)}: '{where}' is a list; its items are 0 to {len(node) - 1}: write "
+                f"{_dotted(instead)}=…"
             )
         if last:
             node[step] = one.value
         return node[step]
     if not isinstance(node, dict):
-        where = path_text(one.path[:place])
+        where = _dotted(one.path[:place])
         raise UsageError(f"--set {shown(one.text)}: nothing stands below '{where}', which is {kind_of(node)}")
     if last:
         node[str(step)] = one.value
     elif is_nothing(node.get(str(step), Plain())):
         if isinstance(one.path[place + 1], int):
             raise UsageError(
-                f"--set {shown(one.text)}: there is no list '{path_text(one.path[: place + 1])}' in the file"
+                f"--set {shown(one.text)}: there is no list '{_dotted(one.path[: place + 1])}' in the file"
             )
         node[str(step)] = {}
     return node[str(step)]
 
 
-def _near(step: str | int, count: int) -> int:
-    """Return the item of a list that is probably meant: counted from its end, or else the last one."""
+def _dotted(path: Path) -> str:
+    """Return a path as a key on the command line is written."""
+    return ".".join(map(str, path))
+
+
+def _near(step: str | int, items: Sequence[Any]) -> int:
+    """Return the item of a list that is probably meant: of that name, counted from its end, or else the last one."""
+    names = [item.get("name") if isinstance(item, dict) else None for item in items]
+    if step in names:
+        return names.index(step)
     from_end = int(step) if re.fullmatch("-[0-9]{1,9}", str(step)) else -1
-    return max(count + from_end, 0)
+    return max(len(items) + from_end, 0)
+
+
+def by_numbers(tree: Tree, key: str) -> str:
+    """Return a dotted key with the numbers of the items of lists, where it calls them otherwise.
+
+    >>> by_numbers({"cylinders": [{"name": "LP"}, {"name": "HP"}]}, "cylinders.HP.bore")
+    'cylinders.1.bore'
+    """
+    node: Any = tree
+    found: list[str | int] = []
+    for step in read_override(f"{key}=0").path:
+        if isinstance(node, list) and node:
+            number = step if isinstance(step, int) and step < len(node) else _near(step, node)
+            found.append(number)
+            node = node[number]
+        else:
+            found.append(step)
+            node = node.get(str(step)) if isinstance(node, dict) else None
+    return _dotted(tuple(found))
 
 
 def named(faults: Iterable[Fault], overrides: Sequence[Override]) -> list[Fault]:

@@ -119,4 +119,4 @@ def _subject(case: Case, forces: CylinderForces, found: "Callable[[], Sequence[N
             why = "are within the noise of the trace and no Druckwechsel"
             yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
 
-    return Subject(cylinder.name, forces.answering, at, forces.lists, left, warnings, source=forces)
+    return Subject(cylinder.name, tuple(forces.answering), at, forces.lists, left, warnings, source=forces)

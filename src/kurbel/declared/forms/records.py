@@ -145,7 +145,7 @@ class Record(Form):
             other_words |= key.form.meant(name, key)
         listed = False
         for name in unknown:
-            home = reading.where_it_belongs(name, path)
+            home = self._as_here(reading.where_it_belongs(name, path), mapping)
             meant = "" if name in elsewhere else _meant(name, mapping[name], known, other_words, home)
             message = elsewhere.get(name) or _unknown_message(name, meant, home)
             if not message:
@@ -154,6 +154,12 @@ class Record(Form):
             reading.fault((*path, name), message, at_key=True)
             if meant and meant not in mapping:
                 yield meant
+
+    def _as_here(self, words: str, mapping: Tree) -> str:
+        """Return words for places as they are called from this mapping: those of a cylinder in an item of the list."""
+        for key in self.keys.values() if words else ():
+            words = key.form.called_from(words, mapping)
+        return words
 
     def schema(self, definitions: Schema) -> Schema:
         name = self.target.split(":")[1]

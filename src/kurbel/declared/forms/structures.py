@@ -1,5 +1,6 @@
 """Forms made of others: lists, alternatives, mappings with one telling key, records whose keys stand among others."""
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
@@ -180,6 +181,13 @@ class Inline(Form):
         there = f"'{self.unless}.each'" if isinstance(mapping[self.unless], dict) else f"the items of '{self.unless}'"
         message = f"belongs {self._item}; move it into {there}"
         return dict.fromkeys(self.record.all_names(mapping), message)
+
+    def called_from(self, words: str, mapping: Tree) -> str:
+        if self.unless not in mapping:
+            return words
+        item = f"{self.unless}.{'each' if isinstance(mapping[self.unless], dict) else 0}"
+        own = self.record.all_names(mapping)
+        return re.sub(r"under '(\w+)", lambda one: f"under '{item}.{one[1]}" if one[1] in own else one[0], words)
 
     def flat(self, fault: Fault, mapping: Tree) -> Fault:
         if len(fault.path) < 2 or fault.path[0] != self.unless or not isinstance(fault.path[1], int):

@@ -56,10 +56,15 @@ Pointer = tuple[tuple[float, float], ...]
 
 
 class Taken:
-    """The places that labels have taken within a frame; where they can they stand on no place (n, 2) of a curve."""
+    """The places that labels have taken within a frame; where they can they stand on no place (n, 2) of a curve.
 
-    def __init__(self, frame: Box, curves: Array) -> None:
-        self._frame, self._curves = frame, curves
+    ruled: they stand on whole lines from the top of the frame on, their characters half as wide as high, as in a
+    terminal.
+    """
+
+    def __init__(self, frame: Box, curves: Array, ruled: bool = False) -> None:
+        self._frame, self._curves, self._ruled = frame, curves, ruled
+        self._character = LINE / 2 if ruled else CHARACTER
         self._boxes: list[Box] = []
 
     def take(self, box: Box) -> None:
@@ -108,17 +113,18 @@ class Taken:
 
     def _tries(self, x: float, y: float, text: str, upward: bool) -> Iterator[Try]:
         """Yield where a label may stand, the best first: its left end, its base line, and what it covers."""
-        wide = CHARACTER * width(text)
+        wide = self._character * width(text)
         first, second = (y - 6, y + LINE + 5) if upward else (y + LINE + 5, y - 6)
         shifts = (-wide / 2, 6.0, -wide - 6.0)
         tries = [(x + shift, base) for base in (first, second) for shift in shifts]
         tries += [(x + 7, y + 4), (x - wide - 7, y + 4)]
-        tries += [(x + shift, base + step) for step in (-LINE, LINE) for base in (first, second) for shift in shifts]
+        lines = (-1, 1, -2, 2, -3, 3) if self._ruled else (-1, 1)
+        tries += [(x + shift, base + n * LINE) for n in lines for base in (first, second) for shift in shifts]
         yield from (self._standing(start, base, wide) for start, base in tries)
 
     def _tries_away(self, x: float, y: float, text: str) -> Iterator[Try]:
         """Yield where a label may stand with a line that leads to it, the nearest first."""
-        wide = CHARACTER * width(text)
+        wide = self._character * width(text)
         ways = [(across, step * LINE) for across in _AWAY for step in range(-_ROWS, _ROWS + 1)]
         for across, down in sorted(ways, key=lambda way: math.hypot(*way)):
             for start in (x + across, x - across - wide):
@@ -126,8 +132,10 @@ class Taken:
                     yield self._standing(start, y + 4 + down, wide)
 
     def _standing(self, start: float, base: float, wide: float) -> Try:
-        """Return a label of this width, moved into the frame sideways."""
+        """Return a label of this width, moved into the frame sideways, and to the nearest line if there are any."""
         left = min(max(start, self._frame.left), self._frame.right - wide)
+        if self._ruled:
+            base = self._frame.top + LINE * round((base + 2 - self._frame.top) / LINE) - 2
         return left, base, Box(left, base - LINE + 2, left + wide, base + 2)
 
 

@@ -22,30 +22,38 @@ _BESIDE = 14.0
 
 
 def panel_items(panel: Panel, frame: Box, scales: Scales, look: Look) -> Iterator[Item]:
-    """Yield what stands on a panel, from below to above."""
+    """Yield what stands on a panel of a page, from below to above."""
     x, y = scales
     inner = Box(x.start, y.end, x.end, y.start)
     free = inner._replace(top=frame.top + 2, bottom=frame.bottom - 2) if panel.plain else inner
-    taken = Taken(free, _dense(panel, scales))
     if not panel.plain:
         yield from _grid(panel, scales, look)
+    yield from shapes(panel, scales)
+    yield from _heading(panel, frame, scales, look)
+    yield from labels(panel, Taken(free, dense(panel.curves, scales)), scales, look)
+
+
+def shapes(panel: Panel, scales: Scales) -> Iterator[Item]:
+    """Yield the shades and the curves of a panel."""
     yield from (item for shade in panel.shades for item in _shade(shade, scales))
-    looks = looks_of(panel)
-    for number, curve in enumerate(panel.curves):
-        yield from _curve(panel, number, curve, looks[number], scales)
-    yield from _heading(panel, frame, scales, looks, look)
+    for number, (curve, look) in enumerate(zip(panel.curves, looks_of(panel))):
+        yield from _curve(panel, number, curve, look, scales)
+
+
+def labels(panel: Panel, taken: Taken, scales: Scales, look: Look) -> Iterator[Item]:
+    """Yield what names lines, forces, points and surfaces; forces and points with what is drawn of them."""
     yield from _faint_names(panel, scales, taken, look)
     for number in range(len(panel.arrows)):
-        yield from _arrow(panel, number, scales, look)
+        yield from arrow(panel, number, scales, look)
     yield from _marks(panel, scales, taken, look)
     yield from _figures(panel, scales, taken, look)
 
 
-def _dense(panel: Panel, scales: Scales) -> Array:
-    """Return places (n, 2) along the curves, a few points apart."""
+def dense(curves: Sequence[Curve], scales: Scales) -> Array:
+    """Return places (n, 2) along curves, a few points apart."""
     x, y = scales
     found = [np.empty((0, 2))]
-    for piece in (piece for curve in panel.curves for piece in curve.pieces):
+    for piece in (piece for curve in curves for piece in curve.pieces):
         way = np.linspace(0, len(piece.x) - 1, max(150, len(piece.x)))
         steps = np.arange(len(piece.x))
         found.append(np.column_stack([np.interp(way, steps, s.place(p)) for s, p in ((x, piece.x), (y, piece.y))]))
@@ -113,7 +121,7 @@ def _on_paper(curve: Curve, scales: Scales) -> tuple[Places, ...]:
     return tuple(thinned(*one) if whole else tuple(zip(one[0].tolist(), one[1].tolist())) for one in places)
 
 
-def _heading(panel: Panel, frame: Box, scales: Scales, looks: list[int], look: Look) -> Iterator[Item]:
+def _heading(panel: Panel, frame: Box, scales: Scales, look: Look) -> Iterator[Item]:
     """Yield what stands above a panel: its title, what runs upward, and which stroke is which quantity."""
     x, base = scales[0], frame.top + (13 if panel.plain else 24)
     left = x.start if panel.plain else 12.0 + frame.left
@@ -122,7 +130,7 @@ def _heading(panel: Panel, frame: Box, scales: Scales, looks: list[int], look: L
         if text:
             yield Text(left, base, text, still=bool(panel.frames), plain=title)
             left += CHARACTER * cells(text) + 20
-    lines = [(curve, one) for curve, one in zip(panel.curves, looks) if curve.kind == "line"]
+    lines = [(curve, one) for curve, one in zip(panel.curves, looks_of(panel)) if curve.kind == "line"]
     for curve, one in lines if len(lines) > 1 else ():
         name = symbol(curve.name, look)
         wide = 30 + CHARACTER * cells(name) + 16
@@ -172,7 +180,7 @@ def _figures(panel: Panel, scales: Scales, taken: Taken, look: Look) -> Iterator
                 break
 
 
-def _arrow(panel: Panel, number: int, scales: Scales, look: Look) -> Iterator[Item]:
+def arrow(panel: Panel, number: int, scales: Scales, look: Look) -> Iterator[Item]:
     """Yield a force as an arrow with its symbol."""
     arrow = panel.arrows[number]
     moving = [one.arrows[number] for one in panel.frames]

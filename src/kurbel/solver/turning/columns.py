@@ -33,17 +33,17 @@ class TurningCurves:
     def columns(self, speed: "SpeedLine | ElasticCoupling | None") -> Columns:
         """Return the columns."""
         own = {id: partial(self._value, id) for id in ("M", "M_load", "T", "T_inertia")}
-        elastic = None if isinstance(speed, SpeedLine) else speed
-        of_speed = {
-            "omega": lambda: speed and speed.omega(self._phi),
-            "alpha": lambda: speed and speed.alpha(self._phi),
-            "M_coupling": lambda: elastic and elastic.torque(self._phi),
-        }
+        of_speed = {id: partial(self._of_speed, speed, id) for id in OF_SPEED}
         return Columns(self._phi, {**own, "E": lambda: self._turned.excess.at(self._phi), **of_speed})
 
     def _value(self, column: str) -> Array | None:
         found = self.curve(column)
         return found and np.asarray(found.value)
+
+    def _of_speed(self, speed: "SpeedLine | ElasticCoupling | None", column: str) -> Array | None:
+        angles = np.mod(self._phi, self._turned.cycle)
+        found = speed.curves(angles, angles).get(column) if speed else None
+        return None if found is None else found.value
 
     def curve(self, column: str) -> Sampled | None:
         """Return a column of the torques, or their work, with its slope by φ; None for one left out."""

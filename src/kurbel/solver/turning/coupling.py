@@ -178,11 +178,6 @@ class ElasticCoupling:
         scale = self._speed * self.shaft.omega
         return {"alpha": Sampled(rate[..., 1] * scale, (rate @ self._equation.matrix[1] + driving) * scale)}
 
-    def alpha(self, degrees: Array) -> Array:
-        """Return the angular acceleration of the crank shaft in rad/s², just after a jump."""
-        angles = np.mod(degrees, self.cycle)
-        return self._alpha(angles, angles)["alpha"].value
-
     def curves(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return torque in N m, speed in rad/s and acceleration in rad/s² with their slopes by φ, by their columns."""
         torque, omega = self._sampled(degrees, within).values()
@@ -201,16 +196,6 @@ class ElasticCoupling:
     def alpha_extremes(self) -> Extremes:
         """Largest and smallest angular acceleration of the crank shaft in rad/s²."""
         return extremes(self.grid, self._alpha(self.grid.degrees, self.grid.within), self._alpha)["alpha"]
-
-    def torque(self, degrees: Array) -> Array:
-        """Return the torque in the coupling in N m at crank angles (n,) in degrees."""
-        angles = np.mod(degrees, self.cycle)
-        return self.mean + self._sampled(angles, angles)["torque"].value
-
-    def omega(self, degrees: Array) -> Array:
-        """Return the angular velocity of the crank shaft in rad/s."""
-        angles = np.mod(degrees, self.cycle)
-        return self.shaft.omega + self._sampled(angles, angles)["omega"].value
 
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:

@@ -95,11 +95,6 @@ class SpeedLine(ABC):
             raise Standstill(found.smallest.degrees)
         return found
 
-    def omega(self, degrees: Array) -> Array:
-        """Return the angular velocity in rad/s at crank angles (n,) in degrees."""
-        angles = np.mod(degrees, self.cycle)
-        return np.asarray(self.inertia.omega * np.sqrt(1 + self._ratio(self.course.at(angles, angles)).value))
-
     def curves(self, degrees: Array, within: Array) -> dict[str, Sampled]:
         """Return ω in rad/s and its derivative by time in rad/s², each with its slope by φ."""
         place, nominal = self.course.at(degrees, within), self.inertia.omega
@@ -131,11 +126,6 @@ class SpeedLine(ABC):
         curvature = (place.torque.slope - rising - 2 * slope * energy.slope - ratio * bend) / energy.value
         half = self.inertia.omega**2 / 2
         return Sampled(half * slope, half * curvature)
-
-    def alpha(self, degrees: Array) -> Array:
-        """Return the angular acceleration in rad/s² at crank angles (n,) in degrees, just after a jump."""
-        angles = np.mod(degrees, self.cycle)
-        return self._alpha(self.course.at(angles, angles)).value
 
     @cached_property
     def alpha_extremes(self) -> Extremes:
