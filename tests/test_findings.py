@@ -176,6 +176,13 @@ def test_an_expectation_that_cannot_be_read_says_what_to_write(figure: str, told
     assert (status, told in said) == (2, True), said
 
 
+def test_a_figure_is_told_by_the_name_that_is_written() -> None:
+    text = ENGINE + f"indicator: {{head_end: {{{PRESSURE}}}}}\n"
+    listed = run(text + "expect: {p_i: 5 bar ± 1 %}\nlimits: {A_H: 1 m2}\n", "check")[1]
+    assert (listed.count("\n  p_i "), listed.count("\n  A_H ")) == (1, 1)
+    assert "mean_pressure" not in listed
+
+
 def test_an_expectation_of_what_is_not_there_is_a_fault() -> None:
     status, _, said = run(
         ENGINE + "expect: {T_max: 1 N ± 1 %, phi_reversal: 1 deg ± 1 deg, c_mx: 1 N ± 1 %}\n", "check"

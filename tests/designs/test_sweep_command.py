@@ -71,6 +71,17 @@ def test_key_values_of_other_commands_and_limits() -> None:
     assert [one["broken"] for one in kept] == [None, "c_max", None, "c_max"]
 
 
+def test_limits_and_expectations_of_a_file_can_be_taken_off(tmp_path: Path) -> None:
+    file = tmp_path / "engine.yaml"
+    figures = "limits: {c_max: 1 m/s, delta: 1/20}\nexpect: {p_i: 5 bar ± 1 %}\n"
+    file.write_text(Path(WATERWORKS).read_text(encoding="utf-8") + figures, encoding="utf-8")
+    off = ("--set", "limits={}", "--set", "expect={}")
+    asked = ("--vary", "rod_ratio=3,5", "--columns", "S_peak")
+    assert rows(*asked, *off, file=str(file)) == rows(*asked)
+    ran = CliRunner().invoke(command, ["check", str(file), *off])
+    assert (ran.exit_code, "Limits" in ran.output, "Expected" in ran.output) == (0, False, False)
+
+
 def test_where_sort_top_and_pareto() -> None:
     asked = ("--vary", "rod_ratio=3:6:0.5", "--columns", "T_max,b_max")
     every = {one["row"]: one for one in rows(*asked)}
@@ -219,6 +230,12 @@ def test_a_row_is_computed_in_the_same_company_by_every_run() -> None:
         (("--vary", "rod_ratio=3,4", "--dask", "tcp://x:1", "-j", "2"), "leave one of them out"),
         (("--vary", "rod_ratio=3,4", "-o", WATERWORKS), "name another file"),
         ((), "Missing option '--vary'"),
+        (("--vary", "cylinders.3.bore=3,4 mm"), "--vary cylinders.3.bore=3 mm: there is no list 'cylinders'"),
+        (("--vary", "rod_ratio=3,4", "--set", "limits={c_max: 3 kg}"), "Error: --set limits={c_max: 3 kg}: limits"),
+        (("--vary", "bore=3,4", "--set", "expect=5"), "--vary bore=3: bore: 3 has no unit"),
+        (("--vary", "bore=3,4", "--set", "expect=5"), "--set expect=5: expect: expected a mapping"),
+        (("--vary", "rod_ratio=3,4", "--set", "name: =x"), "--set name: =x: write KEY=VALUE, without the colon"),
+        (("--vary", "rod_ratio=3,4", "-o", "rows.xyz"), "no format has this suffix; write .csv, .json, .jsonl, .md"),
     ],
 )
 def test_bad_input(args: tuple[str, ...], message: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from click.testing import CliRunner
 import kurbel
 from kurbel.cli import kurbel as command
 from kurbel.declared.quantities import COMMON
+from kurbel.designs import uncertainty
 from kurbel.designs.columns import Answer
 from kurbel.designs.uncertainty import Uncertain, Uncertainty, data_uncertainty
 from kurbel.machine_file import source
@@ -93,6 +95,48 @@ def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> 
     page = CliRunner().invoke(command, ["forces", str(file), "--key-values"]).stdout
     assert "Standard uncertainty, and the share of each input in its square" in page
     assert "speed" in page
+
+
+def _rig(folder: Path) -> Path:
+    """A test rig: a compression and an expansion with exponents 1.35 and 1.28, 16.5 : 1, three noisy cycles."""
+    angles = np.arange(0, 720, 1.0)
+    sine, cosine = np.sin(np.radians(angles)), np.cos(np.radians(angles))
+    volume = (1 + 3.6 - cosine - np.sqrt(3.6**2 - sine**2)) / 2 + 1 / 15.5
+    least, most = 1 / 15.5, 1 + 1 / 15.5
+    burnt = 95 * (least / volume) ** 1.28
+    compressed = 0.95 * (most / volume) ** 1.35
+    mean = np.select([angles < 180, angles < 360, angles < 540], [burnt, 1.2, 0.95], compressed)
+    noise = 0.1 * np.random.default_rng(3).standard_normal((3, 720))
+    np.savetxt(folder / "rig.csv", np.column_stack([angles, *(mean + noise)]), "%.4f", ",")
+    file = folder / "rig.yaml"
+    file.write_text("""
+        {cycle: four-stroke, speed: 1500 rpm, stroke: 100 mm, rod_ratio: 3.6, bore: 90 mm,
+         indicator: {pressures: absolute, head_end: {trace: {
+          file: rig.csv, unit: bar, pressure_columns: 2-4, angle_zero: 0 deg, compression_ratio: 16.5}}}}
+        """)
+    return file
+
+
+def test_what_is_answered_alone_is_sampled_less_and_its_trace_read_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(uncertainty, "SLOW_SAMPLE", 25)
+    read, loadtxt = list[Any](), np.loadtxt
+    monkeypatch.setattr(np, "loadtxt", lambda *args, **more: (read.append(args), loadtxt(*args, **more))[1])
+    told = list[int]()
+
+    def counted(parts: Sequence[Any]) -> Iterable[Any]:
+        for part in parts:
+            told.append(len(part))
+            yield part
+
+    known = COMMON.key_values("forces")
+    asked = [Answer(known[id], "forces", "cylinder 1") for id in ("mean_pressure", "n_expansion", "T_max")]
+    spreads = {"indicator.head_end.trace.angle_zero": "0.6 deg"}
+    found = Uncertainty(source.read(_rig(tmp_path)), (), spreads).of(asked, counted)
+    assert {one.answer.quantity.id: one.sample for one in found} == {"mean_pressure": 0, "n_expansion": 25, "T_max": 0}
+    assert told == [10, 10, 5]
+    assert len(read) == 1
 
 
 def _table(*args: str) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from kurbel.declared.quantity import Quantity
 from kurbel.designs.columns import Answer, answered_alone
 from kurbel.errors import KurbelError
+from kurbel.machine import Machine
 from kurbel.machine.side_by_side import Kinds, side_by_side
 from kurbel.machine.variants import Lot
 from kurbel.numerics.cycles import Unlike
@@ -41,6 +42,14 @@ def answers_of(lots: Sequence[Lot], asked: Sequence[Answer], rows: Container[int
             return together
         alone = _Answers(lots, [one for one, beside in zip(asked, side_by_side) if not beside], True).found(rows)
     return {row: _merged(first, alone[row], side_by_side) for row, first in together.items()}
+
+
+def stands_beside(machine: Machine, asked: Answer) -> bool:
+    """Return whether many such machines answer this side by side, in little more time than one of them."""
+    if not (asked.of_cylinder and _stands_beside(asked.quantity)):
+        return False
+    cylinder = next(one for one in machine.cylinders if one.name == asked.subject)
+    return Kinds().of(machine, cylinder) is not None
 
 
 def _stands_beside(quantity: Quantity) -> bool:

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from kurbel.declared.numerals import parse_ratio
+from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of
@@ -93,15 +94,15 @@ class Sweep:
     def _started(self) -> Binder:
         """Return what binds texts, starting from the first row that makes a machine."""
         keys = [one.key for one in self.plan.inputs]
-        failed: MachineFileError | None = None
+        failed = ""
         for row in range(min(self.rows, _STARTS)):
             try:
                 return Binder(self.spec.source, self.spec.overrides, keys, self.plan.texts(row))
             except MachineFileError as error:
-                failed = failed or error
-        raise (
-            UsageError(str(failed).replace("--set ", "--vary ")) if failed else UsageError("there is no row to compute")
-        )
+                failed = failed or _as_varied(str(error), zip(keys, self.plan.texts(row)))
+            except UsageError as error:
+                raise UsageError(_as_varied(str(error), zip(keys, self.plan.texts(row)))) from None
+        raise UsageError(failed or "there is no row to compute")
 
     @cached_property
     def heads(self) -> tuple[Head, ...]:
@@ -199,6 +200,13 @@ class Sweep:
 
 
 _AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")
+
+
+def _as_varied(message: str, texts: Iterable[tuple[str, str]]) -> str:
+    """Return what is told of values as if they had been set as that of what they are: varied."""
+    for text in (shown(f"{key}={value}") for key, value in texts):
+        message = message.replace(f"--set {text}: ", f"--vary {text}: ").replace(f"--set {text})", f"--vary {text})")
+    return message
 
 
 def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:

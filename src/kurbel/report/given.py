@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from kurbel.declared.unit_systems import show
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.piston import Piston
 
 if TYPE_CHECKING:
     from kurbel.machine.indicator import Card
-    from kurbel.machine.piston import Piston
 
 _LARGEST_BORE = 5.0  # m; the widest cylinder built, of the Cruquius engine of 1849, has 3.66 m
 _LARGEST_MASS = 1e5  # kg going to and fro in one cylinder; those of the largest marine diesels weigh some 2e4
