@@ -139,6 +139,21 @@ def test_what_is_answered_alone_is_sampled_less_and_its_trace_read_once(
     assert len(read) == 1
 
 
+def test_why_the_residual_of_a_trace_is_no_rounding(tmp_path: Path) -> None:
+    """Samples at equal angles have the trapezoid's work; others that of the lines that the quadrature follows."""
+    asked = ["forces", str(_rig(tmp_path)), "--key-values", "-f", "json"]
+    told = json.loads(CliRunner().invoke(command, asked).stdout)
+    residual = next(one for one in told["cylinders"][0]["key_values"] if one["id"] == "energy_residual")["value"]
+    assert abs(residual) > 1e-9
+    assert any(note.startswith("ΔA/A of a trace at equal angles is no rounding") for note in told["notes"])
+    uneven = np.loadtxt(tmp_path / "rig.csv", delimiter=",")[np.arange(720) % 7 != 3]
+    np.savetxt(tmp_path / "rig.csv", uneven, "%.4f", ",")
+    told = json.loads(CliRunner().invoke(command, asked).stdout)
+    residual = next(one for one in told["cylinders"][0]["key_values"] if one["id"] == "energy_residual")["value"]
+    assert abs(residual) < 1e-13
+    assert not any("ΔA/A" in note for note in told.get("notes", ()))
+
+
 def _table(*args: str) -> str:
     asked = ["forces", str(WATERWORKS), "--key-values", "--uncertainty", "bore=0.1mm", *args]
     result = CliRunner().invoke(command, asked)
