@@ -64,11 +64,12 @@ def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
 @pytest.mark.parametrize("path", shipped("marine-diesel", "gas-engine", "coupled-blower"))
 def test_check_shows_the_warnings_of_every_command(path: Path) -> None:
     machine = load(path)
+    case = solve(machine)
     shown = {one.text for section in checked(machine).sections for one in section.entries if one.what == "note"}
     frames = [Frame(command.word, (0.0,), None, "metric") for command in COMMANDS]
     for frame in frames:
         with suppress(UsageError):
-            parts = report_of(solve(machine), frame).all_parts
+            parts = report_of(case, frame).all_parts
             warned = {one for part in parts for one in part.warnings}
             assert {one for one in warned if not any(one.endswith(text) for text in shown)} == set()
     if path.stem == "marine-diesel":

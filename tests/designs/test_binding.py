@@ -201,3 +201,13 @@ def test_numbers_of_many_variants_are_those_of_floats() -> None:
     for written_for_floats in (float, round, hash, "{:g}".format, list, int):
         with pytest.raises(TypeError):
             written_for_floats(a)
+
+
+def test_a_row_with_more_faults_than_a_reader_tells_is_told_like_others() -> None:
+    text = "{bore: 1 m, crank: 1 m, rod: 5 m, indicator: {head_end: -0.5 bar}"
+    cylinders = ", ".join(f"{text}, name: c{place}}}" for place in range(100))
+    file = source.decode("m.yaml", f"{{ambient: 1 bar, cylinders: [{cylinders}]}}".encode())
+    found = bound(file, ("ambient",), ("1 bar",), [("0.1 bar",), ("2 bar",), ("0.2 bar",)])
+    assert found[0].startswith("cylinders[0].indicator.head_end: -0.5 bar is below the vacuum")
+    assert found[0].endswith("(reading stopped after 100 faults)")
+    assert same(found[1], read(file, ("ambient",), ("2 bar",)))

@@ -96,6 +96,18 @@ def test_where_sort_top_and_pareto() -> None:
     assert [one["row"] for one in rows(*asked, "--pareto", "-T_max,b_max")] == [1, 2, 3, 4, 5, 6, 7]
 
 
+def test_a_key_value_is_asked_of_one_cylinder_as_it_is_called_in_the_head() -> None:
+    compressor = str(CONFIGS / "compressor-two-stage.yaml")
+    column, vary = "low pressure.rod_tension_max", ("--vary", "speed=300,500 rpm")
+    both = rows(*vary, "--columns", "rod_tension_max", file=compressor)
+    alone = rows(*vary, "--columns", column, "--sort", column, "--where", f"{column} > 1 N", file=compressor)
+    told = [[row.get(f"{column}_N") for row in found] for found in (alone, both)]
+    assert told[0] == sorted(told[1])  # type: ignore[type-var]
+    assert not any("high pressure" in head for row in alone for head in row)
+    wrong = run(*vary, "--columns", "no pressure.rod_tension_max", file=compressor)
+    assert (wrong.exit_code, "no key value 'no pressure.rod_tension_max'" in wrong.stderr) == (2, True)
+
+
 def test_a_summary_tells_quantiles_and_ranks() -> None:
     asked = ("--vary", "rod_ratio=uniform(3, 6)", "--sample", "60", "--columns", "b_max,work")
     whole = rows(*asked)

@@ -4,12 +4,13 @@ Every record that is made anew keeps its rules as when it is read; what a row br
 """
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.declared.keys import Form
-from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, shown
+from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.variants import Lot, joined, one_kind, sort_of
@@ -19,6 +20,9 @@ from kurbel.machine_file.reader import read_machine, reading_of
 from kurbel.machine_file.source import Source
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.varied import Parted
+
+_Part = dict[int, tuple[Any, ...]]
+"""Rows, each with the values of its slots."""
 
 
 class Unbound(Exception):
@@ -135,65 +139,72 @@ class Binder:
         """Return the machines of rows of texts, those of one kind in one record, and why the other rows make none."""
         found = Bound([], {})
         columns = [slot.column(rows, self._reading.folder) for slot in self._slots]
-        read: dict[int, tuple[Any, ...]] = {}
+        read: _Part = {}
         for row, values in enumerate(zip(*columns)):
             if failed := next((one for one in values if isinstance(one, Unbound)), None):
                 found.failures[row] = str(failed)
             else:
                 read[row] = values
+        waiting = _of_one_sort(read)
         with np.errstate(all="ignore"):  # as floats do; what is beyond them is refused
-            for part in _of_one_sort(read):
-                self._bind(part, found)
+            while waiting:
+                waiting += self._bind(waiting.pop(), found)
         return found
 
-    def _bind(self, part: dict[int, tuple[Any, ...]], found: Bound) -> None:
-        """Make the machines of these values of rows at once; where a rule holds for some only, of those by themselves.
+    def _bind(self, part: _Part, found: Bound) -> list[_Part]:
+        """Make the machines of these rows at once; return the parts that can only be made by themselves.
 
-        Where a rule is broken each row is left to itself, to tell why; so it is where one is written for floats alone,
-        and asks for what `Varied` has not.
+        These are the rows for which a rule holds, and those for which it does not; and each row where a rule is broken,
+        to tell why, or is written for floats alone, and asks for what `Varied` has not.
         """
         try:
             machine = self._made(joined(list(part.values())))
             one_kind(machine)
         except Parted as parted:
-            for side in (parted.holds, ~parted.holds):
-                self._bind({row: part[row] for row, own in zip(part, side.tolist()) if own}, found)
+            sides = parted.holds, ~parted.holds
+            return [{row: part[row] for row, own in zip(part, side.tolist()) if own} for side in sides]
         except (Unbound, TypeError, AttributeError) as error:
             if len(part) > 1:
-                for row, values in part.items():
-                    self._bind({row: values}, found)
-            elif isinstance(error, Unbound):
-                found.failures.update(dict.fromkeys(part, str(error)))
-            else:
+                return [{row: values} for row, values in part.items()]
+            if not isinstance(error, Unbound):
                 raise
+            found.failures.update(dict.fromkeys(part, str(error)))
         else:
             found.lots.append(Lot(machine, list(part)))
+        return []
 
     def _made(self, given: Sequence[Any]) -> Machine:
         """Return the machine with these values in the slots; raises Unbound with all that is wrong."""
         found: list[Any] = []
         reading = Reading()
         reading.alike = self._reading.alike
-        for step in self._steps:
-            birth = step.birth
-            values = dict(birth.values)
-            for number, name in step.own:
-                values[name] = given[number]
-            for key, place, earlier in step.links:
-                values[key] = _replaced(values[key], place, found[earlier])
-            missing = any(found[link.step] is REFUSED for link in step.links)
-            try:
-                found.append(REFUSED if missing else birth.form.born(values))
-            except RuleError as error:
-                found.append(reading.refuse(birth.path, birth.form.flattened(error, birth.mapping)))
+        with suppress(StopReading):
+            for step in self._steps:
+                found.append(_born(step, given, found, reading))
         if reading.faults:
             raise Unbound(_told(reading.faults))
         return found[-1] if found else self.machine
 
 
-def _of_one_sort(read: dict[int, tuple[Any, ...]]) -> list[dict[int, tuple[Any, ...]]]:
+def _born(step: _Step, given: Sequence[Any], found: Sequence[Any], reading: Reading) -> Any:
+    """Return the record of a step, or REFUSED after noting its faults; found: the records of earlier steps."""
+    birth = step.birth
+    values = dict(birth.values)
+    for number, name in step.own:
+        values[name] = given[number]
+    for key, place, earlier in step.links:
+        if found[earlier] is REFUSED:
+            return REFUSED
+        values[key] = _replaced(values[key], place, found[earlier])
+    try:
+        return birth.form.born(values)
+    except RuleError as error:
+        return reading.refuse(birth.path, birth.form.flattened(error, birth.mapping))
+
+
+def _of_one_sort(read: _Part) -> list[_Part]:
     """Return the rows with their values in parts that differ in numbers only."""
-    parts: dict[Any, dict[int, tuple[Any, ...]]] = {}
+    parts: dict[Any, _Part] = {}
     for row, values in read.items():
         parts.setdefault(sort_of(values), {})[row] = values
     return list(parts.values())

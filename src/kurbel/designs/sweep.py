@@ -112,7 +112,8 @@ class Sweep:
         ids = [one.quantity.id for one in self.asked]
         heads = [self._input_head(number, one) for number, one in enumerate(self.plan.inputs)]
         for one, unit in zip(self.asked, self._units):
-            name = f"{one.subject}.{one.quantity.id}" if ids.count(one.quantity.id) > 1 else one.quantity.id
+            owned = one.alone or ids.count(one.quantity.id) > 1
+            name = f"{one.subject}.{one.quantity.id}" if owned else one.quantity.id
             heads.append(Head(name, unit, False, one.quantity.kind))
             if self._has_angle(one):
                 heads.append(Head(f"{name}_at", "deg", False, "angle"))

@@ -1,6 +1,5 @@
-"""Forms of one line: numbers, values with a unit, counts, words, texts, file names."""
+"""Forms of one line: numbers, values with a unit, counts, words, texts."""
 
-import os
 import re
 from abc import abstractmethod
 from collections.abc import Sequence
@@ -310,26 +309,6 @@ class Truth(Choice):
 
     def schema(self, definitions: Schema) -> Schema:
         return {"type": "boolean"}
-
-
-class FilePath(Scalar):
-    """The path of a file, relative to the machine file; becomes a path that can be opened."""
-
-    def parse(self, text: str, folder: str) -> str:
-        full = os.path.join(folder, text)
-        if os.path.isdir(full):
-            refused(f"'{shown(text)}' is a folder; name the file in it")
-        if os.path.exists(full) and not os.path.isfile(full):
-            refused(f"'{shown(text)}' is a device or a pipe; name a file that can be read again")
-        if not os.path.isfile(full):
-            refused(f"there is no file '{shown(text)}' in {shown(folder) if folder else 'the working directory'}")
-        return full
-
-    def expected(self) -> str:
-        return "the name of a file"
-
-    def schema(self, definitions: Schema) -> Schema:
-        return {"type": "string", "minLength": 1}
 
 
 class UnitName(Scalar):

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
+from kurbel.crank_angle import CrankAngle
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.numerics.gauss import GAUSS
 from kurbel.numerics.grid import Pieces
@@ -51,13 +52,17 @@ class Spectrum(NamedTuple):
         return self._replace(mean=self.mean + other.mean, amplitudes=self.amplitudes + other.amplitudes)
 
     def cleared(self, size: float) -> "Spectrum":
-        """Return it with 0 for what is rounding beside torques of this size in N m."""
-        return self._replace(amplitudes=np.where(np.abs(self.amplitudes) > _ROUNDING * size, self.amplitudes, 0.0))
+        """Return it with 0 for what is rounding beside torques of this size in N m, in phase or a quarter behind."""
+        cos, sin = (
+            np.where(np.abs(part) > _ROUNDING * size, part, 0.0)
+            for part in (self.amplitudes.real, self.amplitudes.imag)
+        )
+        return self._replace(amplitudes=cos + 1j * sin)
 
     def turned(self, degrees: float) -> "Spectrum":
         """Return that of the torque put earlier by an angle."""
-        turn = np.exp(1j * np.radians(np.mod(self.orders * degrees, 360.0)))
-        return self._replace(amplitudes=self.amplitudes * turn)
+        turn = CrankAngle.of(self.orders * degrees)
+        return self._replace(amplitudes=self.amplitudes * (turn.cos + 1j * np.asarray(turn.sin)))
 
     @property
     def size(self) -> float:
