@@ -20,7 +20,7 @@ from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, answered_alone, asked_answers
 from kurbel.designs.sweep import Spec, Sweep
 from kurbel.designs.workers import rows_of
-from kurbel.machine import Machine
+from kurbel.machine.variants import Lot
 from kurbel.machine_file import source
 from kurbel.render import Look
 from kurbel.render.sweep_output import Titles, csv_rows
@@ -39,10 +39,10 @@ def seconds(task: Callable[[], object]) -> float:
     return min(times)
 
 
-def designs(count: int) -> list[Machine]:
+def designs(count: int) -> list[Lot]:
     """Machines with rods and speeds of every length and size."""
     binder = Binder(WATERWORKS, (), ("rod_ratio", "speed"), ("5", "50 rpm"))
-    return [binder.bound((f"{ratio:.6f}", f"{40 + ratio:.6f} rpm")) for ratio in np.linspace(3, 6, count)]
+    return binder.bound([(f"{ratio:.6f}", f"{40 + ratio:.6f} rpm") for ratio in np.linspace(3, 6, count)]).lots
 
 
 def told(name: str, many: float, count: int, single: float | None = None) -> None:
@@ -51,18 +51,19 @@ def told(name: str, many: float, count: int, single: float | None = None) -> Non
     print(f"{name:<44}{many / count * 1e6:>10.0f} us{ratio}")
 
 
-def beside_alone(name: str, machines: list[Machine], asked: list[Answer]) -> None:
+def beside_alone(name: str, lots: list[Lot], asked: list[Answer]) -> None:
     """Compare machines side by side with the same ones alone."""
+    alone = [lots[0].one(place) for place in range(SINGLE)]
     with np.errstate(all="ignore"):
-        single = seconds(lambda: [answered_alone(machine, asked) for machine in machines[:SINGLE]]) / SINGLE
-    told(name, seconds(lambda: answers_of(machines, asked)), len(machines), single)
+        single = seconds(lambda: [answered_alone(machine, asked) for machine in alone]) / SINGLE
+    told(name, seconds(lambda: answers_of(lots, asked)), AT_ONCE, single)
 
 
 def main() -> None:
     """Print the table."""
     rows = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
     machines = designs(AT_ONCE)
-    every = list(asked_answers(machines[0], ()))
+    every = list(asked_answers(machines[0].one(0), ()))
     motion = [one for one in every if one.quantity.id in ("c_m", "c_max", "b_max", "b_min", "phi_b_zero")]
     beside_alone("all key values of forces", machines, every)
     beside_alone("motion alone", machines, motion)

@@ -7,7 +7,6 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from _pytest.mark import ParameterSet
 
 from kurbel.machine_file import load
 from kurbel.machine_file.reader import read_machine
@@ -31,7 +30,7 @@ def case_from(source: Source, overrides: tuple[str, ...]) -> Case:
     return Case(read_machine(source, overrides))
 
 
-def shipped(*names: str) -> list[ParameterSet]:
+def shipped(*names: str) -> list[pytest.ParameterSet]:
     """Return the machines that come with kurbel, slow but for these names."""
     assert set(names) <= {path.stem for path in SHIPPED}
     return few(SHIPPED, [path for path in SHIPPED if path.stem in names], [path.stem for path in SHIPPED])
@@ -39,7 +38,7 @@ def shipped(*names: str) -> list[ParameterSet]:
 
 def few(
     values: Iterable[object], kept: Iterable[object], ids: Iterable[str | None] | None = None
-) -> list[ParameterSet]:
+) -> list[pytest.ParameterSet]:
     """Return parameters that are slow but for those kept; a tuple is of several arguments."""
     every, default = list(values), list(kept)
     assert all(value in every for value in default)

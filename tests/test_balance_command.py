@@ -145,7 +145,7 @@ def test_the_counterweights_say_what_they_hold() -> None:
     told = run(one + "counterweights: [{product: 1 kg m, angle: 0 deg}, {product: 1 kg m, angle: 180 deg}]\n").stdout
     best = next(line for line in told.splitlines() if line.startswith("  u_1 "))
     assert best.split()[1:3] == ["0.2000", "kg"]
-    assert "what turns with the crank: rotating masses and half the reciprocating ones" in best
+    assert "Counterweight against what rotates and half of what reciprocates" in best
     assert "Vector sum of the given counterweights" in told
 
 

@@ -43,9 +43,14 @@ def named(page: Path) -> str:
     return page.relative_to(ROOT).as_posix()
 
 
+def needs(command: str) -> list[pytest.MarkDecorator]:
+    """Return the mark of a command that pipes into a program which not every machine has."""
+    return [pytest.mark.skipif(shutil.which("jq") is None, reason="jq is not installed")] if "| jq " in command else []
+
+
 def commands() -> list[object]:
     return [
-        pytest.param(page, *block, marks=marked(page), id=f"{named(page)}: {block[0][2:60]}")
+        pytest.param(page, *block, marks=[*marked(page), *needs(block[0])], id=f"{named(page)}: {block[0][2:60]}")
         for page in [README, *PAGES]
         for block in COMMAND.findall(text_of(page))
     ]

@@ -64,11 +64,12 @@ def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
 @pytest.mark.parametrize("path", shipped("marine-diesel", "gas-engine", "coupled-blower"))
 def test_check_shows_the_warnings_of_every_command(path: Path) -> None:
     machine = load(path)
+    case = solve(machine)
     shown = {one.text for section in checked(machine).sections for one in section.entries if one.what == "note"}
     frames = [Frame(command.word, (0.0,), None, "metric") for command in COMMANDS]
     for frame in frames:
         with suppress(UsageError):
-            parts = report_of(solve(machine), frame).all_parts
+            parts = report_of(case, frame).all_parts
             warned = {one for part in parts for one in part.warnings}
             assert {one for one in warned if not any(one.endswith(text) for text in shown)} == set()
     if path.stem == "marine-diesel":
@@ -174,6 +175,13 @@ def test_expected_figures_are_compared() -> None:
 def test_an_expectation_that_cannot_be_read_says_what_to_write(figure: str, told: str) -> None:
     status, _, said = run(ENGINE + f"expect: {{b_max: {figure}}}\n", "check")
     assert (status, told in said) == (2, True), said
+
+
+def test_a_figure_is_told_by_the_name_that_is_written() -> None:
+    text = ENGINE + f"indicator: {{head_end: {{{PRESSURE}}}}}\n"
+    listed = run(text + "expect: {p_i: 5 bar ± 1 %}\nlimits: {A_H: 1 m2}\n", "check")[1]
+    assert (listed.count("\n  p_i "), listed.count("\n  A_H ")) == (1, 1)
+    assert "mean_pressure" not in listed
 
 
 def test_an_expectation_of_what_is_not_there_is_a_fault() -> None:

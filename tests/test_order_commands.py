@@ -154,8 +154,8 @@ cylinders:
 
 
 def test_a_bound_has_two_figures() -> None:
-    """Orders beyond the 24th add about 17.689 kN m or less: nobody knows a bound to five figures."""
-    assert "(higher ones add about 18 kN m or less)" in " ".join(parsed("torsion", SHIP)["notes"])
+    """Orders beyond the 96th add about 2.58512 kN m or less: nobody knows a bound to five figures."""
+    assert "(higher ones add about 2.6 kN m or less)" in " ".join(parsed("torsion", SHIP)["notes"])
 
 
 def test_without_damping_it_says_so() -> None:

@@ -167,6 +167,14 @@ def test_a_format_that_contradicts_the_suffix_is_refused(tmp_path: Path) -> None
         assert CliRunner().invoke(kurbel, ["table", "-f", "csv", "-o", str(tmp_path / name)]).exit_code == 0
 
 
+def test_a_suffix_of_no_format_is_refused(tmp_path: Path) -> None:
+    result = CliRunner().invoke(kurbel, ["table", "-o", str(tmp_path / "out.xyz")])
+    assert (result.exit_code, list(tmp_path.iterdir())) == (2, [])
+    assert "no format has this suffix; write .csv, .json, .md, .markdown, .html, .tex, .txt, or" in result.stderr
+    assert CliRunner().invoke(kurbel, ["table", "-f", "csv", "-o", str(tmp_path / "out.xyz")]).exit_code == 0
+    assert CliRunner().invoke(kurbel, ["table", "-o", str(tmp_path / "out")]).exit_code == 0
+
+
 # provenance
 
 

@@ -28,11 +28,13 @@ def run(*command: object, folder: Path) -> str:
 
 def installed(folder: Path, *what: object) -> Path:
     """Install into a new virtual environment, which sees the dependencies of this one; return its python."""
-    run(sys.executable, "-m", "venv", folder / "venv", folder=folder)
+    run(sys.executable, "-m", "venv", "--without-pip", folder / "venv", folder=folder)
     python = folder / "venv" / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-    run(python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", *what, folder=folder)
     own = run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))", folder=folder).strip()
     Path(own, "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
+    pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--disable-pip-version-check")
+    # an environment of its own for every build is fetched anew each time; .ci/run builds in one
+    run(*pip, "--no-build-isolation", "--no-deps", *what, folder=folder)
     return python
 
 
@@ -59,7 +61,7 @@ def test_no_file_is_a_symbolic_link() -> None:
 @pytest.mark.slow
 def test_wheel_and_sdist_hold_every_file_once(tmp_path: Path) -> None:
     """The wheel is built from the sdist, as installers do where there is no wheel."""
-    run(sys.executable, "-m", "build", "--outdir", tmp_path, ROOT, folder=tmp_path)
+    run(sys.executable, "-m", "build", "--no-isolation", "--outdir", tmp_path, ROOT, folder=tmp_path)
     (wheel,), (sdist,) = tmp_path.glob("*.whl"), tmp_path.glob("*.tar.gz")
     with tarfile.open(sdist) as archive:
         held = [name.partition("/")[2] for name in archive.getnames()]

@@ -23,10 +23,13 @@ class CrankAngle(NamedTuple):
     cos: Any
 
     @classmethod
-    def of(cls, degrees: "float | Array", beyond: "float | Array" = 0.0) -> "CrankAngle":
+    def of(
+        cls, degrees: "float | Array", beyond: "float | Array" = 0.0, right_angle: "Array | None" = None
+    ) -> "CrankAngle":
         """Return the angle for a number or an array of degrees.
 
         beyond: degrees to be added that are too small to show in `degrees`: 90 and 1e-20 are an angle just beyond 90°.
+        right_angle: multiples of 90 beside them, of a shape that fits, where they are known.
 
         >>> CrankAngle.of(180.0)
         CrankAngle(degrees=180.0, sin=0.0, cos=-1.0)
@@ -35,7 +38,7 @@ class CrankAngle(NamedTuple):
         """
         if isinstance(degrees, (int, float)) and isinstance(beyond, (int, float)):
             return cls(degrees, *_sin_cos_scalar(degrees, beyond))
-        return cls(degrees, *_sin_cos_array(degrees, beyond))
+        return cls(degrees, *_sin_cos_array(degrees, beyond, right_angle))
 
     @property
     def versine(self) -> Any:
@@ -77,16 +80,19 @@ def _sin_cos_scalar(degrees: float, beyond: float) -> tuple[float, float]:
     return pair[0] + 0.0, pair[1] + 0.0
 
 
-def _sin_cos_array(degrees: "float | Array", beyond: "float | Array") -> "tuple[Array, Array]":
+def _sin_cos_array(
+    degrees: "float | Array", beyond: "float | Array", right_angle: "Array | None"
+) -> "tuple[Array, Array]":
     import numpy as np
 
     if not np.isfinite(degrees).all():
         raise ValueError("a crank angle must be finite")
-    rest = degrees if np.abs(degrees).max(initial=0.0) <= 720.0 else np.fmod(degrees, 360.0)
-    quarter = np.rint(rest / 90.0)
-    rest = (rest - 90.0 * quarter + beyond) * _RADIANS_PER_DEGREE
+    if right_angle is None:
+        degrees = degrees if np.abs(degrees).max(initial=0.0) <= 720.0 else np.fmod(degrees, 360.0)
+        right_angle = 90.0 * np.rint(degrees / 90.0)
+    rest = (degrees - right_angle + beyond) * _RADIANS_PER_DEGREE
     sin, cos = np.sin(rest), np.cos(rest)
-    turned = quarter.astype(int) % 4
-    crossed = turned % 2 == 1
-    sin, cos = np.where(crossed, cos, sin), np.where(crossed, sin, cos)
-    return np.where(turned >= 2, -sin, sin) + 0.0, np.where((turned == 1) | (turned == 2), -cos, cos) + 0.0
+    quarter = (right_angle / 90.0).astype(int) % 4
+    turned_sin, turned_cos = np.array((0.0, 1.0, 0.0, -1.0))[quarter], np.array((1.0, 0.0, -1.0, 0.0))[quarter]
+    # exact, since one term is zero; adding 0.0 turns -0.0 into 0.0
+    return sin * turned_cos + cos * turned_sin + 0.0, cos * turned_cos - sin * turned_sin + 0.0

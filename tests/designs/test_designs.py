@@ -1,20 +1,14 @@
-"""What varies, in which order, and how it is bound to the machine file."""
+"""What varies, and in which order."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from kurbel.designs.binding import Binder, Unbound
 from kurbel.designs.inputs import read_input
 from kurbel.designs.plan import Plan, shard
 from kurbel.designs.sampling import _digits, latin_hypercube, sobol
 from kurbel.errors import UsageError
-from kurbel.machine_file import source
-
-CONFIGS = Path(__file__).parent.parent.parent / "configs"
 
 
 @pytest.mark.parametrize(
@@ -112,60 +106,3 @@ def test_a_latin_hypercube_has_one_point_in_every_strip() -> None:
     assert all((np.sort(np.floor(100 * column)) == np.arange(100)).all() for column in points.T)
     assert (points == latin_hypercube(100, 4, 1)).all()
     assert (points != latin_hypercube(100, 4, 2)).any()
-
-
-KEYS = {
-    "waterworks.yaml": {
-        "rod_ratio": "4.5",
-        "speed": "61 rpm",
-        "tandem.0.indicator.head_end.constant.compression": "5 at",
-        "indicator.head_end.expansion.1.1": "9.3",
-        "masses.piston": "100 kg",
-        "friction.crosshead": "0.2",
-    },
-    "diesel-trace.yaml": {"bore": "200 mm", "indicator.head_end.trace.angle_zero": "0.1 deg"},
-    "four-cylinder-generator.yaml": {
-        "cylinders.each.bore": "250 mm",
-        "cylinders.each.indicator.head_end.otto.peak": "20 at",
-    },
-    "punch.yaml": {"flywheel.inertia": "900 kg m2"},
-}
-
-
-@pytest.mark.parametrize("name", KEYS)
-def test_a_bound_machine_is_the_one_that_is_read(name: str) -> None:
-    file, texts = source.read(CONFIGS / name), KEYS[name]
-    keys, values = tuple(texts), tuple(texts.values())
-    binder = Binder(file, (), keys[:1], values[:1])
-    assert described(binder.bound(values[:1])) == described(binder.read_whole(values[:1]))
-    pairs = [value.partition(" ") for value in values]
-    start = [f"{1.1 * float(number):g} {unit}".rstrip() for number, _, unit in pairs]
-    binder = Binder(file, (), keys, start)
-    assert described(binder.bound(values)) == described(binder.read_whole(values))
-    assert described(binder.bound(values)) != described(binder.bound(start))
-
-
-def described(machine: object) -> str:
-    """Everything that a machine is made of, but for the file that it comes from."""
-    return repr(getattr(machine, "cylinders", None)) + repr(
-        [value for name, value in vars(machine).items() if name != "origin"]
-    )
-
-
-@pytest.mark.parametrize("texts", [("0.5", "50 rpm"), ("4", "50 mm"), ("4", "-3 rpm"), ("1,5", "50 rpm")])
-def test_what_makes_no_machine_is_told_as_when_it_is_read(texts: tuple[str, str]) -> None:
-    binder = Binder(source.read(CONFIGS / "waterworks.yaml"), (), ("rod_ratio", "speed"), ("5", "50 rpm"))
-    with pytest.raises(Unbound) as quick:
-        binder.bound(texts)
-    with pytest.raises(Unbound) as whole:
-        binder.read_whole(texts)
-    assert str(quick.value) == str(whole.value)
-
-
-def test_a_cylinder_that_is_like_another_varies_with_it(tmp_path: Path) -> None:
-    file = tmp_path / "m.yaml"
-    file.write_text(
-        "cylinders:\n  - {name: a, crank: 1 m, rod: 5 m, bore: 1 m}\n  - {name: b, like: a, crank_position: 90 deg}\n"
-    )
-    binder = Binder(source.read(file), (), ("cylinders.0.bore",), ("1 m",))
-    assert [one.pistons[0].bore for one in binder.bound(("2 m",)).cylinders] == [2.0, 2.0]

@@ -5,8 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import json
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
+import mpmath as mp
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -14,6 +17,7 @@ from click.testing import CliRunner
 import kurbel
 from kurbel.cli import kurbel as command
 from kurbel.declared.quantities import COMMON
+from kurbel.designs import uncertainty
 from kurbel.designs.columns import Answer
 from kurbel.designs.uncertainty import Uncertain, Uncertainty, data_uncertainty
 from kurbel.machine_file import source
@@ -91,6 +95,63 @@ def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> 
     page = CliRunner().invoke(command, ["forces", str(file), "--key-values"]).stdout
     assert "Standard uncertainty, and the share of each input in its square" in page
     assert "speed" in page
+
+
+def _rig(folder: Path) -> Path:
+    """A test rig: a compression and an expansion with exponents 1.35 and 1.28, 16.5 : 1, three noisy cycles."""
+    angles = np.arange(0, 720, 1.0)
+    sine, cosine = np.sin(np.radians(angles)), np.cos(np.radians(angles))
+    volume = (1 + 3.6 - cosine - np.sqrt(3.6**2 - sine**2)) / 2 + 1 / 15.5
+    least, most = 1 / 15.5, 1 + 1 / 15.5
+    burnt = 95 * (least / volume) ** 1.28
+    compressed = 0.95 * (most / volume) ** 1.35
+    mean = np.select([angles < 180, angles < 360, angles < 540], [burnt, 1.2, 0.95], compressed)
+    noise = 0.1 * np.random.default_rng(3).standard_normal((3, 720))
+    np.savetxt(folder / "rig.csv", np.column_stack([angles, *(mean + noise)]), "%.4f", ",")
+    file = folder / "rig.yaml"
+    file.write_text("""
+        {cycle: four-stroke, speed: 1500 rpm, stroke: 100 mm, rod_ratio: 3.6, bore: 90 mm,
+         indicator: {pressures: absolute, head_end: {trace: {
+          file: rig.csv, unit: bar, pressure_columns: 2-4, angle_zero: 0 deg, compression_ratio: 16.5}}}}
+        """)
+    return file
+
+
+def test_what_is_answered_alone_is_sampled_less_and_its_trace_read_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(uncertainty, "SLOW_SAMPLE", 25)
+    read, loadtxt = list[Any](), np.loadtxt
+    monkeypatch.setattr(np, "loadtxt", lambda *args, **more: (read.append(args), loadtxt(*args, **more))[1])
+    told = list[int]()
+
+    def counted(parts: Sequence[Any]) -> Iterable[Any]:
+        for part in parts:
+            told.append(len(part))
+            yield part
+
+    known = COMMON.key_values("forces")
+    asked = [Answer(known[id], "forces", "cylinder 1") for id in ("mean_pressure", "n_expansion", "T_max")]
+    spreads = {"indicator.head_end.trace.angle_zero": "0.6 deg"}
+    found = Uncertainty(source.read(_rig(tmp_path)), (), spreads).of(asked, counted)
+    assert {one.answer.quantity.id: one.sample for one in found} == {"mean_pressure": 0, "n_expansion": 25, "T_max": 0}
+    assert told == [10, 10, 5]
+    assert len(read) == 1
+
+
+def test_why_the_residual_of_a_trace_is_no_rounding(tmp_path: Path) -> None:
+    """Samples at equal angles have the trapezoid's work; others that of the lines that the quadrature follows."""
+    asked = ["forces", str(_rig(tmp_path)), "--key-values", "-f", "json"]
+    told = json.loads(CliRunner().invoke(command, asked).stdout)
+    residual = next(one for one in told["cylinders"][0]["key_values"] if one["id"] == "energy_residual")["value"]
+    assert abs(residual) > 1e-9
+    assert any(note.startswith("ΔA/A of a trace at equal angles is no rounding") for note in told["notes"])
+    uneven = np.loadtxt(tmp_path / "rig.csv", delimiter=",")[np.arange(720) % 7 != 3]
+    np.savetxt(tmp_path / "rig.csv", uneven, "%.4f", ",")
+    told = json.loads(CliRunner().invoke(command, asked).stdout)
+    residual = next(one for one in told["cylinders"][0]["key_values"] if one["id"] == "energy_residual")["value"]
+    assert abs(residual) < 1e-13
+    assert not any("ΔA/A" in note for note in told.get("notes", ()))
 
 
 def _table(*args: str) -> str:
@@ -178,3 +239,20 @@ def test_an_uncertainty_from_outside_is_told_as_such() -> None:
     assert "--uncertainty bor: no value stands under this key in the file; did you mean 'bore'?" in result.stderr
     assert "--uncertainty speed: " in result.stderr
     assert "kg is a unit of mass" in result.stderr
+
+
+@pytest.mark.parametrize("share", [1e-5, 1e-3, 0.02, 0.05])
+def test_differences_are_as_good_as_exact_derivatives(share: float) -> None:
+    """Of c_max by L/R against thirty digits: u has eight of them from uncertainties of 1e-5 of the value to 5 %."""
+    with mp.workdps(30):
+        ratio = mp.mpf(5)
+
+        def slope(length: Any, phi: Any) -> Any:
+            return mp.diff(lambda p: mp.cos(p) + mp.sqrt(length**2 - mp.sin(p) ** 2), phi)
+
+        place = mp.findroot(lambda phi: mp.diff(lambda p: slope(ratio, p), phi), mp.radians(79))
+        by_ratio = mp.diff(lambda length: slope(length, place), ratio)  # where x′ is largest its place does not count
+        exact = float(abs(by_ratio / slope(ratio, place)) * ratio * mp.mpf(share))
+    (one,) = of({"rod_ratio": f"{100 * share!r} %"}, "c_max").values()
+    assert one.sample == 0
+    assert one.spread / one.value == pytest.approx(exact, rel=1e-8)

@@ -28,6 +28,9 @@ const beyond = [...document.querySelectorAll('body *')].filter(one => {
 }).map(one => one.tagName + ' ' + (one.textContent || '').slice(0, 40));
 const unseen = [...document.querySelectorAll('#input tr > :nth-child(2)')].filter(one =>
   one.getBoundingClientRect().right > WIDTH + 1).map(one => one.textContent);
+const cut = [...document.querySelectorAll('figure .wide')].filter(one => one.scrollWidth > one.clientWidth + 1).length;
+const across = new Set([...document.querySelectorAll('.pair > figure')].map(one =>
+  Math.round(one.getBoundingClientRect().left))).size;
 const letters = Math.min(99, ...[...document.querySelectorAll('.pair text')].map(one =>
   one.getScreenCTM().a * parseFloat(getComputedStyle(one).fontSize)));
 const channels = colour => (colour.match(/[0-9.]+/g) || []).map(Number);
@@ -42,7 +45,7 @@ for (const one of document.querySelectorAll('h1,h2,h3,h4,p,li,td,th,a,caption,fi
   least = Math.min(least, (high + 0.05) / (low + 0.05));
 }
 const found = {wide: document.documentElement.scrollWidth,
-  beyond, unseen, letters, least, ground: ground(document.body)};
+  beyond, unseen, cut, across, letters, least, ground: ground(document.body)};
 parent.postMessage(JSON.stringify(found), '*');
 </script>"""
 FRAME = """<!DOCTYPE html><body style="margin:0">
@@ -91,6 +94,14 @@ def test_nothing_overflows(names: tuple[str, ...], width: int, tmp_path: Path) -
     assert found["unseen"] == []
     assert found["beyond"] == []
     assert found["wide"] == width
+
+
+@browser
+@pytest.mark.parametrize(("width", "across"), [(1280, 2), (1100, 2), (768, 1), (520, 1)])
+def test_no_picture_of_a_comparison_is_cut(width: int, across: int, tmp_path: Path) -> None:
+    """Two stand side by side where both have room, or else one below the other; none has to be scrolled."""
+    found = measured(page_of("waterworks", "compressor"), width, tmp_path)
+    assert (found["cut"], found["across"]) == (0, across)
 
 
 @browser

@@ -29,7 +29,7 @@ def test_messages(monkeypatch: pytest.MonkeyPatch, kept: Callable[[Path, str], s
     assert told == {name: kept(FOLDER / f"{name}.expected", message) for name, message in told.items()}
 
 
-@pytest.mark.parametrize("name", few(FILES, ["deep_nesting", *FILES[::8]]))
+@pytest.mark.parametrize("name", few(FILES, ["deep_nesting", *FILES[::16]]))
 def test_same_message_without_libyaml(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(yaml, "CSafeLoader", raising=False)
     assert _message(name, monkeypatch) + "\n" == (FOLDER / f"{name}.expected").read_text("utf-8")

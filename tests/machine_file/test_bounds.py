@@ -20,6 +20,10 @@ from representative import law_of_each
 from schemas import whole_schema
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod_ratio: 5\n"
+STEAM = (
+    "indicator: {head_end: {steam: "
+    "{admission: 160 bar, exhaust: 1 bar, cut_off: 0.3, clearance: 0.05, exponent: 1.1}}}\n"
+)
 GAS = "bore: 300 mm\nindicator: {head_end: {constant: {expansion: 1 bar, compression: 2 bar}}}\n"
 TRACE = "bore: 1 m\nindicator: {{head_end: {{trace: {{file: {file}, unit: bar, angle_zero: {zero}{more}}}}}}}\n"
 
@@ -92,6 +96,18 @@ def test_the_schema_states_the_sizes() -> None:
         (ENGINE + "bore: 450 m\n", "a bore of 450 m is beyond anything built; is its unit right?"),
         (ENGINE.replace("60 rpm", "1e6 rpm"), "a speed of 1e+06 rpm is beyond anything built; is its unit right?"),
         (ENGINE + "masses: {piston: 300000 t}\n", "a mass of 300000 t in moving parts is beyond anything built"),
+        (
+            ENGINE + "bore: 450 mm\n" + STEAM.replace("1.1", "0.8"),
+            "piston, head end: an exponent of 0.8 is none of gas or steam, 0.9 to 1.7; is it right?",
+        ),
+        (
+            ENGINE + "flywheel: {fluctuation: 1}\n",
+            "a wanted fluctuation of 1 lets the speed vary between 0.5 and 1.5 times its mean",
+        ),
+        (
+            ENGINE + "bore: 450 mm\n" + STEAM.replace("160 bar", "160 MPa"),
+            "a pressure of 1600 bar is more than engines have, at most 300 bar; is its unit right?",
+        ),
     ],
 )
 def test_what_was_never_built_gets_a_note(text: str, note: str) -> None:
@@ -104,6 +120,10 @@ def test_nothing_that_was_built_gets_one() -> None:
     """The Cruquius engine: 144 inches; a large two-stroke diesel: 20 t; a model engine: 30,000 rpm."""
     built = "speed: 30000 rpm\ncrank: 1 m\nrod_ratio: 5\nbore: 3658 mm\nmasses: {piston: 20 t}\n"
     assert "beyond anything built" not in run("check", built).output
+    engine = ENGINE + "bore: 450 mm\nflywheel: {fluctuation: 1/5}\n" + STEAM
+    assert "is it right?" not in run("check", engine).output
+    pump = "indicator: {head_end: {constant: {expansion: 0 bar, compression: 1600 bar}}}\n"
+    assert "is its unit right?" not in run("check", ENGINE + "bore: 20 mm\n" + pump).output
 
 
 def test_an_overflow_that_no_bound_keeps_off_is_an_error_without_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator
 
 import pytest
 import test_every_mechanism as laws
-from _pytest.mark import ParameterSet
 
 SLIPS = [
     ("slider_crank", "rod_angle", "angle.sin - self.offset", "angle.sin + self.offset"),
@@ -90,7 +89,10 @@ def asked(law: Callable[..., None]) -> Iterator[tuple[Callable[..., None], dict[
 
 def named(names: str | tuple[str, ...], value: object) -> dict[str, object]:
     """Return one parameter of pytest by the names of the arguments."""
-    values = value.values if isinstance(value, ParameterSet) else value if isinstance(names, tuple) else (value,)
+    if isinstance(value, type(pytest.param())):
+        values = value.values
+    else:
+        values = value if isinstance(names, tuple) else (value,)
     return dict(zip(names if isinstance(names, tuple) else (names,), values))
 
 

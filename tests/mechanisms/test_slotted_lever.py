@@ -177,3 +177,10 @@ def test_a_link_needs_a_lever():
         loads("mechanism: slotted-lever\ncrank: 75 mm\nframe: 50 mm\nlink: 300 mm")
     with pytest.raises(RuleError, match="lever"):
         SlottedLever(0.075, 0.05, link=0.3)
+
+
+def test_a_slot_that_ends_before_the_pin_does_is_told() -> None:
+    """The pin is MD + r from the pivot at the farthest: 240 + 120 = 360 mm."""
+    (told,) = SlottedLever(0.12, 0.24, 0.3).notes
+    assert told.startswith("The pin slides as far as 360 mm from the lever's pivot, past its end at 300 mm")
+    assert SlottedLever(0.12, 0.24, 0.36).notes == ()

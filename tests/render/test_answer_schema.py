@@ -6,24 +6,48 @@ import json
 from pathlib import Path
 
 import pytest
+from click import Context
 from click.testing import CliRunner
 from jsonschema import Draft7Validator
 
-from kurbel.cli import kurbel
+from kurbel.cli import COMMANDS, kurbel
 
 CONFIGS = Path(__file__).parents[2] / "configs"
+BROKEN = """\
+name: Engine with five mistakes
+speed: 50
+crank: 400 mm
+rod: 300 mm
+boore: 450 mm
+indicator: {head_end: {unit: at, expansion: [[0, 9,5], [1, 2.2]]}, crank_end: mirrord}
+"""
+"""A file whose check names no machine."""
 MACHINES = [
     *(("motion", name) for name in ("shaper", "offset-engine")),
     *(("forces", name) for name in ("waterworks", "diesel-trace", "coupled-axle", "waterworks-two-cranks")),
     *(("flywheel", name) for name in ("punch", "coupled-blower")),
     *(("check", name) for name in ("waterworks", "compressor")),
     ("stress", "gas-engine"),
+    ("bearings", "gas-engine"),
+    ("balance", "boxer"),
+    ("harmonics", "punch"),
+    ("torsion", "torsional-damper"),
 ]
 ANSWERS = [
     ["table", "--compare"],
     ["friction", "--incline", "30", "--coefficient", "0.1"],
     *([command, str(CONFIGS / f"{name}.yaml")] for command, name in MACHINES),
+    ["check", str(CONFIGS / "waterworks.yaml"), "--set", "limits.c_max=1 m/s", "--set", "expect.b_max=2 m/s2 ± 1 %"],
+    ["forces", str(CONFIGS / "waterworks.yaml"), "--uncertainty", "bore=0.1mm"],
 ]
+
+
+def _of_machines() -> list[str]:
+    """Return the commands that answer for a machine in json by one object; `sweep` writes one a line."""
+    context = Context(kurbel)
+    found = {name: kurbel.get_command(context, name) for name in COMMANDS}
+    asked = {name: {one.name for one in command.params} for name, command in found.items() if command}
+    return [name for name, options in asked.items() if options >= {"file", "format"} and name != "sweep"]
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +62,26 @@ def test_an_answer_keeps_the_schema(asked: list[str], validator: Draft7Validator
     ran = CliRunner().invoke(kurbel, [*asked, "-f", "json"])
     assert ran.exit_code in (0, 1)
     validator.validate(json.loads(ran.stdout))
+
+
+def test_a_check_of_a_file_with_faults_keeps_it(validator: Draft7Validator) -> None:
+    ran = CliRunner().invoke(kurbel, ["check", "-", "-f", "json"], input=BROKEN)
+    found = json.loads(ran.stdout)
+    assert (ran.exit_code, found["machine"], len(found["findings"]) >= 5) == (2, None, True)
+    validator.validate(found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", _of_machines())
+def test_every_answer_of_every_machine_keeps_it(command: str, validator: Draft7Validator) -> None:
+    answered = 0
+    quick = ["--quick"] if command == "accuracy" else []
+    for file in sorted(CONFIGS.glob("waterworks.yaml" if quick else "*.yaml")):
+        ran = CliRunner().invoke(kurbel, [command, str(file), *quick, "-f", "json"])
+        if ran.exit_code in (0, 1):
+            validator.validate(json.loads(ran.stdout))
+            answered += 1
+    assert answered
 
 
 def test_a_wrong_answer_does_not(validator: Draft7Validator) -> None:

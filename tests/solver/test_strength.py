@@ -88,7 +88,7 @@ def test_equilibrium(name: str) -> None:
     assert strength(**ENGINES[name]).equilibrium_residual <= 1e-14
 
 
-@pytest.mark.parametrize("name", few(ENGINES, [next(iter(ENGINES)), "steam"]))
+@pytest.mark.parametrize("name", few(ENGINES, ["steam"]))
 def test_largest_stresses_are_those_of_the_whole_cycle(name: str) -> None:
     """Brute force over 0.005° never finds more, and comes as near as its step allows beside a bend of the card."""
     solved = strength(**ENGINES[name])

@@ -1,6 +1,8 @@
 """Options shared by the commands that print a table, and what they mean."""
 
-from collections.abc import Callable, Mapping, Sequence
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -160,12 +162,17 @@ _SUFFIXES = {
     ".html": "html",
     ".tex": "latex",
 }
+_OF_NO_FORMAT = ("", ".txt", ".yaml", ".yml")
+"""Suffixes that a table may have, and those of machine files, which are refused where they are read."""
 
 
 def format_of(asked: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES) -> str:
     """Return the format that is asked for, or that of the suffix of the file; UsageError where the two contradict."""
-    dot = (file_name or "").rfind(".")
-    of_suffix = suffixes.get(file_name[dot:].lower()) if file_name else None
+    suffix = os.path.splitext(file_name or "")[1].lower()
+    of_suffix = suffixes.get(suffix)
+    if not (asked or of_suffix or suffix in _OF_NO_FORMAT):
+        known = ", ".join(suffixes)
+        raise click.UsageError(f"--output {file_name}: no format has this suffix; write {known}, .txt, or --format.")
     if asked and of_suffix and asked != of_suffix:
         raise click.UsageError(
             f"--format {asked} contradicts the name {file_name}, which says {of_suffix}; change one of them."
@@ -281,8 +288,17 @@ class Asked(NamedTuple):
         if case and (spreads or case.machine.uncertainty):
             from kurbel.designs.uncertainty import with_uncertainty
 
-            report = with_uncertainty(report, case, spreads, self.units)
+            report = with_uncertainty(report, case, spreads, self.units, _drawn)
         self.output.write(report)
+
+
+def _drawn(parts: Sequence[Any]) -> Iterator[Any]:
+    """Yield the parts of a sample, with a bar on the terminal."""
+    if not sys.stderr.isatty():
+        yield from parts
+        return
+    with click.progressbar(parts, file=sys.stderr, label="drawn machines") as bar:
+        yield from bar
 
 
 def _with_asked(command: Callable[..., None]) -> Callable[..., None]:

@@ -3,11 +3,15 @@
 import os
 import sys
 import time
+from typing import TYPE_CHECKING
 
 import click
 
 from kurbel.cli.output_options import loaded, number_options, set_option, units_option
 from kurbel.cli.readings import number
+
+if TYPE_CHECKING:
+    from threading import Timer
 
 _PATIENCE = 1.0
 """Seconds after which a terminal is told what is being done."""
@@ -48,17 +52,18 @@ def report(
         raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
     for file in files:
         refuse_overwriting(file_name, (file,))
-    cases = [Case(loaded(file, overrides, file_name)) for file in files]
-    progress = Progress("kurbel report")
-    keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
-    system = units or "metric"
-    if len(cases) == 1:
-        document = whole_report(cases[0], keys[0], system, step, progress)
-    else:
-        document = side_by_side(cases, keys, system, progress)
-    progress("writing")
-    look = Look("html", comma=decimal == "comma", digits=digits)
-    write_out(report_page(document, look, _today()), file_name, "utf-8")
+    with Progress("kurbel report") as progress:
+        progress("reading and checking")
+        cases = [Case(loaded(file, overrides, file_name)) for file in files]
+        keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
+        system = units or "metric"
+        if len(cases) == 1:
+            document = whole_report(cases[0], keys[0], system, step, progress)
+        else:
+            document = side_by_side(cases, keys, system, progress)
+        progress("writing")
+        look = Look("html", comma=decimal == "comma", digits=digits)
+        write_out(report_page(document, look, _today()), file_name, "utf-8")
 
 
 def _today() -> str:
@@ -69,12 +74,32 @@ def _today() -> str:
 
 
 class Progress:
-    """Called with what is done next; a terminal is told so from the second on, a pipe is not."""
+    """Called with what is done next; a terminal is told so from the second on, also in its midst; a pipe is not."""
 
     def __init__(self, command: str) -> None:
         self._command = command
-        self._begin = time.monotonic()
+        self._doing = ""
+        self._late = False
+        self._timer: Timer | None = None
+
+    def __enter__(self) -> "Progress":
+        if sys.stderr is not None and sys.stderr.isatty():
+            from threading import Timer
+
+            self._timer = Timer(_PATIENCE, self._tell)
+            self._timer.daemon = True
+            self._timer.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._timer:
+            self._timer.cancel()
 
     def __call__(self, doing: str) -> None:
-        if sys.stderr is not None and sys.stderr.isatty() and time.monotonic() - self._begin >= _PATIENCE:
-            click.echo(f"{self._command}: {doing} …", err=True)
+        self._doing = doing
+        if self._late:
+            self._tell()
+
+    def _tell(self) -> None:
+        self._late = True
+        click.echo(f"{self._command}: {self._doing} …", err=True)

@@ -3,8 +3,7 @@
 import gc
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -55,7 +54,13 @@ _who_computes = stacked(
     click.option(
         "--shard", metavar="K/N", help="Only this part of the rows; all parts one after another are the whole."
     ),
-    click.option("--jobs", "-j", type=click.IntRange(1), default=1, metavar="N", help="Processes; 1 if not given."),
+    click.option(
+        "--jobs",
+        "-j",
+        type=click.IntRange(1),
+        metavar="N",
+        help="Processes; if not given, of many rows one for each of up to 4 cores.",
+    ),
     click.option(
         "--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster that computes, such as tcp://node:8786."
     ),
@@ -81,8 +86,33 @@ def sweep(**options: Any) -> None:
     asked.run()
 
 
-class _Asked(SimpleNamespace):
+class _Asked(NamedTuple):
     """The options, by the names above."""
+
+    file: str
+    overrides: tuple[str, ...]
+    vary: tuple[str, ...]
+    side_by_side: bool
+    sample: int | None
+    seed: int
+    sobol: bool
+    columns: tuple[str, ...] | None
+    with_angles: bool
+    conditions: tuple[str, ...]
+    sort: str | None
+    top: int | None
+    pareto: tuple[str, ...] | None
+    summary: bool
+    units: str | None
+    format: str | None
+    file_name: str | None
+    decimal: str
+    digits: int | None
+    resume: bool
+    shard: str | None
+    jobs: int | None
+    dask: str | None
+    yes: bool
 
     @property
     def _look(self) -> Look:
@@ -112,7 +142,7 @@ class _Asked(SimpleNamespace):
             (self._written == "parquet" and not named, "Parquet is a file; give --output FILE.parquet."),
             (self.summary and self._written == "parquet", "--summary is a table, csv, json or markdown."),
             (self.summary and self.shard, "--summary is of all rows; leave --shard out."),
-            (self.dask and self.jobs > 1, "--dask and --jobs both say who computes; leave one of them out."),
+            (self.dask and self.jobs, "--dask and --jobs both say who computes; leave one of them out."),
             (self.decimal == "comma" and self._written in ("json", "parquet"), "--decimal comma: not in this format."),
         ):
             if wrong:
@@ -125,7 +155,7 @@ class _Asked(SimpleNamespace):
         from kurbel.designs.chosen import read_aim, read_condition, summary
         from kurbel.designs.plan import MOST_ROWS, shard
         from kurbel.designs.sweep import Sweep
-        from kurbel.designs.workers import rows_of
+        from kurbel.designs.workers import likely_jobs, rows_of
         from kurbel.errors import UsageError
 
         found = Sweep(self._spec())
@@ -136,7 +166,8 @@ class _Asked(SimpleNamespace):
         aims = [read_aim(one, found.heads, "--pareto") for one in self.pareto or ()]
         order = read_aim(self.sort, found.heads, "--sort") if self.sort else None
         out, rows = self._out(found, rows, conditions)
-        told = _counted(rows_of(found, rows, self.jobs, self.dask or ""), len(rows), self.file_name)
+        jobs = self.jobs or (1 if self.shard else likely_jobs(len(rows)))
+        told = _counted(rows_of(found, rows, jobs, self.dask or ""), len(rows), self.file_name)
         kept: Iterable[Row] = (row for row in told if all(one.holds(row) for one in conditions))
         out.write(summary(kept, found.heads) if self.summary else self._chosen(kept, aims, order))
 
@@ -162,6 +193,7 @@ class _Asked(SimpleNamespace):
             return SweepOutput(titles, self._look, self.file_name, headed=rows.start == 0), rows
         from kurbel.render.kept_rows import KeptRows
 
+        assert self.file_name is not None
         kept = KeptRows(self.file_name, titles, self._look, rows)
         headed = rows.start == 0 and not kept.size
         return SweepOutput(titles, self._look, self.file_name, headed, kept.size), kept.rest(found, conditions)

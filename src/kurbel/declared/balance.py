@@ -33,7 +33,7 @@ BALANCE_VALUES = (
         "counterweight_best",
         "u_1",
         "unbalance",
-        "Counterweight against what turns with the crank: rotating masses and half the reciprocating ones",
+        "Counterweight against what rotates and half of what reciprocates",
     ),
     _balance("counterweight_best_angle", "α_1", "angle", "Its direction from throw 1"),
     _balance("counterweight_least", "u_min", "unbalance", "Counterweight that leaves the least largest free force"),

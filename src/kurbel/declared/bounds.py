@@ -25,13 +25,16 @@ def out_of_size(value: float, kind: str) -> str:
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
     """
     smallest, largest, unit, *_ = KINDS[kind]
-    name = "bare number" if kind == "ratio" else kind.replace("_", " ")
-    name = f"{'an' if name[0] in 'aei' else 'a'} {name} in a machine file is"
     if not abs(value) <= largest:
-        return f"is too large; {name} at most {largest:g} {unit}".rstrip()
+        return f"is too large; {_held(kind)} at most {largest:g} {unit}".rstrip()
     if 0 < abs(value) < smallest:
-        return f"is too small; {name} 0 or at least {smallest:g} {unit}".rstrip()
+        return f"is too small; {_held(kind)} 0 or at least {smallest:g} {unit}".rstrip()
     return ""
+
+
+def _held(kind: str) -> str:
+    name = "bare number" if kind == "ratio" else kind.replace("_", " ")
+    return f"{'an' if name[0] in 'aei' else 'a'} {name} in a machine file is"
 
 
 def range_of(kind: str) -> str:

@@ -4,7 +4,7 @@ A record (`Cylinder`, `Piston`, …) carries a table `KEYS` of these.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.declared.reading import REFUSED, Reading, Tree
@@ -50,6 +50,10 @@ class Form(ABC):
     def out_of_bounds(self, value: Any) -> str:
         """Return in what way a value is too small or too large, with the bound; '' when it is not."""
         return ""
+
+    def numbers(self, texts: Sequence[str]) -> list[float] | None:
+        """Return what texts become that are plain numbers, all of them; None where each must be read by itself."""
+        return None
 
     def read(self, reading: Reading, value: Any, path: Path) -> Any:
         """Return what a value of the tree becomes, or REFUSED after noting every fault."""

@@ -7,7 +7,7 @@ degrees (a dead centre is at 180, not near pi) and speeds of rotation in revolut
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 
 from kurbel.declared.kinds import KINDS
@@ -242,6 +242,24 @@ def parse_quantity(text: str, kind: str) -> float:
     if not math.isfinite(value):
         raise UnitError(f"{stripped} is too large to compute with")
     return value
+
+
+def plain_quantities(texts: Iterable[str], kind: str) -> list[float] | None:
+    """Return the values of texts in the base of `kind`; None where one is more than a decimal number and its unit.
+
+    Such a one is to be read by itself. A bare number is one of the kind `ratio`.
+
+    >>> plain_quantities(["450 mm", "0.5 m"], "length"), plain_quantities(["2 1/4 in"], "length")
+    ([0.45, 0.5], None)
+    """
+    values = []
+    for text in texts:
+        number, _, unit = text.partition(" ")
+        factor = (1, 1) if kind == "ratio" and not unit else _units_of(kind).get(unit) if unit else None
+        if factor is None or not NUMBER.fullmatch(number):
+            return None
+        values.append(float(number) * factor[0] / factor[1])
+    return values if all(map(math.isfinite, values)) else None
 
 
 def _refuse_more_figures(text: str, rest: str, kind: str) -> None:

@@ -1,6 +1,6 @@
 """The answers of many machines: those of one kind side by side, the others one after another."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from typing import Any, Union
 
 import numpy as np
@@ -10,6 +10,7 @@ from kurbel.designs.columns import Answer, answered_alone
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.machine.side_by_side import Kinds, side_by_side
+from kurbel.machine.variants import Lot
 from kurbel.numerics.cycles import Unlike
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.cylinder.forces import CylinderForces
@@ -21,22 +22,34 @@ _ALONE = ("energy_residual",)
 """Key values whose quadrature cuts the pieces of each machine until they agree, and answers one machine at a time."""
 _FEWEST = 3
 """Machines of one kind; fewer are answered as quickly alone."""
-AT_ONCE = 200
-"""Machines side by side: enough to share the overhead of one run, few enough for the cache of a processor."""
+AT_ONCE = 1000
+"""Machines side by side: enough to share the overhead of one run; more would only take memory."""
 
 Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, an Extreme, a tuple or None each; or why it answers nothing."""
 
 
-def answers_of(machines: Sequence[Machine], asked: Sequence[Answer]) -> list[Values]:
-    """Return what each of many machines answers."""
+def answers_of(lots: Sequence[Lot], asked: Sequence[Answer], rows: Container[int] | None = None) -> dict[int, Values]:
+    """Return what each of many machines answers, by its row; rows: those that are wanted, all if None.
+
+    Where rounding depends on the length of an array, as in older versions of numpy, it depends on the company in which
+    a machine stands: whoever wants the same digits of a row at every time gives all lots of its company each time.
+    """
     side_by_side = [one.of_cylinder and _stands_beside(one.quantity) for one in asked]
     with np.errstate(all="ignore"):
-        together = _Answers(machines, [one for one, beside in zip(asked, side_by_side) if beside]).found()
+        together = _Answers(lots, [one for one, beside in zip(asked, side_by_side) if beside]).found(rows)
         if all(side_by_side):
             return together
-        alone = _Answers(machines, [one for one, beside in zip(asked, side_by_side) if not beside], True).found()
-    return [_merged(first, second, side_by_side) for first, second in zip(together, alone)]
+        alone = _Answers(lots, [one for one, beside in zip(asked, side_by_side) if not beside], True).found(rows)
+    return {row: _merged(first, alone[row], side_by_side) for row, first in together.items()}
+
+
+def stands_beside(machine: Machine, asked: Answer) -> bool:
+    """Return whether many such machines answer this side by side, in little more time than one of them."""
+    if not (asked.of_cylinder and _stands_beside(asked.quantity)):
+        return False
+    cylinder = next(one for one in machine.cylinders if one.name == asked.subject)
+    return Kinds().of(machine, cylinder) is not None
 
 
 def _stands_beside(quantity: Quantity) -> bool:
@@ -54,26 +67,31 @@ def _merged(first: Values, second: Values, of_first: Sequence[bool]) -> Values:
 
 
 class _Answers:
-    def __init__(self, machines: Sequence[Machine], asked: Sequence[Answer], alone: bool = False) -> None:
-        self._machines, self._asked = machines, asked
-        self._found: list[Values | None] = [None] * len(machines)
+    def __init__(self, lots: Sequence[Lot], asked: Sequence[Answer], alone: bool = False) -> None:
+        self._lots, self._asked = lots, asked
+        self._places = {row: (number, place) for number, lot in enumerate(lots) for place, row in enumerate(lot.rows)}
+        self._found: dict[int, Values] = {}
         self._names = [] if alone else list(dict.fromkeys(one.subject for one in asked))
 
-    def found(self) -> list[Values]:
+    def found(self, wanted: Container[int] | None) -> dict[int, Values]:
         for rows in self._alike() if self._names else ():
             for start in range(0, len(rows), AT_ONCE):
                 self._together(rows[start : start + AT_ONCE])
-        return [self._alone(row) if values is None else values for row, values in enumerate(self._found)]
+        return {
+            row: self._found[row] if row in self._found else self._alone(row)
+            for row in self._places
+            if wanted is None or row in wanted
+        }
 
     def _alike(self) -> list[list[int]]:
         """Return the rows of machines of one kind; of others none."""
         kinds: dict[Any, list[int]] = {}
         known = Kinds()
-        for row, machine in enumerate(self._machines):
+        for machine, rows in self._lots:
             own = {cylinder.name: cylinder for cylinder in machine.cylinders}
             found = tuple(known.of(machine, own[name]) if name in own else None for name in self._names)
             if None not in found:
-                kinds.setdefault(found, []).append(row)
+                kinds.setdefault(found, []).extend(rows)
         return list(kinds.values())
 
     def _together(self, rows: list[int]) -> None:
@@ -92,22 +110,26 @@ class _Answers:
             fit = np.all([np.broadcast_to(_is_finite(value), len(rows)) for value in found], axis=0)
             values = zip(*(_listed(value, len(rows)) for value in found))
             for row, finite, own in zip(rows, fit.tolist(), values):
-                self._found[row] = own if finite else None
+                if finite:
+                    self._found[row] = own
 
     def _columns(self, rows: list[int]) -> list[Any]:
         cylinders = {name: self._stack(rows, name) for name in self._names}
         return [answered(cylinders[one.subject].answering, one.quantity) for one in self._asked]
 
     def _stack(self, rows: list[int], name: str) -> CylinderForces:
-        machines = [self._machines[row] for row in rows]
-        place = [one.name for one in machines[0].cylinders].index(name)
-        return CylinderForces(*side_by_side([(one, one.cylinders[place]) for one in machines]), len(rows))
+        places: dict[int, list[int]] = {}
+        for number, place in (self._places[row] for row in rows):
+            places.setdefault(number, []).append(place)
+        lots = [(self._lots[number], np.array(own)) for number, own in places.items()]
+        return CylinderForces(*side_by_side(lots, name), len(rows))
 
     def _alone(self, row: int) -> Values:
         if not self._asked:
             return []
+        number, place = self._places[row]
         try:
-            return answered_alone(self._machines[row], self._asked)
+            return answered_alone(self._lots[number].one(place), self._asked)
         except KurbelError as error:
             return str(error)
         except ArithmeticError as error:

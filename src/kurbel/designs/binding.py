@@ -3,26 +3,37 @@
 Every record that is made anew keeps its rules as when it is read; what a row breaks is told as `--set` would tell it.
 """
 
-import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from kurbel.declared.keys import Form
-from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, shown
-from kurbel.errors import Fault, MachineFileError, Path, RuleError, UsageError, path_text
+from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, StopReading, Tree, shown
+from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
 from kurbel.machine import Machine
+from kurbel.machine.variants import Lot, joined, one_kind, sort_of
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.overrides import by_numbers, overridden, read_override
-from kurbel.machine_file.reader import read_machine
+from kurbel.machine_file.reader import read_machine, reading_of
 from kurbel.machine_file.source import Source
 from kurbel.near_words import did_you_mean
+from kurbel.numerics.varied import Parted
 
-_MOST_KNOWN = 10_000
-"""Values of keys that are kept beside their texts."""
+_Part = dict[int, tuple[Any, ...]]
+"""Rows, each with the values of its slots."""
 
 
 class Unbound(Exception):
     """The texts of a row make no machine; the message tells why."""
+
+
+class Bound(NamedTuple):
+    """What rows of texts make, counted from 0: machines, those of one kind in one record, or the reason why none."""
+
+    lots: list[Lot]
+    failures: dict[int, str]
 
 
 class _Link(NamedTuple):
@@ -33,11 +44,49 @@ class _Link(NamedTuple):
     step: int
 
 
-class _Step(NamedTuple):
-    """A record that is made anew: which of the varied keys it reads itself, and which records of earlier steps."""
+class _Slot(NamedTuple):
+    """A value of a record that is read anew: under which of its keys, and which varied keys stand there, and where."""
 
     birth: Birth
-    own: list[tuple[int, str, Path]]
+    name: str
+    varied: list[tuple[int, Path]]
+
+    def column(self, rows: Sequence[Sequence[str]], folder: str) -> list[Any]:
+        """Return what the record gets in these rows of texts; Unbound, unraised, where it gets nothing."""
+        texts = [tuple([row[number] for number, _ in self.varied]) for row in rows]
+        different = list(dict.fromkeys(texts))
+        known = dict(zip(different, self._numbers(different) or [self._read(one, folder) for one in different]))
+        return [known[one] for one in texts]
+
+    @property
+    def _form(self) -> Form:
+        return self.birth.form.keys[self.name].form  # type: ignore[no-any-return]
+
+    def _numbers(self, texts: Sequence[tuple[str, ...]]) -> Sequence[Any] | None:
+        """Return what texts become if one varied key is all that stands here, and all are plain numbers."""
+        single = len(self.varied) == 1 and not self.varied[0][1]
+        return self._form.numbers([text for (text,) in texts]) if single else None
+
+    def _read(self, texts: Sequence[str], folder: str) -> Any:
+        """Return what the record gets for texts of its varied keys, or Unbound."""
+        tree = self.birth.mapping[self.name]
+        reading = Reading(folder)
+        try:
+            for (_, inner), text in zip(self.varied, texts):
+                tree = _with(tree, inner, Plain(text)) if inner else Plain(text)
+        except Unbound as error:
+            return error
+        value = self._form.read(reading, tree, (self.name,))
+        if value is REFUSED or reading.faults:
+            return Unbound(_told([fault.below(self.birth.path) for fault in reading.faults]))
+        return value
+
+
+class _Step(NamedTuple):
+    """A record that is made anew: which slots are its own, each with its key, and which records of earlier steps."""
+
+    birth: Birth
+    own: list[tuple[int, str]]
     links: list[_Link]
 
 
@@ -48,80 +97,117 @@ class Binder:
     """
 
     def __init__(self, source: Source, overrides: Sequence[str], keys: Sequence[str], start: Sequence[str]) -> None:
-        self._source, self._overrides, self.keys = source, tuple(overrides), tuple(keys)
+        self._reading = reading_of(source)
         births: list[Birth] = []
-        self.machine = read_machine(source, self._set(start), births)
-        self._paths = [read_override(f"{key}=0").path for key in keys]
-        self._places = [_owner(path, births) for path in self._paths]
+        self._reading.births = births
+        given = (*overrides, *(f"{key}={text}" for key, text in zip(keys, start)))
+        self.machine = read_machine(source, given, self._reading)
+        self._forms: list[Form] = []
+        self._slots: list[_Slot] = []
+        for number, key in enumerate(keys):
+            self._place(number, read_override(f"{key}=0").path, births)
         self._steps = self._planned(births)
-        self._known: dict[tuple[int, str], Any] = {}
-        # a cylinder that is `like` another one takes over what that one has: who has what is told by reading alone
-        self._whole = re.search(r"\blike\b", source.text) is not None
 
-    def _set(self, texts: Sequence[str]) -> tuple[str, ...]:
-        return (*self._overrides, *(f"{key}={text}" for key, text in zip(self.keys, texts)))
+    def _place(self, number: int, path: Path, births: list[Birth]) -> None:
+        """Note in which slots a key stands: that of its record, and those of what is `like` that."""
+        owner, name = _owner(path, births)
+        self._forms.append(owner.form.keys[name].form)
+        for birth in births:
+            if _reads(birth, name) and birth.mapping.get(name) is owner.mapping.get(name):
+                slot = next((one for one in self._slots if one.birth is birth and one.name == name), None)
+                if slot is None:
+                    slot = _Slot(birth, name, [])
+                    self._slots.append(slot)
+                slot.varied.append((number, path[len(owner.path) + 1 :]))
 
     def form(self, number: int) -> Form:
         """Return what stands under a key."""
-        birth, name = self._places[number]
-        form: Form = birth.form.keys[name].form
-        return form
+        return self._forms[number]
 
     def _planned(self, births: list[Birth]) -> list[_Step]:
         steps: list[_Step] = []
         made: dict[int, int] = {}
         for birth in births:
-            own = [
-                (number, name, self._paths[number][len(birth.path) + 1 :])
-                for number, (owner, name) in enumerate(self._places)
-                if owner is birth
-            ]
+            own = [(number, slot.name) for number, slot in enumerate(self._slots) if slot.birth is birth]
             links = [link for key, value in birth.values.items() for link in _links(key, value, made)]
             if own or links:
                 made[id(birth.born)] = len(steps)
                 steps.append(_Step(birth, own, links))
         return steps
 
-    def bound(self, texts: Sequence[str]) -> Machine:
-        """Return the machine of these texts; raises Unbound."""
-        if self._whole:
-            return self.read_whole(texts)
+    def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
+        """Return the machines of rows of texts, those of one kind in one record, and why the other rows make none."""
+        found = Bound([], {})
+        columns = [slot.column(rows, self._reading.folder) for slot in self._slots]
+        read: _Part = {}
+        for row, values in enumerate(zip(*columns)):
+            if failed := next((one for one in values if isinstance(one, Unbound)), None):
+                found.failures[row] = str(failed)
+            else:
+                read[row] = values
+        waiting = _of_one_sort(read)
+        with np.errstate(all="ignore"):  # as floats do; what is beyond them is refused
+            while waiting:
+                waiting += self._bind(waiting.pop(), found)
+        return found
+
+    def _bind(self, part: _Part, found: Bound) -> list[_Part]:
+        """Make the machines of these rows at once; return the parts that can only be made by themselves.
+
+        These are the rows for which a rule holds, and those for which it does not; and each row where a rule is broken,
+        to tell why, or is written for floats alone, and asks for what `Varied` has not.
+        """
+        try:
+            machine = self._made(joined(list(part.values())))
+            one_kind(machine)
+        except Parted as parted:
+            sides = parted.holds, ~parted.holds
+            return [{row: part[row] for row, own in zip(part, side.tolist()) if own} for side in sides]
+        except (Unbound, TypeError, AttributeError) as error:
+            if len(part) > 1:
+                return [{row: values} for row, values in part.items()]
+            if not isinstance(error, Unbound):
+                raise
+            found.failures.update(dict.fromkeys(part, str(error)))
+        else:
+            found.lots.append(Lot(machine, list(part)))
+        return []
+
+    def _made(self, given: Sequence[Any]) -> Machine:
+        """Return the machine with these values in the slots; raises Unbound with all that is wrong."""
         found: list[Any] = []
-        for step in self._steps:
-            birth = step.birth
-            values = dict(birth.values)
-            for number, name, inner in step.own:
-                values[name] = self._value(number, name, inner, texts[number])
-            for key, place, earlier in step.links:
-                values[key] = _replaced(values[key], place, found[earlier])
-            try:
-                found.append(birth.form.born(values))
-            except RuleError as error:
-                raise Unbound(_told(birth.form.flattened(error, birth.mapping).faults, birth.path)) from None
+        reading = Reading()
+        reading.alike = self._reading.alike
+        with suppress(StopReading):
+            for step in self._steps:
+                found.append(_born(step, given, found, reading))
+        if reading.faults:
+            raise Unbound(_told(reading.faults))
         return found[-1] if found else self.machine
 
-    def _value(self, number: int, name: str, inner: Path, text: str) -> Any:
-        """Return what the record that reads a key gets for its text; texts that come again are read once."""
-        if (number, text) not in self._known:
-            if len(self._known) >= _MOST_KNOWN:
-                self._known.clear()
-            self._known[number, text] = self._read(self._places[number][0], name, inner, text)
-        return self._known[number, text]
 
-    def _read(self, birth: Birth, name: str, inner: Path, text: str) -> Any:
-        reading = Reading(self._source.folder)
-        tree = Plain(text) if not inner else _with(birth.mapping[name], inner, Plain(text))
-        value = birth.form.keys[name].form.read(reading, tree, (name,))
-        if value is REFUSED or reading.faults:
-            raise Unbound(_told(reading.faults, birth.path))
-        return value
+def _born(step: _Step, given: Sequence[Any], found: Sequence[Any], reading: Reading) -> Any:
+    """Return the record of a step, or REFUSED after noting its faults; found: the records of earlier steps."""
+    birth = step.birth
+    values = dict(birth.values)
+    for number, name in step.own:
+        values[name] = given[number]
+    for key, place, earlier in step.links:
+        if found[earlier] is REFUSED:
+            return REFUSED
+        values[key] = _replaced(values[key], place, found[earlier])
+    try:
+        return birth.form.born(values)
+    except RuleError as error:
+        return reading.refuse(birth.path, birth.form.flattened(error, birth.mapping))
 
-    def read_whole(self, texts: Sequence[str]) -> Machine:
-        """Return the machine of these texts by reading the whole file anew; raises Unbound."""
-        try:
-            return read_machine(self._source, self._set(texts))
-        except MachineFileError as error:
-            raise Unbound(_told(error.faults, ())) from None
+
+def _of_one_sort(read: _Part) -> list[_Part]:
+    """Return the rows with their values in parts that differ in numbers only."""
+    parts: dict[Any, _Part] = {}
+    for row, values in read.items():
+        parts.setdefault(sort_of(values), {})[row] = values
+    return list(parts.values())
 
 
 def written_texts(source: Source, overrides: Sequence[str], keys: Sequence[str]) -> list[str]:
@@ -183,13 +269,17 @@ def _owner(path: Path, births: list[Birth]) -> tuple[Birth, str]:
         for birth in births
         if len(birth.path) < len(path)
         and birth.path == path[: len(birth.path)]
-        and path[len(birth.path)] in birth.values
-        and path[len(birth.path)] in birth.form.keys
+        and _reads(birth, path[len(birth.path)])
     ]
     if not fitting:
         raise UsageError(f"--vary {path_text(path)}: no value stands under this key that could be varied")
     birth = max(fitting, key=lambda one: len(one.path))
     return birth, str(path[len(birth.path)])
+
+
+def _reads(birth: Birth, name: Step) -> bool:
+    """Return whether a record reads the value of a key itself."""
+    return name in birth.values and name in birth.form.keys
 
 
 def _links(key: str, value: Any, made: dict[int, int]) -> list[_Link]:
@@ -215,6 +305,6 @@ def _with(tree: Any, path: Path, value: Any) -> Any:
         raise Unbound(f"{path_text(path)}: no value stands there") from None
 
 
-def _told(faults: Sequence[Fault], path: Path) -> str:
-    whole = [fault.below(path) for fault in faults]
-    return "; ".join(f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in whole)
+def _told(faults: Sequence[Fault]) -> str:
+    texts = (f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in faults)
+    return "; ".join(dict.fromkeys(texts))  # equal cylinders have one fault in common

@@ -115,6 +115,10 @@ def unbettered(rows: Iterable[Row], aims: Sequence[Aim]) -> Iterator[Row]:
     return (given[place] for place in sorted(front))
 
 
+class Unit(str):
+    """A unit that stands in a cell, where a table writes it as people do."""
+
+
 QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 
 
@@ -132,7 +136,7 @@ def summary(rows: Iterable[Row], heads: Sequence[Head]) -> Iterator[Row]:
     for values, head in zip(numbers, heads):
         there = values[np.isfinite(values)]
         if head.kind and len(there):
-            told = (head.unit, len(there), float(there.mean()), *np.quantile(there, QUANTILES).tolist())
+            told = (Unit(head.unit), len(there), float(there.mean()), *np.quantile(there, QUANTILES).tolist())
             yield Row(head.id, (*told, *(_rank_correlation(values, one) for one in inputs)))  # type: ignore[arg-type]
 
 

@@ -20,11 +20,15 @@ SIDE_BY_SIDE = ("forces", "motion")
 
 
 class Answer(NamedTuple):
-    """A key value of a command; subject: whose it is, as the report of that command names it."""
+    """A key value of a command; subject: whose it is, as the report of that command names it.
+
+    alone: it was asked of this subject alone, `LP.c_max`.
+    """
 
     quantity: Quantity
     command: str
     subject: str
+    alone: bool = False
 
     @property
     def of_cylinder(self) -> bool:
@@ -60,6 +64,9 @@ def _usual(case: Case) -> Iterator[Answer]:
 def _named(case: Case, name: str) -> list[Answer]:
     declared = every_quantity().all_key_values
     ids = called(name, declared)
+    owner, _, own = name.rpartition(".")
+    if not ids and called(own, declared) and (found := [one for one in _named(case, own) if one.subject == owner]):
+        return [one._replace(alone=True) for one in found]
     if not ids or ambiguity(name, ids):
         near = did_you_mean(name, tuple(one.id for one in declared))
         raise UsageError(f"--columns: {ambiguity(name, ids) or f'no key value {shown(name)!r}{near}'}")

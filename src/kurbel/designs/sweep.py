@@ -6,15 +6,17 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from kurbel.declared.numerals import parse_ratio
+from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
-from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import answers_of
-from kurbel.designs.binding import Binder, Unbound
+from kurbel.declared.units import parse_quantity, plain_quantities
+from kurbel.designs.answers import Values, answers_of
+from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, asked_answers, subjects
 from kurbel.designs.inputs import Input, read_input
 from kurbel.designs.plan import Fixed, Plan
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine.variants import Lot
 from kurbel.machine_file.source import Source
 from kurbel.numerics.extreme import Extreme
 
@@ -92,15 +94,15 @@ class Sweep:
     def _started(self) -> Binder:
         """Return what binds texts, starting from the first row that makes a machine."""
         keys = [one.key for one in self.plan.inputs]
-        failed: MachineFileError | None = None
+        failed = ""
         for row in range(min(self.rows, _STARTS)):
             try:
                 return Binder(self.spec.source, self.spec.overrides, keys, self.plan.texts(row))
             except MachineFileError as error:
-                failed = failed or error
-        raise (
-            UsageError(str(failed).replace("--set ", "--vary ")) if failed else UsageError("there is no row to compute")
-        )
+                failed = failed or _as_varied(str(error), zip(keys, self.plan.texts(row)))
+            except UsageError as error:
+                raise UsageError(_as_varied(str(error), zip(keys, self.plan.texts(row)))) from None
+        raise UsageError(failed or "there is no row to compute")
 
     @cached_property
     def heads(self) -> tuple[Head, ...]:
@@ -108,7 +110,8 @@ class Sweep:
         ids = [one.quantity.id for one in self.asked]
         heads = [self._input_head(number, one) for number, one in enumerate(self.plan.inputs)]
         for one, unit in zip(self.asked, self._units):
-            name = f"{one.subject}.{one.quantity.id}" if ids.count(one.quantity.id) > 1 else one.quantity.id
+            owned = one.alone or ids.count(one.quantity.id) > 1
+            name = f"{one.subject}.{one.quantity.id}" if owned else one.quantity.id
             heads.append(Head(name, unit, False, one.quantity.kind))
             if self._has_angle(one):
                 heads.append(Head(f"{name}_at", "deg", False, "angle"))
@@ -116,7 +119,7 @@ class Sweep:
 
     def _input_head(self, number: int, one: Input) -> Head:
         kind = kind_of_form(self._binder.form(number))
-        first = _in_base(self.plan.texts(0)[number], kind) or 0.0
+        first = _in_base([self.plan.texts(0)[number]], kind)[0] or 0.0
         return Head(one.key, shown_unit(kind, self.spec.system, first) if kind else "", True, kind)
 
     def _has_angle(self, one: Answer) -> bool:
@@ -127,46 +130,42 @@ class Sweep:
         """Units of the answers, from the sizes that the first machine has."""
         if self.spec.system == "si":
             return tuple(SI[one.quantity.kind] for one in self.asked)
-        (first,) = answers_of([self._binder.machine], self.asked)
+        first = answers_of([Lot(self._binder.machine, (0,))], self.asked)[0]
         sizes = [0.0] * len(self.asked) if isinstance(first, str) else map(_size, first)
         return tuple(
             shown_unit(one.quantity.kind, self.spec.system, size) for one, size in zip(self.asked, sizes, strict=True)
         )
 
-    def chunk(self, start: int, stop: int) -> list[Row]:
-        """Return the rows with these indices from 0 on."""
-        texts = [self.plan.texts(row) for row in range(start, stop)]
-        machines: list[Machine | str] = [self._bound(one) for one in texts]
-        whole = [one for one in machines if isinstance(one, Machine)]
-        answers = iter(answers_of(whole, (*self.asked, *(answer for answer, _ in self._limits))))
-        found = [one if isinstance(one, str) else next(answers) for one in machines]
-        values = iter(self._values([one for one in found if not isinstance(one, str)]))
-        return [self._row(row, own, one, values) for row, own, one in zip(range(start, stop), texts, found)]
+    def chunk(self, company: range, wanted: range) -> list[Row]:
+        """Return the wanted rows of a chunk, counted from 0."""
+        texts = [self.plan.texts(row) for row in company]
+        bound = self._binder.bound(texts)
+        own = range(wanted.start - company.start, wanted.stop - company.start)
+        found = bound.failures | answers_of(bound.lots, (*self.asked, *(answer for answer, _ in self._limits)), own)
+        inputs = list(zip(*(self._input_values(*one) for one in enumerate(zip(*texts)))))
+        values = iter(self._values([found[row] for row in own if not isinstance(found[row], str)]))
+        return [self._row(number + 1, inputs[row], found[row], values) for row, number in zip(own, wanted)]
 
-    def _bound(self, texts: tuple[str, ...]) -> Machine | str:
-        try:
-            return self._binder.bound(texts)
-        except (Unbound, KurbelError) as error:
-            return str(error)
-
-    def _row(
-        self, row: int, texts: Sequence[str], found: Sequence[Any] | str, values: Iterator[tuple[Any, ...]]
-    ) -> Row:
-        inputs = [self._input_value(number, text) for number, text in enumerate(texts)]
+    def _row(self, number: int, inputs: tuple[Any, ...], found: Values, values: Iterator[tuple[Any, ...]]) -> Row:
         if isinstance(found, str):
-            return Row(row + 1, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=found)
+            return Row(number, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=found)
         broken = self._broken(found[len(self.asked) :])
-        return Row(row + 1, (*inputs, *next(values)), not broken if self.limited else None, broken)
+        return Row(number, (*inputs, *next(values)), not broken if self.limited else None, broken)
 
     def unanswered(self, row: int) -> Row:
         """Return the row with this index from 0 on without its answers: what varies is known unsolved."""
-        inputs = [self._input_value(*one) for one in enumerate(self.plan.texts(row))]
+        inputs = [self._input_values(number, [text])[0] for number, text in enumerate(self.plan.texts(row))]
         return Row(row + 1, (*inputs, *[None] * (len(self.heads) - len(inputs))))
 
-    def _input_value(self, number: int, text: str) -> Any:
+    def _input_values(self, number: int, texts: Sequence[str]) -> list[Any]:
+        """Return what stands under the head of an input in these rows."""
         head = self.heads[number]
-        value = _in_base(text, head.kind)
-        return text if value is None else convert(value, head.kind, head.unit) + 0.0
+        different = list(dict.fromkeys(texts))
+        known = {
+            text: text if value is None else convert(value, head.kind, head.unit) + 0.0
+            for text, value in zip(different, _in_base(different, head.kind))
+        }
+        return [known[text] for text in texts]
 
     def _values(self, found: Sequence[Sequence[Any]]) -> Iterable[tuple[Any, ...]]:
         """Return what stands under the heads of the answers, row by row, of the answers (rows, asked) in SI."""
@@ -188,23 +187,35 @@ class Sweep:
                 return answer.quantity.id
         return ""
 
-    def chunks(self, rows: range) -> Iterator[tuple[int, int]]:
-        """Yield the ends of the chunks that these rows are computed in.
+    def chunks(self, rows: range) -> Iterator[tuple[range, range]]:
+        """Yield the chunks that these rows are computed in, each with those rows that are wanted of it.
 
-        A row has the same company in every run, since its last digits hang on how many are computed with it.
+        A row has the same company in every run, since its last digits may hang on how many are computed with it.
         """
         for start in range(rows.start - rows.start % CHUNK, rows.stop, CHUNK):
             cuts = (start, start + CHUNK) if start else (0, _FIRST, CHUNK)
             for low, high in pairwise(cuts):
                 if low < rows.stop and rows.start < high:
-                    yield low, min(high, self.rows)
+                    yield range(low, min(high, self.rows)), range(max(low, rows.start), min(high, rows.stop))
 
 
 _AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")
 
 
-def _in_base(text: str, kind: str) -> float | None:
-    """Return the value of a text in the base of its kind; None for a word, or what a row fails for."""
+def _as_varied(message: str, texts: Iterable[tuple[str, str]]) -> str:
+    """Return what is told of values as if they had been set as that of what they are: varied."""
+    for text in (shown(f"{key}={value}") for key, value in texts):
+        message = message.replace(f"--set {text}: ", f"--vary {text}: ").replace(f"--set {text})", f"--vary {text})")
+    return message
+
+
+def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
+    """Return the values of texts in the base of their kind; None for a word, or what a row fails for."""
+    plain = plain_quantities(texts, kind) if kind else None
+    return plain or [_one_in_base(text, kind) for text in texts]
+
+
+def _one_in_base(text: str, kind: str) -> float | None:
     if not kind:
         return None
     try:
@@ -249,6 +260,6 @@ def _sweep(spec: Spec) -> Sweep:
     return Sweep(spec)
 
 
-def computed(spec: Spec, start: int, stop: int) -> list[Row]:
+def computed(spec: Spec, company: range, wanted: range) -> list[Row]:
     """Return rows of a sweep, in whatever process; a sweep is made once in each."""
-    return _sweep(spec).chunk(start, stop)
+    return _sweep(spec).chunk(company, wanted)

@@ -16,8 +16,8 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import answers_of
-from kurbel.designs.binding import Binder, Unbound, tree_of, written
+from kurbel.designs.answers import answers_of, stands_beside
+from kurbel.designs.binding import Binder, tree_of, written
 from kurbel.designs.columns import Answer, subjects
 from kurbel.designs.sampling import latin_hypercube
 from kurbel.designs.sweep import kind_of_form
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 SAMPLE, SLOW_SAMPLE = 2000, 200
 """Machines that are drawn where the first order does not hold: side by side, and where each is answered alone."""
+_AT_ONCE, _SLOWLY = 200, 10
+"""Of these the machines that are held, and told of, at once: a measured trace of each may be large."""
 _STEP = 0.1
 """Of an uncertainty: the outer difference; the inner one is half of it."""
 _BEND = 0.1
@@ -43,6 +45,8 @@ _ROUNDING = 1e-9
 
 
 Found = TypeVar("Found")
+Counted = Callable[[Sequence[Any]], Iterable[Any]]
+"""Yields what it is given, and may tell on the way how much of it is left."""
 
 _NOISE = 1e-12
 """Of a value: what is less is no uncertainty but rounding."""
@@ -89,24 +93,20 @@ class Uncertainty:
         if wrong:
             raise WrongUncertainty(wrong)
 
-    def _machine(self, shifts: Sequence[float]) -> Machine | None:
-        """Return the machine with inputs off by so many of their uncertainties each; None where there is none."""
+    def _texts(self, shifts: Sequence[float]) -> list[str]:
+        """Return the texts of the inputs where each is off by so many of its uncertainties."""
         values = (value + shift * spread for value, shift, spread in zip(self._values, shifts, self._spreads))
-        try:
-            return self._binder.bound([f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._kinds)])
-        except Unbound:
-            return None
+        return [f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._kinds)]
 
     def _answers(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer]) -> Any:
         """Return the answers (machines, asked) as floats, nan where there are none."""
-        machines = [self._machine(one) for one in shifts]
-        found = iter(answers_of([one for one in machines if one], asked))
-        rows = [next(found) if one else "" for one in machines]
+        found = answers_of(self._binder.bound([self._texts(one) for one in shifts]).lots, asked)
+        rows = [found.get(row, "") for row in range(len(shifts))]
         blank = [math.nan] * len(asked)
         return np.array([blank if isinstance(row, str) else [_float(value) for value in row] for row in rows])
 
-    def of(self, asked: Sequence[Answer]) -> list[Uncertain]:
-        """Return the uncertainties of those key values that are numbers."""
+    def of(self, asked: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
+        """Return the uncertainties of those key values that are numbers; counted: goes through parts of a sample."""
         steps = [sign * step for step in (_STEP, _STEP / 2, 1.0) for sign in (1, -1)]
         units = np.eye(len(self.keys))
         places = [0 * units[0], *(unit * step for unit in units for step in steps)]
@@ -122,18 +122,23 @@ class Uncertainty:
         linear = [
             Uncertain(one, float(found[0, k]), float(size[k]), _shares(first[:, k] ** 2)) for k, one in enumerate(kept)
         ]
-        drawn = iter(self._drawn([one for one, flat in zip(linear, holds) if not flat]))
-        return [one if flat else next(drawn) for one, flat in zip(linear, holds)]
+        beside = [stands_beside(self._binder.machine, one.answer) for one in linear]
+        drawn = {
+            own: iter(
+                self._drawn([one for one, flat, kind in zip(linear, holds, beside) if not flat and kind is own], *size)
+            )
+            for own, size in ((True, (SAMPLE, _AT_ONCE, counted)), (False, (SLOW_SAMPLE, _SLOWLY, counted)))
+        }
+        return [one if flat else next(drawn[kind]) for one, flat, kind in zip(linear, holds, beside)]
 
-    def _drawn(self, bent: Sequence[Uncertain]) -> list[Uncertain]:
+    def _drawn(self, bent: Sequence[Uncertain], count: int, at_once: int, counted: Counted) -> list[Uncertain]:
         """Return by a sample the uncertainties of what bends; shares are the squares of correlations."""
         if not bent:
             return []
-        asked = [one.answer for one in bent]
-        count = SAMPLE if all(one.of_cylinder for one in asked) else SLOW_SAMPLE
-        points = latin_hypercube(count, len(self.keys), 0)
-        shifts = [[NormalDist().inv_cdf(share) for share in point] for point in points.tolist()]
-        found = self._answers(shifts, asked)
+        points = latin_hypercube(count, len(self.keys), 0).tolist()
+        shifts = [[NormalDist().inv_cdf(share) for share in point] for point in points]
+        parts = [shifts[start : start + at_once] for start in range(0, count, at_once)]
+        found = np.concatenate([self._answers(part, [one.answer for one in bent]) for part in counted(parts)])
         return [_of_sample(one, np.array(shifts), found[:, k]) for k, one in enumerate(bent)]
 
 
@@ -188,15 +193,19 @@ def _spread(text: str, kind: str, value: float) -> float:
     return spread
 
 
-def with_uncertainty(report: Report, case: Case, more: Sequence[tuple[str, str]], system: str) -> Report:
+def with_uncertainty(
+    report: Report, case: Case, more: Sequence[tuple[str, str]], system: str, counted: Counted = iter
+) -> Report:
     """Return a report with a table of the uncertainties of its key values; more: those that no file gives.
+
+    counted: see `Uncertainty.of`.
 
     Raises what `given_uncertainty` does.
     """
     uncertainty = given_uncertainty(case.machine, more)
     if uncertainty is None:
         return report
-    found = uncertainty.of(_asked(case, report.command))
+    found = uncertainty.of(_asked(case, report.command), counted)
     parts = [_with_table(part, found, uncertainty.keys, system) for part in report.all_parts]
     last = parts.pop() if report.whole else None
     return report._replace(parts=tuple(parts), whole=last, notes=(*report.notes, *_notes(found)))
@@ -289,5 +298,5 @@ def _percent(share: float) -> float:
 
 def _notes(found: Sequence[Uncertain]) -> Iterable[str]:
     yield "Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."
-    if sizes := {one.sample for one in found if one.sample}:
-        yield f"Those with a sample bend too much for that and come from so many drawn machines ({max(sizes)})."
+    if any(one.sample for one in found):
+        yield "Those with a sample bend too much for that and come from so many drawn machines."

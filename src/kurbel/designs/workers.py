@@ -1,5 +1,7 @@
 """Who computes the chunks of a sweep: this process, others on this machine, or a cluster; the order stays."""
 
+import os
+import signal
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -8,6 +10,10 @@ from typing import Any
 from kurbel.designs.sweep import Row, Spec, Sweep, computed
 from kurbel.errors import UsageError
 
+_FOR_ONE = 5_000
+"""Rows that one process should have at least: about so many are computed while another one starts."""
+_MOST_JOBS = 4
+"""Processes that are started unasked: the machine may have other work, and each holds the library."""
 _AHEAD = 3
 """Chunks per worker that are on their way: what is computed and not yet read stays little."""
 _RETRIES = 5
@@ -22,7 +28,7 @@ def rows_of(sweep: Sweep, rows: range, jobs: int = 1, dask: str = "") -> Iterato
     Raises UsageError for an address that does not answer.
     """
     for chunk in _chunks(sweep, rows, jobs, dask):
-        yield from (row for row in chunk if row.number - 1 in rows)
+        yield from chunk
 
 
 def _chunks(sweep: Sweep, rows: range, jobs: int, dask: str) -> Iterator[list[Row]]:
@@ -34,14 +40,21 @@ def _chunks(sweep: Sweep, rows: range, jobs: int, dask: str) -> Iterator[list[Ro
         with _processes(jobs) as submit:
             yield from _gathered(sweep, rows, submit, jobs)
     else:
-        yield from (sweep.chunk(start, stop) for start, stop in sweep.chunks(rows))
+        yield from (sweep.chunk(company, wanted) for company, wanted in sweep.chunks(rows))
+
+
+def likely_jobs(rows: int) -> int:
+    """Return how many processes of this machine so many rows are worth."""
+    # a scheduler may have left this process fewer cores than the machine has
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(min(cores, _MOST_JOBS, rows // _FOR_ONE), 1)
 
 
 def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: int) -> Iterator[list[Row]]:
     """Yield the chunks that others compute, in order, with few of them ahead."""
     waiting: deque[Any] = deque()
-    for start, stop in sweep.chunks(rows):
-        waiting.append(submit(computed, sweep.spec, start, stop))
+    for company, wanted in sweep.chunks(rows):
+        waiting.append(submit(computed, sweep.spec, company, wanted))
         if len(waiting) > _AHEAD * workers:
             yield waiting.popleft().result()
     while waiting:
@@ -51,11 +64,24 @@ def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: in
 @contextmanager
 def _processes(jobs: int) -> Iterator[Callable[..., Any]]:
     from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
+    from multiprocessing import active_children, get_context
 
     pool = ProcessPoolExecutor(jobs, get_context("spawn"))
+
+    def submit(*task: Any) -> Any:
+        # an interrupt is for this process alone: those that are started here inherit that they are to overlook it
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        try:
+            return pool.submit(*task)
+        finally:
+            signal.signal(signal.SIGINT, before)
+
     try:
-        yield pool.submit
+        yield submit
+    except BaseException:  # nobody waits for what they still compute
+        for worker in active_children():
+            worker.terminate()
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
@@ -71,8 +97,9 @@ def _cluster(address: str) -> Iterator[tuple[Callable[..., Any], int]]:
     except (OSError, ValueError) as error:  # what is no address, and what does not answer in time
         raise UsageError(f"--dask {address}: no scheduler answers there ({str(error).splitlines()[0]})") from None
 
-    def submit(function: Callable[..., Any], spec: Spec, start: int, stop: int) -> Any:
-        return client.submit(function, spec, start, stop, retries=_RETRIES, key=f"kurbel-{hash(spec)}-{start}")
+    def submit(function: Callable[..., Any], spec: Spec, company: range, wanted: range) -> Any:
+        key = f"kurbel-{hash(spec)}-{wanted}"
+        return client.submit(function, spec, company, wanted, retries=_RETRIES, key=key)
 
     try:
         yield submit, max(len(client.scheduler_info()["workers"]), 1)

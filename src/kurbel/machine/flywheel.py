@@ -137,7 +137,10 @@ class Flywheel(Described):
         ),
         "radius_of_gyration": positive("length", "Radius of gyration", "k", instead="gd2", needs="mass"),
         "fluctuation": Key(
-            Number(above=0, below=2), "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean", "δ"
+            Number(above=0, below=2),
+            "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean",
+            "δ",
+            example="1/80",
         ),
         "rim": Key(
             Record("kurbel.machine.flywheel:Rim"),

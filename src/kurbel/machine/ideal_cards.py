@@ -5,6 +5,7 @@ the stroke volume. Exponents are those of p V^n.
 """
 
 import math
+from collections.abc import Mapping
 from typing import Any, ClassVar, Union
 
 from kurbel.declared.forms import Number, Physical
@@ -25,7 +26,7 @@ def _pressure(text: str, required: bool = True, absent: str = "") -> Key:
 
 
 def _exponent(text: str, absent: str) -> Key:
-    return Key(Number(above=0, most=10), text, "n", absent=absent)
+    return Key(Number(above=0, most=10), text, "n", absent=absent, example="1.3")
 
 
 def _order_fault(key: str, high: float, low_name: str, low: float) -> list[Fault]:
@@ -33,6 +34,12 @@ def _order_fault(key: str, high: float, low_name: str, low: float) -> list[Fault
     if high > low:
         return []
     return [Fault((key,), f"{show(high, 'pressure')} is not above the {low_name} pressure ({show(low, 'pressure')})")]
+
+
+def _order_fault_of(values: Mapping[str, Any], key: str, lower: str) -> list[Fault]:
+    """Return the fault of two pressures, if both are there and could be read."""
+    high, low = values.get(key), values.get(lower)
+    return _order_fault(key, high, lower, low) if isinstance(high, float) and isinstance(low, float) else []
 
 
 def after_polytrope(pressure: float, volume: float, next_volume: float, exponent: float) -> float:
@@ -85,8 +92,13 @@ class Steam(Described):
         "exponent": _exponent("Exponent of expansion and compression", "1, the hyperbola"),
     }
 
+    @staticmethod
+    def faults_of_keys(values: Mapping[str, Any]) -> list[Fault]:
+        """Return what is wrong with the pressures, whether the other keys could be read or not."""
+        return _order_fault_of(values, "admission", "exhaust")
+
     def __post_init__(self) -> None:
-        faults = _order_fault("admission", self.admission, "exhaust", self.exhaust)
+        faults = self.faults_of_keys(vars(self))
         if self.release < self.cut_off:
             faults.append(
                 Fault(("release",), f"the exhaust opens at {self.release:g}, before the cut-off at {self.cut_off:g}")
@@ -113,13 +125,18 @@ class Compressor(Described):
     cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
     KEYS: ClassVar[Keys] = {
         "suction": _pressure("Pressure while the chamber fills"),
-        "delivery": _pressure("Pressure while the chamber empties"),
+        "delivery": _pressure("Pressure while the chamber empties")._replace(also=("discharge",)),
         "clearance": _CLEARANCE,
         "exponent": _exponent("Exponent of compression and expansion", "1.4, air"),
     }
 
+    @staticmethod
+    def faults_of_keys(values: Mapping[str, Any]) -> list[Fault]:
+        """Return what is wrong with the pressures, whether the other keys could be read or not."""
+        return _order_fault_of(values, "delivery", "suction")
+
     def __post_init__(self) -> None:
-        refuse(*_order_fault("delivery", self.delivery, "suction", self.suction))
+        refuse(*self.faults_of_keys(vars(self)))
 
     def fault_in(self, cycle: str, lift: float) -> str:
         """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""

@@ -7,6 +7,7 @@ from kurbel.declared.forms import Listing, Number, OneOf, Physical, Record, not_
 from kurbel.declared.keys import Described, Form, Key, Keys, check
 from kurbel.errors import Fault, refuse
 from kurbel.frozen import frozen
+from kurbel.numerics.arithmetic import total
 
 _ONE_OR_MORE: Form = OneOf(Physical("mass", least=0), Listing(Physical("mass", least=0)))
 
@@ -113,14 +114,15 @@ class Masses(Described):
         **parts: float | tuple[float, ...],
     ) -> "Masses":
         """Return the masses that these keys of a machine file describe."""
-        sums = {name: math.fsum(part) if isinstance(part, tuple) else part for name, part in parts.items()}
+        sums = {name: total(*part) if isinstance(part, tuple) else part for name, part in parts.items()}
         if not sums and connecting_rod is None and rotating is None:
             refuse(
                 Fault((), "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …")
             )
-        rod = ConnectingRod(connecting_rod) if isinstance(connecting_rod, float) else connecting_rod
+        if connecting_rod is not None and not isinstance(connecting_rod, ConnectingRod):
+            connecting_rod = ConnectingRod(connecting_rod)
         crosshead, undivided = sums.get("crosshead"), "reciprocating" in sums
-        return cls(math.fsum(sums.values()), rod, rotating or 0.0, crosshead, undivided)
+        return cls(total(*sums.values()), connecting_rod, rotating or 0.0, crosshead, undivided)
 
     def at_pin(self, rod_length: float) -> float:
         """Mass in kg that turns with the crank pin, with what of a connecting rod of this length in m does."""

@@ -1,5 +1,6 @@
 """Rectangular cards: one pressure on every stroke, or an indicated mean pressure and nothing more."""
 
+from collections.abc import Sequence
 from typing import ClassVar
 
 from kurbel.declared.forms import Physical
@@ -53,3 +54,6 @@ class Rectangular(Physical):
         if self.field == "level" and not NUMBER.match(plain(text)):
             refused(f"expected {self.expected()}, or a card below it, got '{shown(text)}'")
         return Rectangle(**{self.field: super().parse(text, folder)})
+
+    def numbers(self, texts: Sequence[str]) -> None:
+        """Return nothing: each becomes a card."""

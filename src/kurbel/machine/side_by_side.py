@@ -10,9 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Indices
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.variants import Chambers, record_of
+from kurbel.machine.variants import Chambers, Lot, one_of, record_of, varies
+from kurbel.numerics.varied import Varied
 
 _SIDE_BY_SIDE = ("slider-crank", "yoke-frame", "scotch-yoke")
 """Mechanisms whose formulas take numbers of many machines at once."""
@@ -41,7 +43,7 @@ class Kinds:
     def _kind(self, value: Any) -> Any:
         if value is None or isinstance(value, (str, bool)):
             return value
-        if isinstance(value, (float, int)):
+        if isinstance(value, (float, int, Varied)):
             return _number(value)
         if id(value) not in self._known:  # beside it, so that no other takes its place in memory
             self._known[id(value)] = value, self._looked_at(value)
@@ -67,7 +69,7 @@ class Kinds:
 
 
 def _number(value: Any) -> str | None:
-    return None if value is None else "0" if value == 0 else "inf" if math.isinf(value) else "number"
+    return None if value is None else "0" if value == 0 else "inf" if value == math.inf else "number"
 
 
 def _chamber(chamber: Any) -> Any:
@@ -78,25 +80,29 @@ def _chamber(chamber: Any) -> Any:
     return _ALONE if measured or sum(len(one.fractions) for one in lines) > _MOST_LINES else "process"
 
 
-def side_by_side(pairs: Sequence[tuple[Machine, Cylinder]]) -> tuple[Machine, Cylinder]:
-    """Return machines of one kind, each with one of its cylinders, as one machine and one cylinder of many variants."""
-    machines, cylinders = zip(*pairs)
-    stack = _Stack()
-    first = machines[0]
+def side_by_side(lots: Sequence[tuple[Lot, Indices]], name: str) -> tuple[Machine, Cylinder]:
+    """Return the cylinders of a name of machines of one kind as one machine and one cylinder of many variants.
+
+    lots: with the places (n,) of the machines that are meant in each.
+    """
+    stack = _Stack(lots)
+    machines = [lot.machine for lot, _ in lots]
+    place = [one.name for one in machines[0].cylinders].index(name)
     numbers = {name: stack.of([getattr(one, name) for one in machines]) for name in ("speed", "ambient")}
-    return record_of(first, numbers), stack.of(cylinders)
+    return record_of(machines[0], numbers), stack.of([one.cylinders[place] for one in machines])
 
 
 class _Stack:
-    """Puts records of one kind together; what is one in many places stays one."""
+    """Puts records of lots of one kind together; what is one in many places stays one."""
 
-    def __init__(self) -> None:
+    def __init__(self, lots: Sequence[tuple[Lot, Indices]]) -> None:
+        self._lots = lots
         self._made: dict[tuple[int, ...], Any] = {}
 
     def of(self, column: Sequence[Any]) -> Any:
-        """Return what stands for the values (v,) of one field."""
+        """Return what stands for the values, one of each lot, of one field."""
         first = column[0]
-        if all(one is first for one in column):
+        if all(one is first for one in column) and not varies(first):
             return first
         ids = tuple(map(id, column))
         if ids not in self._made:
@@ -105,8 +111,8 @@ class _Stack:
 
     def _join(self, column: Sequence[Any]) -> Any:
         first = column[0]
-        if isinstance(first, (float, int)) and not isinstance(first, bool):
-            return np.array(column) if any(one != first for one in column) else first
+        if isinstance(first, (float, int, Varied)) and not isinstance(first, bool):
+            return self._numbers(column)
         if isinstance(first, tuple) and not hasattr(first, "_fields"):
             return tuple(self.of(parts) for parts in zip(*column))
         if isinstance(first, Indicator):
@@ -117,11 +123,29 @@ class _Stack:
             return record_of(first, {name: one for name, one in found.items() if one is not getattr(first, name)})
         return first
 
+    def _numbers(self, column: Sequence[Any]) -> Any:
+        if not any(isinstance(one, Varied) or one != column[0] for one in column):
+            return column[0]
+        return np.concatenate(
+            [
+                one.values[places] if isinstance(one, Varied) else np.full(len(places), one)
+                for one, (_, places) in zip(column, self._lots)
+            ]
+        )
+
     def _chambers(self, column: Sequence[Any]) -> Any:
         ids = tuple(map(id, column))
         if ids not in self._made:
-            different = {id(one): one for one in column}
-            places = {key: place for place, key in enumerate(different)}
-            chambers = Chambers(tuple(different.values()), np.array([places[one] for one in ids]))
+            whole = [each for one, (lot, places) in zip(column, self._lots) for each in _each(one, lot, places)]
+            different = {id(one): one for one in whole}
+            numbers = {key: number for number, key in enumerate(different)}
+            chambers = Chambers(tuple(different.values()), np.array([numbers[id(one)] for one in whole]))
             self._made[ids] = chambers if len(different) > 1 else column[0]
         return self._made[ids]
+
+
+def _each(chamber: Any, lot: Lot, places: Indices) -> list[Any]:
+    """Return the chamber of each of these machines of a lot."""
+    if len(lot.rows) > 1 and varies(chamber):
+        return [one_of(chamber, place) for place in places.tolist()]
+    return [chamber] * len(places)

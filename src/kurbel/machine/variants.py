@@ -1,10 +1,101 @@
-"""Records of many variants of a machine: what differs among them is an array over the variants, (v,)."""
+"""Records of many variants of a machine: what differs among them is `Varied`, or, for the solver, an array (v,)."""
 
-from typing import Any, NamedTuple
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import is_dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Indices
+from kurbel.numerics.varied import Varied, varied
+
+if TYPE_CHECKING:
+    from kurbel.machine import Machine
+
+
+class Lot(NamedTuple):
+    """Machines of one kind in one record, whose numbers are `Varied` where they differ; rows: what each is known by."""
+
+    machine: "Machine"
+    rows: Sequence[int]
+
+    def one(self, place: int) -> "Machine":
+        """Return one of them, counted from 0, alone."""
+        return one_of(self.machine, place)  # type: ignore[no-any-return]
+
+
+def sort_of(value: Any) -> Hashable:
+    """Return what values must have in common to differ in numbers only, and to be joined."""
+    if type(value) in (float, int):
+        return type(value).__name__
+    if isinstance(value, (tuple, list)):
+        return (type(value), *map(sort_of, value))
+    if is_dataclass(value):
+        return (type(value), *map(sort_of, vars(value).values()))
+    return value if isinstance(value, str) else id(value)
+
+
+def joined(values: Sequence[Any]) -> Any:
+    """Return values of one sort as one of many variants, in which numbers are `Varied` where they differ."""
+    first = values[0]
+    if all(one is first for one in values):
+        return first
+    if isinstance(first, (float, int)):
+        return varied(values)
+    if isinstance(first, (tuple, list)):
+        parts = map(joined, zip(*values))
+        return type(first)(*parts) if hasattr(first, "_fields") else type(first)(parts)
+    if is_dataclass(first):
+        return _like(first, {name: joined([vars(one)[name] for one in values]) for name in vars(first)})
+    return first
+
+
+def one_of(record: Any, place: int) -> Any:
+    """Return a record of many variants as that of one of them."""
+    return changed(record, lambda numbers: numbers.values[place].item(), {})
+
+
+def one_kind(record: Any) -> None:
+    """Raise Parted where a number is 0, or infinite, for some variants only: formulas tell these apart."""
+    for numbers in _numbers(record):
+        numbers.alike()
+
+
+def varies(record: Any) -> bool:
+    """Return whether anything differs among the variants of a record."""
+    return bool(_numbers(record))
+
+
+def _numbers(record: Any) -> list[Varied]:
+    found: list[Varied] = []
+
+    def kept(numbers: Varied) -> Varied:
+        found.append(numbers)
+        return numbers
+
+    changed(record, kept, {})
+    return found
+
+
+def changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]) -> Any:
+    """Return a record with what varies changed; what is one in many places stays one; known: what was seen before."""
+    if isinstance(record, Varied):
+        return change(record)
+    if not (isinstance(record, tuple) or is_dataclass(record)):
+        return record
+    if id(record) not in known:
+        known[id(record)] = _changed(record, change, known)
+    return known[id(record)]
+
+
+def _changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]) -> Any:
+    if isinstance(record, tuple):
+        parts = [changed(one, change, known) for one in record]
+        if all(one is other for one, other in zip(parts, record)):
+            return record
+        return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
+    found = {name: changed(one, change, known) for name, one in vars(record).items()}
+    return record if all(one is vars(record)[name] for name, one in found.items()) else _like(record, found)
 
 
 class Chambers(NamedTuple):
@@ -40,9 +131,14 @@ def count_of(record: Any) -> int | None:
 
 
 def record_of(like: Any, varied: dict[str, Any]) -> Any:
-    """Return a record like another one but for these values; what was checked when theirs were born is not again."""
-    made = object.__new__(type(like))
-    made.__dict__.update(vars(like) | varied, _varied=tuple(varied))
+    """Return a record like another one but for these values of many variants, as the solver takes them."""
+    return _like(like, varied | {"_varied": tuple(varied)})
+
+
+def _like(record: Any, values: dict[str, Any]) -> Any:
+    """Return a record with other values; what was checked when they were born is not again."""
+    made = object.__new__(type(record))
+    made.__dict__.update(vars(record) | values)
     return made
 
 

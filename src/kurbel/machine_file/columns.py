@@ -6,6 +6,7 @@ import os
 import re
 import warnings
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -84,16 +85,25 @@ def read_columns(file: str, columns: Columns) -> Table:
     return Table(angles, values, lambda index: f"line {_line_number(text, columns, index)}")
 
 
+@lru_cache(maxsize=4)
 def _table(text: str, columns: Columns) -> Array:
-    """Return the wanted columns (n, k); look-alikes of a blank or a minus are sought only where one is in the way."""
+    """Return the wanted columns (n, k); look-alikes of a blank or a minus are sought only where one is in the way.
+
+    Kept, since designs that vary what is said of a trace have one text in common.
+    """
+    try:
+        found = _loaded(columns.tidied(text), columns)
+    except ValueError:
+        found = _of_familiar(familiar(text), columns)
+    found.flags.writeable = False
+    return found
+
+
+def _of_familiar(text: str, columns: Columns) -> Array:
     try:
         return _loaded(columns.tidied(text), columns)
     except ValueError:
-        known = familiar(text)
-    try:
-        return _loaded(columns.tidied(known), columns)
-    except ValueError:
-        raise RuleError(_first_fault(known, columns)) from None
+        raise RuleError(_first_fault(text, columns)) from None
 
 
 def _loaded(text: str, columns: Columns) -> Array:

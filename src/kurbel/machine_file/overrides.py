@@ -28,6 +28,8 @@ def read_override(text: str) -> Override:
     steps = [step.strip() for step in key.replace("[", ".").replace("]", "").split(".")]
     if not equals or not all(steps):
         raise UsageError(f"--set {shown(text)}: write KEY=VALUE, such as --set cylinders.0.bore='450 mm'")
+    if any(step.endswith(":") for step in steps):
+        raise UsageError(f"--set {shown(text)}: write KEY=VALUE, without the colon")
     reading = Reading()
     try:
         # an argument that is no UTF-8 has its bytes as surrogates

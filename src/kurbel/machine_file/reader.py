@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.forms import Record
-from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, StopReading, glued_hint, kind_of
+from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, glued_hint, kind_of
 from kurbel.errors import Fault
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
@@ -42,10 +42,14 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
     return read_machine(source.decode(name, text.encode("utf-8", "surrogatepass")), overrides)
 
 
-def read_machine(origin: Source, overrides: Iterable[str] = (), births: list[Birth] | None = None) -> Machine:
-    """Return the machine that a source describes; overrides and errors: see `load`; births: see `Reading`."""
-    reading = Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
-    reading.births = births
+def reading_of(origin: Source) -> Reading:
+    """Return a pass over a source that has not begun."""
+    return Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
+
+
+def read_machine(origin: Source, overrides: Iterable[str] = (), reading: Reading | None = None) -> Machine:
+    """Return the machine that a source describes; overrides and errors: see `load`; reading: see `reading_of`."""
+    reading = reading or reading_of(origin)
     tree = parse(origin.text, reading)
     known = len(reading.faults)  # YAML has told their places
     given = tuple(overrides)

@@ -13,7 +13,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, RuleError
 from kurbel.frozen import frozen
 from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
-from kurbel.numerics.arithmetic import bearing, every, sqrt, total, where
+from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -111,15 +111,15 @@ class SliderCrank(Mechanism):
         return cls(crank, rod if rod is not None else crank * (rod_ratio or math.inf), offset, **others)
 
     def __post_init__(self) -> None:
-        if not (0 < self.crank < math.inf and self.rod > 0 and math.isfinite(self.offset)):
+        if not (0 < self.crank < math.inf and self.rod > 0 and abs(self.offset) < math.inf):
             raise RuleError(Fault(("crank",), "crank and rod must be positive, crank and offset finite"))
-        if not math.isinf(self.rod) and math.fsum((self.rod, -self.crank, -abs(self.offset))) <= self._rounding:
+        if self.rod != math.inf and total(self.rod, -self.crank, -abs(self.offset)) <= self._rounding:
             raise RuleError(Fault(("rod",), self._too_short()))
 
     @property
     def _rounding(self) -> float:
         """How far three lengths that add up as people write them may miss each other as floats; two miss by nothing."""
-        return math.ulp(self.rod) + math.ulp(self.offset) / 2 if self.offset else 0.0
+        return ulp(self.rod) + ulp(abs(self.offset)) / 2 if self.offset else 0.0
 
     def _too_short(self) -> str:
         rod, crank, offset = (show(value, "length") for value in (self.rod, self.crank, abs(self.offset)))
@@ -326,7 +326,7 @@ def _half_angle(sin: Any, cos: Any) -> tuple[Any, Any]:
     return where(cos >= 0, small, large), where(cos >= 0, large, small)
 
 
-def _crank_of_stroke(stroke: float, rod: float | None, rod_ratio: float | None, offset: float) -> float:
+def _crank_of_stroke(stroke: float, rod: float | None, rod_ratio: float | None, offset: float) -> Any:
     """Solve s = √((L+R)² − e²) − √((L−R)² − e²) for R, with L given or L = kR."""
     half = stroke / 2
     if offset == 0 or math.inf in (rod, rod_ratio):
@@ -335,11 +335,11 @@ def _crank_of_stroke(stroke: float, rod: float | None, rod_ratio: float | None, 
         span = (rod - half) * (rod + half)
         if span <= offset * offset:
             raise RuleError(Fault(("rod",), f"{show(rod, 'length')} is too short for this stroke and offset"))
-        return half * math.sqrt(1 - offset * offset / span)
+        return half * sqrt(1 - offset * offset / span)
     assert rod_ratio is not None
     # k² u² − (1 + k²) u + (ε² + 1) = 0 for u = (R/half)², ε = e/half; the root that is 1 for ε = 0
     square, eps2 = rod_ratio * rod_ratio, (offset / half) ** 2
     root = (square - 1) ** 2 - 4 * square * eps2
     if root < 0:
         raise RuleError(Fault(("offset",), f"{show(offset, 'length')} is too large for this stroke and rod_ratio"))
-    return half * math.sqrt((1 + square + math.sqrt(root)) / (2 * square))
+    return half * sqrt((1 + square + sqrt(root)) / (2 * square))

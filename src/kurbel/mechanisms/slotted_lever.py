@@ -324,9 +324,19 @@ class SlottedLever(Mechanism):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Say that the lever turns fully, where it does."""
+        """Say that the lever turns fully, where it does, and that the pin slides past its end, where it does."""
         whitworth = "The frame is shorter than the crank: the lever turns fully (Whitworth quick return)."
         times = (
             "Without a lever's length the strokes are those of a ram square to the line of the pivots, on a fork head."
         )
-        return (whitworth,) * self.rotates + (times,) * self.turns
+        return (whitworth,) * self.rotates + (times,) * self.turns + self._slot_notes()
+
+    def _slot_notes(self) -> tuple[str, ...]:
+        farthest = self.frame + self.crank
+        if self.lever is None or self.rotates or self.lever >= farthest:
+            return ()
+        # a lever that turns fully may drive its ram by an arm on the other side of the pivot
+        return (
+            f"The pin slides as far as {show(farthest, 'length')} from the lever's pivot, past its end at "
+            f"{show(self.lever, 'length')}: the slot must go on beyond the joint with the ram.",
+        )

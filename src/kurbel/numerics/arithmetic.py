@@ -5,6 +5,11 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 
+def is_number(value: Any) -> bool:
+    """Return whether a value is a float, or a number that brings its own operations."""
+    return isinstance(value, (float, int)) or hasattr(value, "sqrt")
+
+
 def sqrt(value: Any) -> Any:
     """Return the square root of a float, an array, or any number that brings its own `sqrt` (Decimal, mpf, Jet)."""
     if isinstance(value, (float, int)):
@@ -61,6 +66,8 @@ def ulp(value: Any) -> Any:
 def _of(value: Any, name: str, in_numpy: str = "") -> Any:
     if isinstance(value, (float, int)):
         return getattr(math, name)(value)
+    if hasattr(value, name):
+        return getattr(value, name)()
     import numpy as np
 
     return getattr(np, in_numpy or name)(value)
@@ -84,6 +91,9 @@ def total(*terms: Any) -> Any:
     """
     if all(isinstance(term, (float, int)) for term in terms):
         return math.fsum(terms)
+    own = next((term for term in terms if hasattr(term, "total")), None)
+    if own is not None:
+        return own.total(terms)
     whole, missed = terms[0], 0.0
     for term in terms[1:]:
         before, whole = whole, whole + term

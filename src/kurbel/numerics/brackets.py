@@ -25,7 +25,7 @@ class Sampled(NamedTuple):
     @classmethod
     def on(cls, grid: Grid, value: Any) -> "Sampled":
         """Return values at the nodes of a grid with the slopes of the polynomials through them."""
-        value = np.broadcast_to(value, grid.degrees.shape)
+        value = np.broadcast_to(value, grid.shape)
         return cls(value, grid.slopes(value))
 
 
@@ -194,7 +194,7 @@ def at_brackets(grid: Grid, brackets: Brackets, evaluate: Evaluate) -> Callable[
 
 
 _SETTLED = 1e-9
-"""Of half a piece: what follows a step of Newton so short, by the polynomial through the nodes, is its square."""
+"""Of half a piece, where a polynomial through its nodes is as steep as high: a step so short leaves its square."""
 _STEPS = 3
 
 
@@ -204,9 +204,10 @@ def roots(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str, nodal: 
     nodal: those values or slopes at the nodes of the grid, (pieces, nodes), of every quantity. The polynomial through
     them has a root beside each, from which Newton's method needs a step or two; where it needs more, the bracket tells.
     """
-    degrees, rise = _roots_of_polynomials(grid, brackets, nodal)
+    degrees, rise, size = _roots_of_polynomials(grid, brackets, nodal)
     values, left = np.empty_like(degrees), np.arange(len(degrees))
     half = (grid.high - grid.low)[brackets.row] / 2
+    short = _SETTLED * half * np.minimum(np.abs(rise) * half / size, 1.0)
     for _ in range(_STEPS):
         if not len(left):
             return degrees, values
@@ -215,7 +216,7 @@ def roots(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str, nodal: 
         step = getattr(found, part) / rise[left]
         values[left] = found.value
         degrees[left] = np.clip(degrees[left] - step, own.low, own.high)
-        left = left[~(np.abs(step) <= _SETTLED * half[left])]
+        left = left[~(np.abs(step) <= short[left])]
     own = brackets.at(left)
     at = at_brackets(grid, own, evaluate)
     ends = own.low, own.high, own.f_low, own.f_high
@@ -224,8 +225,11 @@ def roots(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str, nodal: 
     return degrees, values
 
 
-def _roots_of_polynomials(grid: Grid, brackets: Brackets, nodal: list[Array]) -> tuple[Array, Array]:
-    """Return where the polynomials through the nodes of pieces are zero in brackets, and their slopes by degree."""
+def _roots_of_polynomials(grid: Grid, brackets: Brackets, nodal: list[Array]) -> tuple[Array, Array, Array]:
+    """Return where the polynomials through the nodes of pieces are zero in brackets, and their slopes by degree there.
+
+    Also the largest size that they have at a node.
+    """
     along = np.empty((len(grid.nodes), len(brackets.low)))
     for owner, one in enumerate(nodal):
         own = brackets.owner == owner
@@ -240,7 +244,8 @@ def _roots_of_polynomials(grid: Grid, brackets: Brackets, nodal: list[Array]) ->
         low, high = np.where(before, place, low), np.where(before, high, place)
         place = place - value / slope
         place = np.where((low <= place) & (place <= high), place, (low + high) / 2)
-    return middle + half * place, _of_polynomials(coefficients, place)[1] / half
+    rise = _of_polynomials(coefficients, place)[1] / half
+    return middle + half * place, rise, np.abs(along).max(axis=0, initial=0.0)
 
 
 def _of_polynomials(coefficients: Array, place: Array) -> tuple[Array, Array]:

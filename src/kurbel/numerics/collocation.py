@@ -216,33 +216,55 @@ class _State(NamedTuple):
         return math.sqrt(float(np.square(self.residual).sum() + np.square(self.jump).sum()))
 
 
+class _Equations:
+    """The collocation equations of all elements, and a floor that y must not reach."""
+
+    def __init__(self, equation: Equation, elements: Elements, prepared: Array) -> None:
+        self._equation, self._prepared = equation, prepared
+        self._height = np.radians(elements.width)[:, None, None]
+        self._floor = equation.floor(prepared)
+        height_above = -self._floor.max(axis=(0, 1))
+        self._least = float(height_above[np.isfinite(height_above)].max(initial=0.0))
+
+    def state(self, start: Array, values: Array) -> _State:
+        """Return what the equations lack where y has these starts and values."""
+        rate, slope = self._equation.rate(self._prepared, values)
+        residual = start[:, None] + self._height * (rule().matrix @ rate) - values
+        jump = np.roll(values[:, -1], 1, axis=0) - start
+        return _State(start, values, self._height[..., None] * slope, residual, jump)
+
+    def near(self, values: Array) -> float:
+        """Return the size of a step that is small beside what y swings by.
+
+        High above its floor y is moved as a whole by rounding, though by nothing beside that height.
+        """
+        return max(1e-9 * float(np.ptp(values, axis=(0, 1)).max()), 1e-14 * self._least)
+
+    def after(self, at: _State, step_start: Array, step: Array, halved: bool) -> tuple[_State, float]:
+        """Return where a step leads, and the share of it that stays above the floor.
+
+        halved: that share is halved until less is lacking.
+        """
+        share = _allowed(at.values - self._floor, step)
+        after = self.state(at.start + share * step_start, at.values + share * step)
+        while halved and not after.lack <= (1 - share / 8) * at.lack and share > 1e-6:
+            share /= 2
+            after = self.state(at.start + share * step_start, at.values + share * step)
+        return after, share
+
+
 def _newton(
     equation: Equation, elements: Elements, prepared: Array, start: Array, values: Array
 ) -> tuple[Array, Array]:
     """Solve the collocation equations of all elements by Newton's method, with steps that make what is lacking less."""
-    height = np.radians(elements.width)[:, None, None]
-    floor = equation.floor(prepared)
-    height_above = -floor.max(axis=(0, 1))
-    least = float(height_above[np.isfinite(height_above)].max(initial=0.0))
-
-    def state(start: Array, values: Array) -> _State:
-        rate, slope = equation.rate(prepared, values)
-        residual = start[:, None] + height * (rule().matrix @ rate) - values
-        return _State(start, values, height[..., None] * slope, residual, np.roll(values[:, -1], 1, axis=0) - start)
-
-    at, previous = state(start, values), np.inf
+    equations = _Equations(equation, elements, prepared)
+    at, previous = equations.state(start, values), np.inf
     for _ in range(100):
         if not math.isfinite(at.lack):
             break
         step_start, step = _linear_step(at)
-        size = float(np.abs(step).max())
-        # high above its floor y is moved as a whole by rounding, though by nothing beside that height
-        near = max(1e-9 * float(np.ptp(at.values + step, axis=(0, 1)).max()), 1e-14 * least)
-        share = _allowed(at.values - floor, step)
-        after = state(at.start + share * step_start, at.values + share * step)
-        while size > near and not after.lack <= (1 - share / 8) * at.lack and share > 1e-6:
-            share /= 2
-            after = state(at.start + share * step_start, at.values + share * step)
+        size, near = float(np.abs(step).max()), equations.near(at.values + step)
+        after, share = equations.after(at, step_start, step, halved=size > near)
         # the next step answers what is left lacking: of a linear equation nothing but rounding
         left = size * after.lack / at.lack if at.lack else 0.0
         at = after

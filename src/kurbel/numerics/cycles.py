@@ -75,7 +75,6 @@ class Cycles(Grid):
         last = np.append(self.variant[1:] != self.variant[:-1], True)
         high = np.where(last, cycle, np.append(low[1:], cycle))
         Pieces.__init__(self, low, high, LOBATTO_12)
-        self.rule = LOBATTO_12
         self.cycle = cycle
 
     @cached_property

@@ -21,27 +21,50 @@ _AGREEMENT = 1e-12  # of values; integrals of what is smooth then agree far bett
 class Pieces:
     """Pieces from `low` to `high` (n,) in degrees with the nodes of a rule.
 
-    degrees, within: angles of the nodes and the middles of their pieces, (pieces, nodes). beyond: what the
-    rounding of `degrees` took from the nodes; with R/L near 1 the rod swings round within a hair of 90°, and it counts.
-    variant: of which machine each piece is, (pieces,), where they are of many side by side.
+    within: the middles of the pieces, for every node of them, (pieces, nodes). variant: of which machine each piece is,
+    (pieces,), where they are of many side by side.
     """
 
     variant: Indices | None = None
 
     def __init__(self, low: Array, high: Array, rule: Rule) -> None:
         self.low, self.high = low, high
+        self.rule = rule
         self.nodes, self.weights = map(np.array, rule)
-        start, end = low[:, None], high[:, None]
-        middle = (start + end) / 2
-        self.within = np.broadcast_to(middle, (len(low), len(self.nodes)))
-        right_angle = 90.0 * np.rint(middle / 90.0)
-        offset = ((start - right_angle) + (end - right_angle)) / 2 + (end - start) / 2 * self.nodes
+        self.shape = len(low), len(self.nodes)
+        self.within: Array = np.broadcast_to(((low + high) / 2)[:, None], self.shape)
+
+    @cached_property
+    def right_angle(self) -> Array:
+        """The multiple of 90° beside each piece, (pieces, 1)."""
+        return np.asarray(90.0 * np.rint(self.within[:, :1] / 90.0))
+
+    @cached_property
+    def _offset(self) -> Array:
+        """The angles of the nodes from these right angles on in degrees."""
+        start, end = self.low - self.right_angle[:, 0], self.high - self.right_angle[:, 0]
         # node by node in memory: what is one number to a piece then meets whole rows of pieces at once
-        offset = np.asfortranarray(offset)
-        self.degrees: Array = right_angle + offset
-        self.degrees[:, 0], self.degrees[:, -1] = low, high
-        self.beyond = offset - (self.degrees - right_angle)
-        self.beyond[:, 0] = self.beyond[:, -1] = 0.0
+        return np.asarray(((start + end) / 2 + (self.high - self.low) / 2 * self.nodes[:, None]).T)
+
+    @cached_property
+    def degrees(self) -> Array:
+        """The angles of the nodes, (pieces, nodes)."""
+        degrees = self.right_angle + self._offset
+        degrees[:, 0], degrees[:, -1] = self.low, self.high
+        return np.asarray(degrees)
+
+    @cached_property
+    def beyond(self) -> Array:
+        """What their rounding took from the nodes: with R/L near 1 the rod swings round within a hair of 90°."""
+        beyond = self._offset - (self.degrees - self.right_angle)
+        beyond[:, 0] = beyond[:, -1] = 0.0
+        return np.asarray(beyond)
+
+    def part(self, rows: Indices | Flags) -> "Pieces":
+        """Return these of the pieces."""
+        part = Pieces(self.low[rows], self.high[rows], self.rule)
+        part.variant = None if self.variant is None else self.variant[rows]
+        return part
 
     @cached_property
     def half_widths(self) -> Array:
@@ -70,7 +93,6 @@ class Grid(Pieces):
     def __init__(self, breaks: Array, rule: Rule = GAUSS) -> None:
         super().__init__(breaks[:-1], breaks[1:], rule)
         self.breaks = breaks
-        self.rule = rule
         self.cycle = float(breaks[-1])
 
     @property
@@ -106,7 +128,9 @@ class Grid(Pieces):
 
     def slopes(self, value: Array, rows: Any = np.s_[:]) -> Array:
         """Return the derivatives by φ of the polynomials through values (k, nodes) on these pieces (k,)."""
-        return np.asarray((self._differences @ value.T / self.half_widths[rows]).T)
+        slopes = self._differences @ value.T
+        slopes /= self.half_widths[rows]
+        return np.asarray(slopes.T)
 
     @cached_property
     def _differences(self) -> Array:

@@ -23,6 +23,8 @@ from kurbel.numerics.grid import Grid
 
 _ROUNDING = 8 * np.finfo(float).eps
 """What is no larger than this beside the largest value of its quantity is rounding and has no sign."""
+_ALIKE = 4 * np.finfo(float).eps
+"""By which values beside each other differ that are one but for rounding."""
 _REPEATED = 64 * np.finfo(float).eps
 """By which, beside the largest value, equal summits of a curve differ that is summed over cylinders and the cycle."""
 
@@ -146,7 +148,20 @@ def _turning_points(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate,
     asked = [slopes_worth(grid, sampled, one) for sampled, one in zip(samples.values(), worth)]
     brackets = slope_brackets(grid, asked, evaluate)
     found = roots(grid, brackets, evaluate, "slope", [sampled.slope for sampled in samples.values()])
-    return _Turns(brackets.owner, brackets.row, brackets.node, *found)
+    turns = _Turns(brackets.owner, brackets.row, brackets.node, *found)
+    return turns.at(_apart_from_ends(samples, turns))
+
+
+def _apart_from_ends(samples: dict[str, Sampled], turns: _Turns) -> Flags:
+    """Return which do not, but for rounding, turn at the end of a piece: a dead centre is told as the angle it is."""
+    apart = np.ones(len(turns.row), dtype=bool)
+    for owner, sampled in enumerate(samples.values()):
+        own = np.flatnonzero(turns.owner == owner)
+        for end, node in ((0, 0), (-1, sampled.value.shape[1] - 2)):
+            value = sampled.value[turns.row[own], end]
+            alike = np.abs(turns.value[own] - value) <= _ALIKE * np.abs(value)
+            apart[own[alike & (turns.node[own] == node)]] = False
+    return apart
 
 
 def _extreme_pieces(grid: Grid, value: Array, turns: _Turns) -> Curve:
@@ -249,7 +264,7 @@ def _first_at(curve: Curve, best: Array, size: Array, sign: float) -> Extreme:
     round_it = curve.grid.counts[owner]
     ahead = curve.row[following] - curve.row[high] + np.where(high == last, round_it, 0)
     behind = curve.row[high] - curve.row[preceding] + np.where(high == first, round_it, 0)
-    value, slack = curve.value[high] * sign, 4 * np.finfo(float).eps * np.abs(best)[owner]
+    value, slack = curve.value[high] * sign, _ALIKE * np.abs(best)[owner]
     # pieces between which others are left out do not stand beside each other
     after = np.where(ahead <= 1, curve.value[following] * sign, -np.inf)
     beside = np.maximum(after, np.where(behind <= 1, curve.value[preceding] * sign, -np.inf))

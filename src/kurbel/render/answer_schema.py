@@ -54,9 +54,13 @@ _DEFINITIONS = {
         {
             "id": _TEXT,
             "title": _TEXT,
-            "rows": {"type": "array", "items": {"type": "object", "additionalProperties": _TEXT}},
             "columns": _list("column"),
-        }
+        },
+        rows={
+            "type": "array",
+            "items": {"type": "object", "additionalProperties": _TEXT},
+            "description": "names of the rows, absent where the first column tells them",
+        },
     ),
     "part": _object({"name": _TEXT, **_RESULTS}, **_TABLES),
     "ratio": _object({"rod_ratio": {"type": ["number", "string"]}, "columns": _list("column")}),
@@ -70,23 +74,24 @@ _DEFINITIONS = {
             "severity": {"enum": ["error", "warning", "info"]},
         }
     ),
-    "input": _object({"file": _TEXT, "sha256": _TEXT}),
+    "input": _object({"file": _TEXT, "sha256": {"type": ["string", "null"]}}),
 }
 
 
 def answer_schema() -> dict[str, Any]:
-    """Return the JSON Schema (draft-07) of the answers of all commands."""
+    """Return the JSON Schema (draft-07) of the answers of all commands but the lines of `kurbel sweep`."""
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "An answer of kurbel",
         **_object(
             {"kurbel": _TEXT, "format": {"const": FORMAT}, "command": _TEXT},
-            machine=_TEXT,
+            machine={"type": ["string", "null"], "description": "null where a check finds none in the file"},
             inputs=_list("input"),
             overrides=_TEXTS,
             versions={"type": "object", "additionalProperties": _TEXT},
             head=_TEXTS,
             cylinders=_list("part"),
+            bearings=_list("part"),
             ratios=_list("ratio"),
             scenes=_list("part"),
             findings=_list("finding"),

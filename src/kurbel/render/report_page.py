@@ -19,8 +19,10 @@ _STYLE = (
     "header{border-bottom:2px solid var(--ink);margin-bottom:1rem}nav ul{columns:16rem;padding-left:1.2rem}\n"
     "figure{margin:1rem 0}"
     "figure svg{width:100%;min-width:30rem;max-width:52rem;height:auto;display:block}figcaption{color:var(--faint)}\n"
-    ".pair{display:grid;grid-template-columns:1fr 1fr;gap:1rem}.pair>*{min-width:0}"
-    "@media (max-width:64rem){.pair{grid-template-columns:1fr}}\n"
+    # side by side only where both pictures have the width below which they scroll
+    "main:has(.pair){max-width:96rem}"
+    ".pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(30rem,100%),1fr));gap:1rem}"
+    ".pair>*{min-width:0}\n"
     "@media print{figure svg{min-width:0;max-height:24cm}nav{break-after:page}a{color:inherit;text-decoration:none}"
     ".pair{display:block;break-inside:avoid}}\n"
 )

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import Any, NamedTuple
 
+from kurbel.designs.chosen import Unit
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.csv_text import _harmless, _quoted
@@ -58,8 +59,14 @@ def csv_rows(titles: Titles, rows: Iterable[Any], look: Look, headed: bool = Tru
     separator = ";" if look.comma else ","
     if headed:
         yield separator.join(_quoted(_harmless(name), separator) for name in titles.whole) + "\n"
+    plain = float if look.digits is None and not look.comma else None
     for row in rows:
-        yield separator.join([_csv_cell(value, look, separator) for value in titles.values(row)]) + "\n"
+        cells = [
+            # most are numbers in full, which `exact` writes like this in five times the time
+            repr(value + 0.0) if type(value) is plain else _csv_cell(value, look, separator)
+            for value in titles.values(row)
+        ]
+        yield separator.join(cells) + "\n"
 
 
 def _csv_cell(value: Any, look: Look, separator: str) -> str:
@@ -95,6 +102,8 @@ def _cell(value: Any, look: Look, in_full: bool = False) -> str:
     """Return a value as text, its number to four digits, or in full as csv has it."""
     if value is None:
         return ""
+    if isinstance(value, Unit) and not in_full:
+        return look.charset.unit(value)
     if isinstance(value, str):
         return _harmless(look.charset.text(value)) if in_full else look.charset.text(value)
     if isinstance(value, tuple):

@@ -82,7 +82,8 @@ def everything(case: Case) -> None:
 
 _NOTES = (
     "Error: the largest relative error against a reference of 40 digits by another method; where the exact value is "
-    "zero, relative to the largest value. ulp: the same in units of the last place, below 1e-12.",
+    "zero, relative to the largest value. Of model and data it is the largest difference over the cycle, relative to "
+    "the largest value. ulp: the same in units of the last place, below 1e-12.",
     "Ratio: median time over that of kurbel's own method. Evaluations: crank angles at which the motion was computed.",
     "Points: divisions of a turn, or a tolerance. A march counts as periodic when all further cycles would "
     "change the speed by less than 1e-9 of its swing, or its tolerance; it is given up after 12 (quick: 4) cycles.",

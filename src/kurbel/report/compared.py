@@ -87,7 +87,7 @@ def compared(path: Path, quantity: Quantity, figure: float | Expected, where: st
         return Unjudged(path, UsageError(f"{path_text(path)} ({where}): {too_large(quantity)}"))
     judge = _met if isinstance(figure, Expected) else _kept
     text, verdict, good = judge(quantity, figure, value)  # type: ignore[arg-type]
-    return Entry(quantity.id, f"{text}  {verdict}  ({where})", "info" if good else "error", path)
+    return Entry(str(path[-1]), f"{text}  {verdict}  ({where})", "info" if good else "error", path)
 
 
 def _kept(quantity: Quantity, bound: float, value: float) -> tuple[str, str, bool]:
@@ -141,7 +141,8 @@ def _beyond_by_sign(
         if -value * upward > abs(bound) * (1 + _ROUNDING):
             size = _shown(value, declared[other].kind, getattr(bound, "unit", ""))
             text = f"{other} = {size} is beyond it with the other sign; {way}  ({where})"
-            yield Entry(name, text, "warning", _path("limits", name, bound))
+            path = _path("limits", name, bound)
+            yield Entry(str(path[-1]), text, "warning", path)
 
 
 def _shown(value: float, kind: str, unit: str) -> str:

@@ -55,6 +55,16 @@ def _notes(case: Case) -> Iterable[str]:
     yield from guide_notes(case)
     yield from _rod_notes(case)
     yield from _rod_load_notes(case)
+    yield from _trace_notes(case)
+
+
+def _trace_notes(case: Case) -> Iterable[str]:
+    ends = (end for forces in case.cylinders for gas in forces.drive.gas for end in (gas.head, gas.crank))
+    if any(getattr(getattr(end, "trace", None), "even", False) for end in ends):
+        yield (
+            "ΔA/A of a trace at equal angles is no rounding: the indicated work is that of the trapezoid rule on the "
+            "samples, the quadrature follows straight lines between them; it shows what their spacing leaves open."
+        )
 
 
 def _rod_notes(case: Case) -> Iterable[str]:
@@ -119,4 +129,4 @@ def _subject(case: Case, forces: CylinderForces, found: "Callable[[], Sequence[N
             why = "are within the noise of the trace and no Druckwechsel"
             yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
 
-    return Subject(cylinder.name, forces.answering, at, forces.lists, left, warnings, source=forces)
+    return Subject(cylinder.name, tuple(forces.answering), at, forces.lists, left, warnings, source=forces)

@@ -7,15 +7,18 @@ from typing import TYPE_CHECKING
 
 from kurbel.declared.unit_systems import show
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.piston import Piston
 
 if TYPE_CHECKING:
     from kurbel.machine.indicator import Card
-    from kurbel.machine.piston import Piston
 
 _LARGEST_BORE = 5.0  # m; the widest cylinder built, of the Cruquius engine of 1849, has 3.66 m
 _LARGEST_MASS = 1e5  # kg going to and fro in one cylinder; those of the largest marine diesels weigh some 2e4
 _HIGHEST_SPEED = 1000.0  # 1/s; model racing engines stay below 700
 _ASK = "is beyond anything built; is its unit right?"
+_LARGEST_FLUCTUATION = 0.25  # of what the books let vary most, crushers and hammers, 1/5
+_EXPONENTS = 0.9, 1.7  # wet steam that dries as it expands; a gas of single atoms without heat
+LARGEST_PEAK = 300e5  # Pa; of combustion engines
 _SAME_PLACE = 1e-9  # m
 _SAME_ANGLE = 1e-6  # degrees
 _PLAIN = 0.02
@@ -23,9 +26,15 @@ _PLAIN = 0.02
 
 
 def speed_notes(machine: Machine) -> Iterable[str]:
-    """Yield a note on a speed that no crank has reached."""
+    """Yield a note on a speed that no crank has reached, and on a wish that hardly holds it."""
     if machine.speed is not None and machine.speed > _HIGHEST_SPEED:
         yield f"a speed of {show(machine.speed, 'speed')} {_ASK}"
+    wanted = machine.flywheel.fluctuation if machine.flywheel else None
+    if wanted is not None and wanted > _LARGEST_FLUCTUATION:
+        yield (
+            f"a wanted fluctuation of {wanted:g} lets the speed vary between {1 - wanted / 2:g} and {1 + wanted / 2:g} "
+            "times its mean; those of the books are 1/5 to 1/300: is it right?"
+        )
 
 
 def size_notes(cylinder: Cylinder) -> Iterable[str]:
@@ -38,6 +47,18 @@ def size_notes(cylinder: Cylinder) -> Iterable[str]:
         moving = cylinder.masses.parts + (rod.mass if rod else 0.0)
         if moving > _LARGEST_MASS:
             yield f"a mass of {show(moving, 'mass')} in moving parts {_ASK}"
+
+
+def exponent_notes(piston: "Piston") -> Iterable[str]:
+    """Yield a note on each exponent of a card by which no gas expands or is compressed."""
+    least, most = _EXPONENTS
+    ends = (piston.indicator.head_end, piston.indicator.crank_end) if piston.indicator else ()
+    for end, chamber in zip(("head end", "crank end"), ends):
+        given = {getattr(chamber, key) for key in ("exponent", "expansion_exponent") if hasattr(chamber, key)}
+        for value in sorted(given):
+            if not least <= value <= most:
+                said = f"an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
+                yield f"{piston.name}, {end}: {said}"
 
 
 def pin_notes(machine: Machine) -> Iterator[str]:

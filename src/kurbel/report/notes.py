@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kurbel.machine import Cylinder, Machine
 from kurbel.report.alike import grouped, together
-from kurbel.report.given import card_end_notes, pin_notes, size_notes, speed_notes
+from kurbel.report.given import card_end_notes, exponent_notes, pin_notes, size_notes, speed_notes
 
 if TYPE_CHECKING:
     from kurbel.solver.case import Case
@@ -33,7 +33,7 @@ def machine_notes(machine: Machine, case: "Case | None" = None) -> tuple[Note, .
         Note(cylinder.name, text)
         for cylinder in machine.cylinders
         for piston in cylinder.pistons
-        for text in card_end_notes(piston)
+        for text in (*card_end_notes(piston), *exponent_notes(piston))
     ]
     found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
     found += [Note(None, text) for text in speed_notes(machine)]

@@ -33,21 +33,19 @@ def shown_columns(
     at: takes angles (k,) and returns a state whose attributes are the columns, (k,) in SI, or None.
     Raises UsageError where one is not finite.
     """
-    wanted, everywhere = dict.fromkeys((phi, *columns)), at(_EVERYWHERE)
+    wanted = dict.fromkeys((phi, *columns))
     found: dict[Quantity, array[float]] = {}
+    sizes: dict[Quantity, float] = {}
     for start in range(0, len(angles), _AT_ONCE):
-        degrees = np.asarray(angles[start : start + _AT_ONCE], dtype=float)
+        degrees = np.append(angles[start : start + _AT_ONCE], _EVERYWHERE)
         state = at(degrees)
         for column in wanted:
             values = degrees if column is phi else getattr(state, column.id, None)
             if values is not None:
-                found.setdefault(column, array("d")).frombytes(np.asarray(values, dtype=float).tobytes())
-    return tuple(
-        shown_column(
-            column, values, system, 0.0 if column is phi else float(np.abs(getattr(everywhere, column.id)).max())
-        )
-        for column, values in found.items()
-    )
+                rows, everywhere = np.split(np.asarray(values, dtype=float), [-len(_EVERYWHERE)])
+                found.setdefault(column, array("d")).frombytes(rows.tobytes())
+                sizes[column] = 0.0 if column is phi else float(np.abs(everywhere).max())
+    return tuple(shown_column(column, values, system, sizes[column]) for column, values in found.items())
 
 
 def shown_column(

@@ -27,7 +27,8 @@ Item = TypeVar("Item")
 def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, progress: Progress) -> Document:
     """Return two machines side by side. progress: is told what is being done."""
     first, second = _names(cases)
-    sections = [Section("input", "What was given differently", tuple(_given(given, first, second)))]
+    told = (*_files(cases, (first, second)), *_given(given, first, second))
+    sections = [Section("input", "What was given differently", told)]
     with np.errstate(all="ignore"):
         for command in COMMANDS:
             progress(command.title.lower())
@@ -49,6 +50,13 @@ def _given(given: Sequence[Given], first: str, second: str) -> Iterator[Grid | s
     yield Grid("Keys", ("Key", first, second), tuple(rows)) if rows else "Nothing: both files give the same."
 
 
+def _files(cases: Sequence[Case], names: Sequence[str]) -> Iterator[str]:
+    """Yield which file describes which machine."""
+    files = [case.machine.origin.name for case in cases if case.machine.origin]
+    if len(files) == len(names):
+        yield "; ".join(f"{name} is that of {file}" for name, file in zip(names, files)) + "."
+
+
 def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterator[Grid | Pair]:
     """Yield the key values of both machines, cylinder beside cylinder, equal ones once, and then the pictures."""
     both = [_had(partial(subjects_of, case, command.word)) for case in cases]
@@ -61,7 +69,9 @@ def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterato
     for declared in PICTURES:
         if declared.command == command.word:
             drawn = [_had(partial(pictures_if_any, case, declared, Wish(system))) for case in cases]
-            yield from (Pair(left, right) for left, right in zip_longest(*drawn))
+            # each picture is named as its machine is here
+            called = [[one._replace(machine=name) for one in ones] for ones, name in zip(drawn, _names(cases))]
+            yield from (Pair(left, right) for left, right in zip_longest(*called))
 
 
 def _had(found: Callable[[], Iterable[Item]]) -> list[Item]:

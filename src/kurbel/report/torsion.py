@@ -276,8 +276,8 @@ def _notes(found: ShaftVibration, wanted: Wanted, critical: Sequence[Critical]) 
     if not found.machine.cylinders and found.machine.effort:
         yield f"The effort acts on {found.line.masses[0].name}, the first mass."
     if found.pieces:
-        orders = f"{_listed([f'{order:g}' for order in found.orders])} together"
-        orders = "all orders together" if found.steady else orders
+        orders = "all orders" if found.summed is None else _listed([f"{order:g}" for order in found.summed])
+        orders += " together"
         if found.remainder is not None:
             orders += f" (higher ones add about {show(found.remainder, 'torque', figures=2)} or less)"
         taker = "what holds it" if found.chain.ground else found.line.masses[found.line.load].name

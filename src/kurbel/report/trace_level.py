@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from kurbel.report.given import LARGEST_PEAK
 from kurbel.report.trace_readings import ENGINE, Reading, in_bar, zero_text
 from kurbel.solver.pressure.exponents import AS_GIVEN, COMPRESSION, Supposed, exponent
 
@@ -13,9 +14,8 @@ _SENSIBLE = 1.2, 1.4
 """Exponents of a compression of air or mixture; less is wet or leaks, more than that of air cannot be."""
 _AIMED = 1.32
 _SLACK = 0.02
-_LARGEST_PEAK = 300e5
 _SMALLEST_PEAK = 1e5
-"""Pa between which cylinders peak, where no clearance tells more."""
+"""Pa above which cylinders peak, where no clearance tells more; and at most LARGEST_PEAK."""
 _TO_COMPRESSION = 0.25, 8.0
 """Peak over what the compression from the ambient gives: throttled by three quarters, or supercharged and fired."""
 _USUAL_PEAK = 60e5
@@ -94,7 +94,7 @@ def _peaks(reading: Reading) -> tuple[float, float, float]:
         compressed = setting.ambient * (1 + 1 / clearance) ** _AIMED
         return _TO_COMPRESSION[0] * compressed, max(_TO_COMPRESSION[1] * compressed, _SMALLEST_PEAK), 2 * compressed
     four_stroke = setting.cycle == 720 and setting.head_end  # which always compresses; a Stirling engine hardly does
-    return (_SMALLEST_PEAK + setting.ambient if four_stroke else 0.0), _LARGEST_PEAK, _USUAL_PEAK
+    return (_SMALLEST_PEAK + setting.ambient if four_stroke else 0.0), LARGEST_PEAK, _USUAL_PEAK
 
 
 def _of_level(reading: Reading) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Machine
+from kurbel.report.given import LARGEST_PEAK
 from kurbel.report.guide import guide_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.brake import Brake
@@ -25,6 +26,7 @@ def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
         forces.refuse_locking()  # first, with an angle that does not depend on the step
         yield from _balance_warnings(forces)
         yield from _bound_warnings(forces)
+        yield from _pressure_warnings(forces)
         yield from _reversal_warnings(forces)
         yield from guide_warnings(forces)
 
@@ -93,6 +95,16 @@ def _bound_warnings(forces: CylinderForces) -> Iterable[str]:
         if bound and found and found.value > bound:
             shown, most = show(found.value, quantity.kind), show(bound, quantity.kind)
             yield f"{quantity.text[0].lower()}{quantity.text[1:]}: {shown} is above {most}"
+
+
+def _pressure_warnings(forces: CylinderForces) -> Iterable[str]:
+    """Yield a pressure that no engine has had; pumps and compressors have more, and traces are judged by themselves."""
+    highest, traced = forces.p_max, any(gas.traced for gas in forces.drive.gas)
+    if highest and not traced and highest.value > LARGEST_PEAK and (forces.mean_pressure or 0.0) > 0:
+        yield (
+            f"a pressure of {show(highest.value, 'pressure')} is more than engines have, at most "
+            f"{show(LARGEST_PEAK, 'pressure')}; is its unit right?"
+        )
 
 
 _LEAST_REVERSAL = 15.0, 0.03

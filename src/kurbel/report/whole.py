@@ -47,7 +47,6 @@ COMMANDS = (
 def whole_report(case: Case, given: Given, system: str, step: float, progress: Progress) -> Document:
     """Return everything that a machine has. progress: is told what is being done."""
     stepped(step, 360.0)  # a step that is none is refused at once
-    progress("reading and checking")
     found = checked(case.machine)
     sections: list[Section | None] = [_input(case, given, found)]
     left_out: list[LeftOut] = []

@@ -1,6 +1,6 @@
 """Results by name: key values by id or printed symbol, and all columns at once."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -60,7 +60,7 @@ class Results(Shown):
         return COMMON
 
     @property
-    def answering(self) -> tuple[Any, ...]:
+    def answering(self) -> Iterable[Any]:
         """What answers key values, the first that knows one."""
         return (self,)
 
@@ -153,7 +153,7 @@ def _only(name: str, known: dict[str, Quantity], what: str) -> str:
     return found[0]
 
 
-def answered(results: tuple[Any, ...], quantity: Quantity) -> Any:
+def answered(results: Iterable[Any], quantity: Quantity) -> Any:
     """Return what the results have for a key value, in SI; None where they have none."""
     for one in results:
         if quantity.asks and hasattr(type(one), quantity.asks[0]):

@@ -9,7 +9,6 @@ from kurbel.declared.forms.records import Record, Variant
 from kurbel.declared.forms.scalars import (
     Choice,
     Count,
-    FilePath,
     Number,
     Physical,
     Text,
@@ -27,7 +26,6 @@ __all__ = [
     "ColumnRange",
     "Count",
     "Expectations",
-    "FilePath",
     "FiringOrder",
     "Inline",
     "Keyed",

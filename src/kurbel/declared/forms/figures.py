@@ -71,11 +71,11 @@ class _Figures(Form):
             for name in (id, quantity.symbol, quantity.ascii_symbol)
             if id not in lists and called(name, known.values()) == (id,)
         }
-        return {"type": "object", "additionalProperties": False, "minProperties": 1, "properties": properties}
+        return {"type": "object", "additionalProperties": False, "properties": properties}
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read every figure by the form of its quantity."""
-        if not isinstance(value, dict) or not value:
+        if not isinstance(value, dict):  # an empty one, as --set limits={} writes it, takes off those of the file
             refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
         known, lists = self.known()
         found: dict[str, Any] = {}

@@ -9,6 +9,7 @@ from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, con
 from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, glued_hint, kind_of
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.near_words import near
+from kurbel.numerics.arithmetic import is_number
 
 _TOO_EXTREME = "these numbers are too large or too small to compute with"
 
@@ -220,11 +221,11 @@ def _unknown_message(name: str, meant: str, home: str) -> str:
 
 def _finite(born: Any, values: Tree) -> bool:
     """Return whether every number of a record is finite, or infinite by a word of the file or by default."""
-    meant = any(value == math.inf for value in values.values() if isinstance(value, float))
+    meant = any(value == math.inf for value in values.values() if is_number(value))
     return all(
-        math.isfinite(value) or (value == math.inf and (meant or getattr(type(born), name, 0) == math.inf))
+        abs(value) < math.inf or (value == math.inf and (meant or getattr(type(born), name, 0) == math.inf))
         for name, value in vars(born).items()
-        if isinstance(value, float)
+        if is_number(value)
     )
 
 

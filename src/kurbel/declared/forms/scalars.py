@@ -1,8 +1,8 @@
-"""Forms of one line: numbers, values with a unit, counts, words, texts, file names."""
+"""Forms of one line: numbers, values with a unit, counts, words, texts."""
 
-import os
 import re
 from abc import abstractmethod
+from collections.abc import Sequence
 from functools import cache
 from operator import ge, gt, le, lt
 from typing import Any, NoReturn
@@ -13,9 +13,10 @@ from kurbel.declared.kinds import KINDS
 from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio, plain
 from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import example, parse_quantity, unit_example, unit_factor, unit_names
+from kurbel.declared.units import example, parse_quantity, plain_quantities, unit_example, unit_factor, unit_names
 from kurbel.errors import Fault, Path, RuleError, UnitError
 from kurbel.near_words import did_you_mean
+from kurbel.numerics.arithmetic import is_number
 
 Words = tuple[tuple[str, float], ...]
 
@@ -81,8 +82,23 @@ class _Bounded(Scalar):
             value = self.number(text)
         except UnitError as error:
             refused(f"{error}{glued_hint(text)}")
-        wrong = self.out_of_bounds(value) or out_of_size(value, self.kind)
+        wrong = self._wrong(value)
         return refused(f"{text} {wrong}") if wrong else value
+
+    def numbers(self, texts: Sequence[str]) -> list[float] | None:
+        """Return what texts become that are plain numbers within the bounds; None where one is not."""
+        found = plain_quantities(texts, self.kind)
+        if found is None:
+            return None
+        from kurbel.numerics.varied import Parted, varied
+
+        try:
+            return None if self._wrong(varied(found)) else found
+        except Parted:
+            return None
+
+    def _wrong(self, value: Any) -> str:
+        return self.out_of_bounds(value) or out_of_size(value, self.kind)
 
     @abstractmethod
     def number(self, text: str) -> float:
@@ -109,7 +125,7 @@ class _Bounded(Scalar):
             (self.below, lt, "is too large; it must be less than"),
             (self.most, le, "is too large; it must be at most"),
         ):
-            if bound is not None and isinstance(value, (int, float)) and not holds(value, bound):
+            if bound is not None and is_number(value) and not holds(value, bound):
                 return f"{wrong} {show(bound, self.kind) if bound else '0'}"
         return ""
 
@@ -197,6 +213,9 @@ class Count(_Bounded):
         if self.most == self.least != whole:
             refused(f"{whole} is not supported; it must be {self.least}")
         return whole
+
+    def numbers(self, texts: Sequence[str]) -> None:
+        """Return nothing: what is no whole number must be told."""
 
     def expected(self) -> str:
         return "a whole number"
@@ -290,26 +309,6 @@ class Truth(Choice):
 
     def schema(self, definitions: Schema) -> Schema:
         return {"type": "boolean"}
-
-
-class FilePath(Scalar):
-    """The path of a file, relative to the machine file; becomes a path that can be opened."""
-
-    def parse(self, text: str, folder: str) -> str:
-        full = os.path.join(folder, text)
-        if os.path.isdir(full):
-            refused(f"'{shown(text)}' is a folder; name the file in it")
-        if os.path.exists(full) and not os.path.isfile(full):
-            refused(f"'{shown(text)}' is a device or a pipe; name a file that can be read again")
-        if not os.path.isfile(full):
-            refused(f"there is no file '{shown(text)}' in {shown(folder) if folder else 'the working directory'}")
-        return full
-
-    def expected(self) -> str:
-        return "the name of a file"
-
-    def schema(self, definitions: Schema) -> Schema:
-        return {"type": "string", "minLength": 1}
 
 
 class UnitName(Scalar):

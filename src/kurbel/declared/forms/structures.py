@@ -1,7 +1,7 @@
 """Forms made of others: lists, alternatives, mappings with one telling key, records whose keys stand among others."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from kurbel.declared.bounds import MOST_ITEMS
@@ -79,6 +79,9 @@ class OneOf(Form):
         if alike:  # of a word and a number, the one that it looks like
             return next((form for form in alike if form.suits(value)), alike[0]).read(reading, value, path)
         return refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+
+    def numbers(self, texts: Sequence[str]) -> list[float] | None:
+        return next((form.numbers(texts) for form in self.forms if form.shape is str and form.suits(texts[0])), None)
 
     def parts(self) -> Iterable[tuple[str, Form]]:
         return [("", form) for form in self.forms]

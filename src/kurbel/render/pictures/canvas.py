@@ -1,5 +1,8 @@
 """A grid of characters to draw on: eight dots of Braille to a character, or one letter where there are none."""
 
+from itertools import groupby
+from operator import itemgetter
+
 import numpy as np
 
 from kurbel.arrays import Array
@@ -33,22 +36,19 @@ class Canvas:
         """Draw a line through places (n,), counted in dots from the upper left corner; what lies beyond is cut off."""
         across, down = self.fine
         steps = np.maximum(np.ceil(np.maximum(np.abs(np.diff(x)), np.abs(np.diff(y)))), 1).astype(int)
-        way = np.concatenate([k + np.arange(n) / n for k, n in enumerate(steps)] + [np.array([len(x) - 1.0])])
-        number = np.arange(len(x))
-        columns, rows = (np.rint(np.interp(way, number, one)).astype(int) for one in (x, y))
+        piece = np.repeat(np.arange(len(steps)), steps)
+        way = np.append(piece + (np.arange(len(piece)) - (np.cumsum(steps) - steps)[piece]) / steps[piece], len(steps))
+        columns, rows = (np.rint(np.interp(way, np.arange(len(x)), one)).astype(int) for one in (x, y))
         inside = (columns >= 0) & (columns < across) & (rows >= 0) & (rows < down)
-        for column, row in set(zip(columns[inside].tolist(), rows[inside].tolist())):
-            self._dot(column, row, role)
-
-    def _dot(self, column: int, row: int, role: str) -> None:
+        columns, rows = columns[inside], rows[inside]
         if self.braille:
-            place = row // 4, column // 2
-            self._bits[place] |= _DOTS[row % 4, column % 2]
-        else:
-            place = row, column
-            if role.startswith("curve") or self._letters[row][column] == " ":
+            dots = _DOTS[rows % 4, columns % 2]
+            columns, rows = columns // 2, rows // 4
+            np.bitwise_or.at(self._bits, (rows, columns), dots)
+        for column, row in set(zip(columns.tolist(), rows.tolist())):
+            if not self.braille and (role.startswith("curve") or self._letters[row][column] == " "):
                 self._letters[row][column] = LOOKS[int(role[5:])].character if role.startswith("curve") else "."
-        self._roles[place[0]][place[1]] = role
+            self._roles[row][column] = role
 
     def write(self, column: int, row: int, text: str, role: str) -> None:
         """Write a text over what is drawn."""
@@ -70,13 +70,8 @@ class Canvas:
 
     def line_of(self, row: int) -> Line:
         """Return a row of the canvas, neighbours of one role as one piece."""
-        pieces: list[Piece] = []
-        for column in range(self.columns):
-            bits = int(self._bits[row, column])
-            letter = chr(_BLANK + bits) if bits else self._letters[row][column]
-            role = self._roles[row][column]
-            if pieces and pieces[-1].role == role:
-                pieces[-1] = Piece(pieces[-1].text + letter, role)
-            else:
-                pieces.append(Piece(letter, role))
-        return tuple(pieces)
+        drawn = zip(self._bits[row].tolist(), self._letters[row], self._roles[row])
+        return tuple(
+            Piece("".join(chr(_BLANK + bits) if bits else letter for bits, letter, _ in alike), role)
+            for role, alike in groupby(drawn, key=itemgetter(2))
+        )

@@ -10,7 +10,9 @@ from kurbel.arrays import Array, ComplexArray
 Places = tuple[tuple[float, float], ...]
 
 
-_SUBSCRIPT = re.compile(r"(?:(?<=\b\w)|(?<=Δ\w))_([^\s|]+?)(?=,?\s|,?$|\|)")
+_DOTS = "[\u0307\u0308]"
+"""What stands over the letter of a derivative by time."""
+_SUBSCRIPT = re.compile(rf"(?:(?<=\b\w)|(?<=\b\w{_DOTS})|(?<=Δ\w))_([^\s|]+?)(?=,?\s|,?$|\|)")
 
 
 class Line(NamedTuple):
@@ -47,6 +49,8 @@ class Text(NamedTuple):
         (['T', 'max', ' 5.1 kN'], ['F', 'x', ', F', 'y', ' in N'])
         >>> Text(0, 0, "my_engine").levels, Text(0, 0, "A_1", plain=True).levels
         (['my_engine'], ['A_1'])
+        >>> Text(0, 0, "θ̇_max 6.3 rad/s").levels
+        ['θ̇', 'max', ' 6.3 rad/s']
         """
         return [self.text] if self.plain else _SUBSCRIPT.split(self.text)
 

@@ -33,7 +33,7 @@ def sampled(breaks: Array, values: Values, fineness: float) -> Samples:
     """
     low, high = _intervals(breaks)
     within = np.repeat((breaks[:-1] + breaks[1:]) / 2, _counts(breaks))
-    at_low, at_high = values(low, within), values(high, within)
+    at_low, at_high = np.split(values(np.append(low, high), np.append(within, within)), 2, axis=1)
     known = [(low, within, at_low), (high, within, at_high)]
     height = np.ptp(np.concatenate((at_low, at_high), axis=1), axis=1)[:, None] * fineness
     for _ in range(_ROUNDS):

@@ -20,8 +20,7 @@ class Assembled:
         new = (before.low[there] != grid.low) | (before.high[there] != grid.high)
         # of each piece the place among those of the coarser grid with the new ones after them
         self._place = np.where(new, len(before.low) + np.cumsum(new) - 1, there)
-        self.phi = grid.degrees
-        self._coarser, self._finer = coarser, drive.on(grid, np.flatnonzero(new))
+        self._coarser, self._finer = coarser, drive.on(grid.part(new))
         self._found: dict[str, Any] = {}
 
     def __getattr__(self, name: str) -> Any:

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle, jet_angle
 from kurbel.declared.units import GRAVITY
@@ -17,7 +15,7 @@ from kurbel.machine.variants import taken
 from kurbel.mechanisms import fan
 from kurbel.numerics.arithmetic import some, sqrt, where
 from kurbel.numerics.gauss import LOBATTO_12
-from kurbel.numerics.grid import Cuts, Grid
+from kurbel.numerics.grid import Cuts, Grid, Pieces
 from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.state import State
 
@@ -222,11 +220,10 @@ class Drive:
         """Return the state with slopes by φ at crank angles (n,), on the sides of jumps that hold `within`."""
         return State(self, jet_angle(degrees, beyond), within)
 
-    def on(self, grid: Grid, rows: Any = np.s_[:]) -> State:
-        """Return the state at the nodes of a grid, or of these pieces of it."""
-        drive = self if grid.variant is None else self.taken(grid.variant[rows][:, None])
-        within = np.broadcast_to(grid.within[rows, :1], grid.degrees[rows].shape)
-        return State(drive, CrankAngle.of(np.asfortranarray(grid.degrees[rows]), grid.beyond[rows]), within)
+    def on(self, pieces: Pieces) -> State:
+        """Return the state at the nodes of pieces, each on its side of every jump."""
+        drive = self if pieces.variant is None else self.taken(pieces.variant[:, None])
+        return State(drive, CrankAngle.of(pieces.degrees, pieces.beyond, pieces.right_angle), pieces.within)
 
     @cached_property
     def cuts(self) -> Cuts:

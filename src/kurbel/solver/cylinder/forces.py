@@ -1,6 +1,7 @@
 """Forces and key values of one cylinder; each is computed when it is asked for, and none depends on a step."""
 
 import math
+from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -52,16 +53,15 @@ class CylinderForces(Searched, Results):
         return self.drive.name
 
     @property
-    def answering(self) -> tuple[Any, ...]:
-        """What answers key values, the first that knows one."""
-        gas, brake = self.drive.own_gas, self.drive.machine.brake_power
-        return (
-            self,
-            self.motion,
-            *((self.rod_load, self.pin_works, self.guide_load) if self.drive.has_force else ()),
-            *((self.indicated,) if gas else ()),
-            *((self.brake,) if gas and brake is not None else ()),
-        )
+    def answering(self) -> Iterator[Any]:
+        """What answers key values, the first that knows one; the others need not be made for it."""
+        yield from (self, self.motion)
+        if self.drive.has_force:
+            yield from (self.rod_load, self.pin_works, self.guide_load)
+        if self.drive.own_gas:
+            yield self.indicated
+            if self.drive.machine.brake_power is not None:
+                yield self.brake
 
     @cached_property
     def pin_works(self) -> "PinWorks":

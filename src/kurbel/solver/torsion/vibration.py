@@ -19,7 +19,7 @@ from kurbel.solver.shaft_line.modes import Holzer, Modes
 from kurbel.solver.torsion.forced import Excitation, Vibration, excitation, stress
 from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.turning.effort import CylinderEffort, reduced_inertia
-from kurbel.solver.turning.harmonics import MachineOrders, every_order, phases
+from kurbel.solver.turning.harmonics import HIGHEST, MachineOrders, every_order, phases
 from kurbel.solver.turning.machine_effort import MachineEffort, MovingInertia
 
 NEAR = 0.1
@@ -202,10 +202,25 @@ class ShaftVibration(Results):
         except Unsettled:
             return None
 
+    @cached_property
+    def together(self) -> SteadyMotion | Vibration | None:
+        """The motion at the working speed of all orders; where only orders tell it, of four times the usual ones."""
+        if self.steady or self.vibration is None or not self._every:
+            return self.steady or self.vibration
+        orders = every_order(self.cycle, 4 * HIGHEST)
+        acting = excitation(MachineOrders(self._turned, orders), self.line)
+        return Vibration(self.chain, self.line, acting, self.vibration.omegas)
+
+    @property
+    def summed(self) -> Array | None:
+        """The orders that are in it, (n,); None where all are."""
+        return self.together.acting.orders if isinstance(self.together, Vibration) else None
+
     @property
     def remainder(self) -> float | None:
-        """About what orders beyond the usual ones add to any piece in N m; None where they are in it, or not wanted."""
-        return None if self.vibration is None or self.steady or not self._every else float(self.vibration.remainder[0])
+        """About what orders beyond those summed add to any piece in N m; None where they are in it, or not wanted."""
+        found = self.together
+        return float(found.remainder[0]) if self._every and isinstance(found, Vibration) else None
 
     @property
     def vibration_loss(self) -> float | None:
@@ -229,10 +244,10 @@ class ShaftVibration(Results):
     @cached_property
     def pieces(self) -> "tuple[PieceTorque, ...]":
         """The torque in every piece at the working speed; none where no forced vibration can be told."""
-        if self.vibration is None:
+        if self.together is None:
             return ()
         return tuple(
-            PieceTorque(self.steady or self.vibration, stress(self.line, piece), piece, self.piece_name(piece))
+            PieceTorque(self.together, stress(self.line, piece), piece, self.piece_name(piece))
             for piece in range(len(self.line.pieces))
         )
 

@@ -12,10 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
+from kurbel.crank_angle import CrankAngle
+from kurbel.machine.alike import gathered, work_alike
 from kurbel.numerics.gauss import GAUSS
 from kurbel.numerics.grid import Pieces
 from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.turning.machine_effort import MachineEffort
+from kurbel.solver.turning.machine_effort import Driving, MachineEffort
 from kurbel.solver.turning.torques import Sum, Torque
 
 HIGHEST = 24
@@ -28,10 +30,10 @@ _ALIKE = 1e-9
 """By what the sum of phase vectors of a major order may fall short of their number, relatively."""
 
 
-def every_order(cycle: float) -> Array:
+def every_order(cycle: float, highest: int = HIGHEST) -> Array:
     """Return the orders up to the highest: halves of a cycle of 720 degrees, whole ones of 360."""
     step = 360.0 / cycle
-    return np.asarray(step * np.arange(1, round(HIGHEST / step) + 1), dtype=float)
+    return np.asarray(step * np.arange(1, round(highest / step) + 1), dtype=float)
 
 
 class Spectrum(NamedTuple):
@@ -50,13 +52,17 @@ class Spectrum(NamedTuple):
         return self._replace(mean=self.mean + other.mean, amplitudes=self.amplitudes + other.amplitudes)
 
     def cleared(self, size: float) -> "Spectrum":
-        """Return it with 0 for what is rounding beside torques of this size in N m."""
-        return self._replace(amplitudes=np.where(np.abs(self.amplitudes) > _ROUNDING * size, self.amplitudes, 0.0))
+        """Return it with 0 for what is rounding beside torques of this size in N m, in phase or a quarter behind."""
+        cos, sin = (
+            np.where(np.abs(part) > _ROUNDING * size, part, 0.0)
+            for part in (self.amplitudes.real, self.amplitudes.imag)
+        )
+        return self._replace(amplitudes=cos + 1j * sin)
 
     def turned(self, degrees: float) -> "Spectrum":
         """Return that of the torque put earlier by an angle."""
-        turn = np.exp(1j * np.radians(np.mod(self.orders * degrees, 360.0)))
-        return self._replace(amplitudes=self.amplitudes * turn)
+        turn = CrankAngle.of(self.orders * degrees)
+        return self._replace(amplitudes=self.amplitudes * (turn.cos + 1j * np.asarray(turn.sin)))
 
     @property
     def size(self) -> float:
@@ -134,11 +140,22 @@ class CylinderOrders:
         self.in_machine = in_machine
         self.own = own
 
+    def at_throw_of(self, other: CylinderForces) -> "CylinderOrders":
+        """Return those of another cylinder that works alike, wherever its crank stands."""
+        if other is self.forces:
+            return self
+        behind = other.drive.cylinder.crank_position
+        return CylinderOrders(other, self.own.each(lambda one: one.turned(-behind)), self.own)
+
     @cached_property
     def area(self) -> float | None:
         """R A in m³ of crank radius and head-end area, by which torques become tangential pressures."""
         pistons, crank = self.forces.drive.cylinder.pistons, self.forces.drive.mechanism.crank
         return math.pi / 4 * pistons[0].bore ** 2 * crank if pistons else None
+
+
+def _alike(one: Driving, other: Driving) -> bool:
+    return work_alike(one.forces.drive.cylinder, other.forces.drive.cylinder)
 
 
 class MachineOrders:
@@ -150,8 +167,12 @@ class MachineOrders:
 
     @cached_property
     def cylinders(self) -> tuple[CylinderOrders, ...]:
-        """Those of every cylinder in which a force acts."""
-        return tuple(self._of(part.forces, part.effort, part.inertia) for part in self.turned.of_cylinders)
+        """Those of every cylinder in which a force acts; one is asked for all that work alike."""
+        found: dict[str, CylinderOrders] = {}
+        for group in gathered(self.turned.of_cylinders, _alike):
+            first = self._of(*group[0])
+            found |= {part.forces.drive.name: first.at_throw_of(part.forces) for part in group}
+        return tuple(found[part.forces.drive.name] for part in self.turned.of_cylinders)
 
     def _of(self, forces: CylinderForces, effort: Torque, inertia: Torque | None) -> CylinderOrders:
         rest = effort if inertia is None else Sum((1.0, effort), (-1.0, inertia))

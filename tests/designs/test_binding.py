@@ -1,0 +1,213 @@
+"""Machines that are bound to a file by columns of texts are those that are read one by one, and fail as these do."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kurbel.designs.binding import Binder, tree_of
+from kurbel.errors import MachineFileError, path_text
+from kurbel.machine import Machine
+from kurbel.machine_file import source
+from kurbel.machine_file.reader import read_machine
+from kurbel.machine_file.source import Source
+from kurbel.numerics.varied import Parted, Varied
+
+CONFIGS = Path(__file__).parent.parent.parent / "configs"
+
+
+def described(value: Any) -> Any:
+    """Everything that a record is made of, bit by bit, but for the file that it comes from."""
+    if isinstance(value, np.ndarray):
+        return value.tobytes()
+    if isinstance(value, tuple):
+        return tuple(map(described, value))
+    if dataclasses.is_dataclass(value):
+        return type(value), [(name, described(one)) for name, one in vars(value).items() if name != "origin"]
+    return repr(value)
+
+
+def bound(file: Source, keys: Sequence[str], start: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[int, Any]:
+    """What becomes of every row: a machine, or why there is none."""
+    found = Binder(file, (), keys, start).bound(rows)
+    machines = {row: lot.one(place) for lot in found.lots for place, row in enumerate(lot.rows)}
+    return machines | found.failures
+
+
+def read(file: Source, keys: Sequence[str], texts: Sequence[str]) -> Machine | str:
+    """The machine of a file with these values, or what is wrong with it."""
+    try:
+        return read_machine(file, [f"{key}={text}" for key, text in zip(keys, texts)])
+    except MachineFileError as error:
+        faults = [f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in error.faults]
+        return "; ".join(re.sub(r" \(with --set .*\)$", "", one) for one in faults)
+
+
+def same(found: Any, wanted: Any) -> bool:
+    """Whether two machines are made of the same, or two failures tell the same, in whatever order."""
+    if isinstance(found, str) and isinstance(wanted, str):
+        return sorted(found.split("; ")) == sorted(wanted.split("; "))
+    return bool(described(found) == described(wanted))
+
+
+KEYS = {
+    "waterworks.yaml": {
+        "rod_ratio": "4.5",
+        "speed": "61 rpm",
+        "tandem.0.indicator.head_end.constant.compression": "5 at",
+        "indicator.head_end.expansion.1.1": "9.3",
+        "masses.piston": "100 kg",
+        "friction.crosshead": "0.2",
+    },
+    "diesel-trace.yaml": {"bore": "200 mm", "indicator.head_end.trace.angle_zero": "0.1 deg"},
+    "four-cylinder-generator.yaml": {
+        "cylinders.each.bore": "250 mm",
+        "cylinders.each.indicator.head_end.otto.peak": "20 at",
+    },
+    "punch.yaml": {"flywheel.inertia": "900 kg m2"},
+}
+
+
+@pytest.mark.parametrize("name", KEYS)
+def test_a_bound_machine_is_the_one_that_is_read(name: str) -> None:
+    file, texts = source.read(CONFIGS / name), KEYS[name]
+    keys, values = tuple(texts), tuple(texts.values())
+    pairs = [value.partition(" ") for value in values]
+    start = [f"{1.1 * float(number):g} {unit}".rstrip() for number, _, unit in pairs]
+    found = bound(file, keys, start, [values, start, values])
+    assert same(found[0], read(file, keys, values))
+    assert same(found[1], read(file, keys, start))
+    assert same(found[0], found[2])
+    assert not same(found[0], found[1])
+
+
+FACTORS = (0.9, 0.97, 1.0, 1.05, 1.3, 0.5, 0.0, -1.0, 2.0, 7.0, 50.0)
+
+
+def numbers_of(tree: Any, path: str = "") -> Iterator[tuple[str, float, str]]:
+    """The dotted keys of a file under which a number stands, with it and its unit."""
+    for step, node in tree.items() if isinstance(tree, dict) else enumerate(tree):
+        inner = f"{path}{step}"
+        if not isinstance(node, str):
+            yield from numbers_of(node, f"{inner}.")
+        elif found := re.fullmatch(r"(-?[0-9.]+)(| [A-Za-z].*)", node):
+            yield inner, float(found[1]), found[2]
+
+
+def of_each_number(name: str) -> Iterator[tuple[str, list[tuple[str]], dict[int, Any], Source]]:
+    """What becomes of a file when one number of it after the other is small, large, 0, negative, infinite or a word."""
+    file = source.read(CONFIGS / name)
+    for key, number, unit in numbers_of(tree_of(file, ())):
+        if re.search(r"\.\d+\.\d+$|^kurbel$|^name$|^expect|uncertainty", key):
+            continue
+        whole = number == int(number) and not unit
+        rows = [(f"{int(number) * k if whole and k == int(k) else number * k!r}{unit}",) for k in FACTORS]
+        rows += [("infinite",), ("many",), (f"{number!r} furlongs",)]
+        start = (f"{int(number) if whole else number!r}{unit}",)
+        yield key, rows, bound(file, (key,), start, rows), file
+
+
+@pytest.mark.parametrize("name", ["waterworks.yaml", "boxer.yaml"])
+def test_every_number_of_a_file_is_bound_as_it_is_read(name: str) -> None:
+    for key, rows, found, file in of_each_number(name):
+        for row in (0, 3, 5, 6, 7, 8, 11):  # reading takes most of the time
+            assert same(found[row], read(file, (key,), rows[row])), (key, rows[row])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.yaml")), ids=lambda path: path.stem)
+def test_every_number_of_every_file_is_bound_as_it_is_read(path: Path) -> None:
+    count = 0
+    for key, rows, found, file in of_each_number(path.name):
+        count += 1
+        for row, texts in enumerate(rows):
+            assert same(found[row], read(file, (key,), texts)), (key, texts)
+    assert count > 1
+
+
+BORES = "{crank: 400 mm, rod: 2 m, speed: 50 rpm, bore: 450 mm, crank_end_rod: 100 mm, friction: {crosshead: 0.1}}"
+
+
+def test_machines_that_differ_in_numbers_are_one_lot_and_those_of_another_kind_another() -> None:
+    file = source.decode("m.yaml", BORES.encode())
+    binder = Binder(file, (), ("bore", "rod", "crank_end_rod"), ("450 mm", "2 m", "100 mm"))
+    rods = ("2 m", "infinite", "2.1 m", "2.2 m", "0.3 m")
+    found = binder.bound([(f"{400 + row} mm", rods[row % 5], "0 mm" if row % 2 else "100 mm") for row in range(100)])
+    assert sorted(len(lot.rows) for lot in found.lots) == [10, 10, 30, 30]
+    assert sorted(found.failures) == list(range(4, 100, 5))
+    assert set(found.failures.values()) == {
+        "rod: 300 mm is shorter than the crank (400 mm); the crank turns fully only with a longer rod"
+    }
+
+
+def test_several_points_of_one_card_vary_together() -> None:
+    """Each was read beside the others as the file has them: the last one alone counted."""
+    keys = [f"indicator.head_end.expansion.{place}.1" for place in (0, 1, 2)]
+    rows = [("9.5", "9.5", "6.7"), ("9.3", "9.2", "6.5"), ("9.3", "9.3", "6.7")]
+    file = source.read(CONFIGS / "waterworks.yaml")
+    found = bound(file, keys, rows[0], rows)
+    for row, texts in enumerate(rows):
+        assert same(found[row], read(file, keys, texts))
+
+
+LIKE = """
+cylinders:
+  - {name: a, crank: 1 m, rod: 5 m, bore: 1 m, masses: {piston: 3 kg}}
+  - {name: b, like: a, crank_position: 90 deg, masses: {piston: 4 kg}}
+  - {name: c, like: b, bore: 2 m, crank_position: 180 deg}
+"""
+
+
+def test_a_cylinder_that_is_like_another_varies_with_it() -> None:
+    file = source.decode("m.yaml", LIKE.encode())
+    rows = [("2 m", "5 kg"), ("3 m", "6 kg"), ("4 m", "-6 kg")]
+    found = bound(file, ("cylinders.0.bore", "cylinders.1.masses.piston"), ("1 m", "4 kg"), rows)
+    for row in (0, 1):
+        assert same(found[row], read(file, ("cylinders.0.bore", "cylinders.1.masses.piston"), rows[row]))
+    assert [one.pistons[0].bore for one in found[1].cylinders] == [3.0, 3.0, 2.0]
+    assert [one.masses.parts for one in found[1].cylinders] == [3.0, 6.0, 6.0]
+    assert found[2].startswith("cylinders[1].masses.piston: -6 kg is too small")
+
+
+def test_the_word_like_in_a_comment_makes_no_cylinder_like_another() -> None:
+    file = source.decode("m.yaml", b"{crank: 1 m, rod: 5 m, name: like new} # like any other\n")
+    found = Binder(file, (), ("rod",), ("5 m",)).bound([("4 m",), ("5 m",), ("6 m",)])
+    assert [list(lot.rows) for lot in found.lots] == [[0, 1, 2]]
+
+
+def test_numbers_of_many_variants_are_those_of_floats() -> None:
+    random = np.random.default_rng(3)
+    first, second = random.uniform(-9, 9, 50), random.uniform(1, 2, 50)
+    a, b = Varied(first), Varied(second)
+    pairs = [*zip(first.tolist(), second.tolist())]
+    for formula in (
+        lambda x, y: 2 + (x - y) * 3 - x / y + 1 / y - 2 * x,
+        lambda x, y: abs(-x) ** y + y**2 + 2**y,
+    ):
+        assert formula(a, b).values.tolist() == [formula(x, y) for x, y in pairs]
+    assert (b > 0.5) is True
+    assert (b > 2.5) is False
+    with pytest.raises(Parted) as parted:
+        bool(a > 0)
+    assert parted.value.holds.tolist() == [x > 0 for x, _ in pairs]
+    with pytest.raises(ZeroDivisionError):
+        b / (a * 0)
+    for written_for_floats in (float, round, hash, "{:g}".format, list, int):
+        with pytest.raises(TypeError):
+            written_for_floats(a)
+
+
+def test_a_row_with_more_faults_than_a_reader_tells_is_told_like_others() -> None:
+    text = "{bore: 1 m, crank: 1 m, rod: 5 m, indicator: {head_end: -0.5 bar}"
+    cylinders = ", ".join(f"{text}, name: c{place}}}" for place in range(100))
+    file = source.decode("m.yaml", f"{{ambient: 1 bar, cylinders: [{cylinders}]}}".encode())
+    found = bound(file, ("ambient",), ("1 bar",), [("0.1 bar",), ("2 bar",), ("0.2 bar",)])
+    assert found[0].startswith("cylinders[0].indicator.head_end: -0.5 bar is below the vacuum")
+    assert found[0].endswith("(reading stopped after 100 faults)")
+    assert same(found[1], read(file, ("ambient",), ("2 bar",)))
