@@ -20,25 +20,25 @@ SECONDS = 6.0
 """How long a moving mechanism takes for one cycle."""
 
 
-def scene(picture: Picture, look: Look, width: float = WIDTH) -> Scene:
-    """Return a picture laid out on this width, in points."""
-    heading = folded(look.charset.text(picture.heading), int((width - 16) / _BOLD))
+def scene(picture: Picture, look: Look) -> Scene:
+    """Return a picture laid out, in points."""
+    heading = folded(look.charset.text(picture.heading), int((WIDTH - 16) / _BOLD))
     items: list[Item] = [Text(8.0, 16.0 + 17.0 * number, text, "h", plain=True) for number, text in enumerate(heading)]
     top = _TITLE + 17.0 * (len(heading) - 1)
     rows = [picture.panels[i : i + picture.across] for i in range(0, len(picture.panels), picture.across)]
     for row in rows:
-        each = width / picture.across
+        each = WIDTH / picture.across
         placed = [
             _placed(panel, Box(k * each, top, (k + 1) * each, top), len(picture.panels)) for k, panel in enumerate(row)
         ]
         for panel, frame, scales in placed:
             items += panel_items(panel, frame, scales, look)
         top = max(frame.bottom for _, frame, _ in placed) + 4
-    legend = list(_legend(picture, top, width, look))
+    legend = list(_legend(picture, top, look))
     top += legend[-1].y - top + 10 if legend and isinstance(legend[-1], Text) else 0.0
     items += legend
     moving = any(panel.frames for panel in picture.panels)
-    return Scene(width, top, tuple(items), words_of(picture, look), SECONDS if moving else 0.0)
+    return Scene(WIDTH, top, tuple(items), words_of(picture, look), SECONDS if moving else 0.0)
 
 
 def _placed(panel: Panel, room: Box, count: int) -> tuple[Panel, Box, tuple[Scale, Scale]]:
@@ -58,11 +58,11 @@ def _placed(panel: Panel, room: Box, count: int) -> tuple[Panel, Box, tuple[Scal
     return panel, frame, (x.reach(start, start + across), y.reach(room.top + above + tall, room.top + above))
 
 
-def _legend(picture: Picture, top: float, width: float, look: Look) -> Iterator[Item]:
+def _legend(picture: Picture, top: float, look: Look) -> Iterator[Item]:
     """Yield what the marks of all panels stand for, in columns."""
     across = 4
     for number, (name, mark) in enumerate(picture.legend):
-        left, base = 12 + number % across * (width - 12) / across, top + 14 + number // across * 16
+        left, base = 12 + number % across * (WIDTH - 12) / across, top + 14 + number // across * 16
         yield Dots(((left, base - 4),), f"c{mark % len(LOOKS)}", 3.0, corners=SHAPES[mark % len(SHAPES)])
         yield Text(left + 9, base, symbol(name, look))
 

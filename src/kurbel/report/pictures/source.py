@@ -87,7 +87,7 @@ class Source:
         turns = [(quantity, value) for quantity, value in found if isinstance(value, Extreme)]
         return turns if len({value.value for _, value in turns}) == len(turns) else []  # of a level line there are none
 
-    def panel(self, ids: Sequence[str], over: str = PHI, title: str = "") -> Panel:
+    def panel(self, ids: Sequence[str], over: str = PHI) -> Panel:
         """Return a panel of columns of one kind over another column, with their extremes marked."""
         samples = self.samples((over, *ids))
         kind = self.quantity(ids[0]).kind
@@ -99,7 +99,7 @@ class Source:
         )
         marks = tuple(mark for id in ids for mark in self.marks(id, unit, over, run.unit))
         name = Words(*(", ".join(symbols) for symbols in zip(*map(self.words, ids))))
-        title = title or ("" if samples.values[1:].any() else "0 at every angle")
+        title = "" if samples.values[1:].any() else "0 at every angle"
         return Panel(run, Axis(name, unit), curves, marks=marks, title=title)
 
     def axis(self, id: str, values: Array) -> Axis:

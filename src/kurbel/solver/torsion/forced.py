@@ -149,9 +149,9 @@ class Vibration:
         high, low = self.crests
         return np.asarray((high - low) / 2)
 
-    def over(self, piece: int, degrees: Array, speed: int = 0) -> Array:
-        """Return the torque in a piece in N m at crank angles (n,) in degrees."""
-        return Spectrum(self.means[piece], self.acting.orders, self.torques[piece, speed]).at(degrees)
+    def over(self, piece: int, degrees: Array) -> Array:
+        """Return the torque in a piece in N m at crank angles (n,) in degrees, at the first of the speeds."""
+        return Spectrum(self.means[piece], self.acting.orders, self.torques[piece, 0]).at(degrees)
 
     @cached_property
     def power(self) -> Array:
