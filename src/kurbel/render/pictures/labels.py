@@ -109,6 +109,8 @@ class Taken:
                 box.meets(other) or (point and other.cuts(*_pointer(*point, box))) for other in self._boxes
             ):
                 free.append(Free(self._on_curves(box), number, left, base, box))
+                if not free[-1].crossed:
+                    break
         return min(free, default=None)
 
     def _tries(self, x: float, y: float, text: str, upward: bool) -> Iterator[Try]:
