@@ -87,7 +87,7 @@ def test_throws_that_do_not_fit_their_bearings_are_told() -> None:
         "throws 300 mm apart along the shaft do not fit bearings between them, by which they are a + b = 800 mm" in text
     )
     checked = " ".join(run("check", "-", file=spaced + SHAFT).stdout.split())
-    assert "note throws 300 mm apart along the shaft do not fit bearings between them" in checked
+    assert "bearings throws 300 mm apart along the shaft do not fit bearings between them" in checked
 
 
 def test_without_a_crankshaft_there_are_pins_only() -> None:

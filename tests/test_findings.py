@@ -65,7 +65,7 @@ def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
 def test_check_shows_the_warnings_of_every_command(path: Path) -> None:
     machine = load(path)
     case = solve(machine)
-    shown = {one.text for section in checked(machine).sections for one in section.entries if one.what == "note"}
+    shown = {one.text for section in checked(machine).sections for one in section.entries if one.severity == "warning"}
     frames = [Frame(command.word, (0.0,), None, "metric") for command in COMMANDS]
     for frame in frames:
         with suppress(UsageError):

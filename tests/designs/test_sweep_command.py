@@ -156,7 +156,14 @@ def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
     file = tmp_path / "rows.csv"
     asked = ["--vary", "rod_ratio=3:6:0.00002", "--columns", "T_max", "-o", str(file)]
     command = [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *asked, "--jobs", jobs]
-    process = subprocess.Popen(command, start_new_session=True, stderr=subprocess.PIPE, text=True)
+    # what runs in the background overlooks interrupts, and so do those that it starts
+    process = subprocess.Popen(
+        command,
+        start_new_session=True,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     while not (file.exists() and file.stat().st_size):
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does, the processes that compute among them

@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Union
 
 from kurbel.declared.forms import Number, Physical
 from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.reading import REFUSED
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
 from kurbel.frozen import frozen
@@ -38,8 +39,8 @@ def _order_fault(key: str, high: float, low_name: str, low: float) -> list[Fault
 
 def _order_fault_of(values: Mapping[str, Any], key: str, lower: str) -> list[Fault]:
     """Return the fault of two pressures, if both are there and could be read."""
-    high, low = values.get(key), values.get(lower)
-    return _order_fault(key, high, lower, low) if isinstance(high, float) and isinstance(low, float) else []
+    high, low = values.get(key, REFUSED), values.get(lower, REFUSED)
+    return [] if high is REFUSED or low is REFUSED else _order_fault(key, high, lower, low)
 
 
 def after_polytrope(pressure: float, volume: float, next_volume: float, exponent: float) -> float:

@@ -19,12 +19,13 @@ _STYLE = (
     "header{border-bottom:2px solid var(--ink);margin-bottom:1rem}nav ul{columns:16rem;padding-left:1.2rem}\n"
     "figure{margin:1rem 0}"
     "figure svg{width:100%;min-width:30rem;max-width:52rem;height:auto;display:block}figcaption{color:var(--faint)}\n"
+    "@media print{figure svg{min-width:0;max-height:24cm}nav{break-after:page}a{color:inherit;text-decoration:none}}\n"
+)
+_STYLE_OF_PAIRS = (
+    "@media screen{main{max-width:96rem}"
+    ".pair{display:grid;grid-template-columns:1fr 1fr;gap:1rem}.pair>*{min-width:0}}\n"
     # side by side only where both pictures have the width below which they scroll
-    "main:has(.pair){max-width:96rem}"
-    ".pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(30rem,100%),1fr));gap:1rem}"
-    ".pair>*{min-width:0}\n"
-    "@media print{figure svg{min-width:0;max-height:24cm}nav{break-after:page}a{color:inherit;text-decoration:none}"
-    ".pair{display:block;break-inside:avoid}}\n"
+    "@media screen and (max-width:66rem){.pair{grid-template-columns:1fr}}@media print{.pair{break-inside:avoid}}\n"
 )
 
 
@@ -32,7 +33,8 @@ def report_page(document: Document, look: Look, date: str) -> Iterator[str]:
     """Yield the page. date: what stands as its date."""
     sections = (text for section in document.sections for text in _section(section, look))
     body = chain(("<main>\n",), _head(document, look, date), sections, ("</main>\n",))
-    yield from page(look.charset.text(document.title), body, f"{_STYLE}{css()}\n")
+    style = _STYLE + _STYLE_OF_PAIRS if len(document.provenance) > 1 else _STYLE
+    yield from page(look.charset.text(document.title), body, f"{style}{css()}\n")
 
 
 def _head(document: Document, look: Look, date: str) -> Iterator[str]:

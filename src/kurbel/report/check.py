@@ -64,13 +64,13 @@ def checked(machine: Machine) -> Checked:
 
         return Case(machine)
 
-    notes = (*machine_notes(machine), *_notes_of_one_command(machine, case))
+    notes = machine_notes(machine)
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
         Section("Cranks", tuple(_crank_entries(machine))),
         Section("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
-        Section("Crankshaft", tuple(_crankshaft_entries(machine))),
+        Section("Crankshaft", tuple(_crankshaft_entries(machine, case))),
         Section("Balance", tuple(_balance_entries(machine, case))),
         Section("Shaft line", tuple(_shaft_entries(machine, case))),
         Section("Limits", tuple(one for one in entries if one.path[0] == "limits")),
@@ -83,20 +83,6 @@ def checked(machine: Machine) -> Checked:
 
 Solved = Callable[[], "Case"]
 """Returns the machine with its results; asked only where some are needed, which loads what computes them."""
-
-
-def _notes_of_one_command(machine: Machine, case: Solved) -> Iterable[Note]:
-    """Return what only `kurbel bearings` and `kurbel torsion` warn of."""
-    found: list[str] = []
-    if machine.crankshaft:
-        from kurbel.report.bearings import bearing_warnings
-
-        found += bearing_warnings(case())
-    if machine.shaft or machine.coupling:
-        from kurbel.report.torsion import torsion_warnings
-
-        found += torsion_warnings(case())
-    return (Note(None, text) for text in found)
 
 
 def _machine_entries(machine: Machine) -> Iterable[Entry]:
@@ -165,11 +151,13 @@ def _load(machine: Machine) -> str:
     return f"slip {load.slip:g}" if load.slip is not None else f"torque as the speed to the power {load.power:g}"
 
 
-def _crankshaft_entries(machine: Machine) -> Iterable[Entry]:
+def _crankshaft_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
     if machine.crankshaft is None:
         return
+    from kurbel.report.bearings import bearing_warnings
     from kurbel.solver.shaft.line import shaft_obstacle
 
+    yield from (Entry("bearings", text, "warning", ("crankshaft",)) for text in bearing_warnings(case()))
     if not shaft_obstacle(machine):
         yield Entry("computed", "loads on pins and main bearings")
     if obstacle := machine.strength_obstacle:
@@ -197,11 +185,14 @@ def _balance_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
 
 
 def _shaft_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
-    """Yield what kurbel torsion has to say of a shaft line, or why it refuses it."""
+    """Yield what kurbel torsion has to say of a shaft line or a coupling, or why it refuses it."""
+    if machine.shaft is None and machine.coupling is None:
+        return
+    from kurbel.report.torsion import torsion_left_out, torsion_warnings
+
+    yield from (Entry("torsion", text, "warning") for text in torsion_warnings(case()))
     if machine.shaft is None:
         return
-    from kurbel.report.torsion import torsion_left_out
-
     yield Entry("masses", str(len(machine.shaft.masses)))
     try:
         found = case().torsion
