@@ -128,7 +128,7 @@ def work_methods(machine: Machine, quick: bool) -> Iterator[Method]:
 
 def friction_methods(machine: Machine, quick: bool) -> Iterator[Method]:
     """Yield methods for its work of friction in J per cycle."""
-    yield Method(OWN, "Gauss 16", lambda: CylinderForces(machine, machine.cylinders[0]).friction_work)
+    yield Method(OWN, "Lobatto 12", lambda: CylinderForces(machine, machine.cylinders[0]).friction_work)
     yield from _quadratures(machine, quick, "friction_power")
 
 
