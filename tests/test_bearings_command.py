@@ -129,3 +129,19 @@ def test_ascii_has_names_for_the_directions() -> None:
     text = CliRunner(charset="ascii").invoke(kurbel, asked, input=THREE).stdout
     assert "eps_K  deg" in text
     assert "eps_S from the rod's line" in text
+
+
+def test_a_load_that_vanishes_has_no_direction_and_is_no_fault() -> None:
+    """Where the rod turns from push to pull the load on its pin is 0; the slope of its direction there is no number."""
+    file = (
+        "{speed: 75.2264 rpm, cycle: four-stroke, crank: 0.0279293 m, rod: 0.112536 m, offset: 0.0069996 m, "
+        "bore: 0.0724949 m, masses: {reciprocating: 250.351 kg}, indicator: {head_end: {unit: bar, "
+        "expansion: [[0, 33.9459], [0.736884, 14.3125], [0.973384, 1.55112], [1, 0.261974]], "
+        "compression: [[1, 0.261974], [0.973384, 27.7117], [0.736884, 8.18621], [0, 33.9459]], "
+        "intake: [[0, 0.261974], [0.736884, 8.46171], [0.973384, 4.06221], [1, 0.261974]], "
+        "exhaust: [[1, 0.261974], [0.973384, 25.3732], [0.736884, 19.6728], [0, 0.261974]]}}}"
+    )
+    result = run("bearings", "-", "-f", "json", file=file)
+    assert result.exit_code == 0
+    values = {one["id"]: one["value"] for one in json.loads(result.stdout)["bearings"][0]["key_values"]}
+    assert values["load_min"] == 0

@@ -215,7 +215,8 @@ def roots(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str, nodal: 
         found = at_brackets(grid, own, evaluate)(degrees[left])
         step = getattr(found, part) / rise[left]
         values[left] = found.value
-        degrees[left] = np.clip(degrees[left] - step, own.low, own.high)
+        moved = np.clip(degrees[left] - step, own.low, own.high)
+        degrees[left] = np.where(np.isnan(moved), degrees[left], moved)  # no polynomial tells where a slope is none
         left = left[~(np.abs(step) <= short[left])]
     own = brackets.at(left)
     at = at_brackets(grid, own, evaluate)
