@@ -9,7 +9,7 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, refuse
 from kurbel.machine.indicator import CLEARANCE
-from kurbel.machine_file.samples import Layout, layout_keys, samples_of, turned
+from kurbel.machine_file.samples import Layout, layout_keys, samples_of
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -125,11 +125,12 @@ class _Gauge(NamedTuple):
 def _from_points(points: list[Point], gauge: _Gauge, against: bool) -> "Samples":
     import numpy as np
 
+    from kurbel.machine_file.recording import Recording
     from kurbel.machine_file.whole_cycle import whole_cycle
 
     angles, values = np.array(points, dtype=float).T
     pressures = gauge.pressures(values[np.newaxis])
-    return whole_cycle(*turned(angles, pressures, lambda index: Fault(("points", index), ""), against))
+    return whole_cycle(Recording.of(angles, pressures, lambda row: Fault(("points", row), ""), against))
 
 
 def _zero(
