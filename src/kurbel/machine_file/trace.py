@@ -7,7 +7,7 @@ from kurbel.declared.forms import Choice, ColumnRange, Number, OneOf, Physical, 
 from kurbel.declared.forms.file_path import FilePath
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
-from kurbel.errors import Fault, refuse
+from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.indicator import CLEARANCE
 from kurbel.machine_file.samples import Layout, layout_keys, samples_of
 
@@ -116,7 +116,7 @@ class _Gauge(NamedTuple):
     def pressures(self, figures: "Array") -> "Array":
         """Return pressures of the shape of the figures; raises RuleError for a scale of 0."""
         if self.scale == 0:
-            refuse(Fault(("scale",), "0 leaves no pressure; write the pressure for 1 of the file"))
+            refused("0 leaves no pressure; write the pressure for 1 of the file", "scale")
         up, down = self.unit
         found = figures * up / down
         return found * (1.0 if self.scale is None else self.scale) + (self.offset or 0.0)

@@ -9,7 +9,7 @@ from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, RuleError
+from kurbel.errors import refused
 from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, turning_column
 from kurbel.mechanisms.coupler import Coupler
@@ -80,7 +80,7 @@ class FourBar(Mechanism):
         # lengths that were written in decimals meet a change point only within their rounding
         rounding = 2 * math.ulp(links[longest])
         if gap <= rounding or shortest not in ("crank", "frame"):
-            raise RuleError(Fault(("crank",), self._locked(shortest, longest, gap, rounding)))
+            refused(self._locked(shortest, longest, gap, rounding), "crank")
 
     def _locked(self, shortest: str, longest: str, gap: float, rounding: float) -> str:
         def named(name: str) -> str:

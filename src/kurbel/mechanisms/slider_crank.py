@@ -10,7 +10,7 @@ from kurbel.declared.forms import Number, Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, RuleError
+from kurbel.errors import refused
 from kurbel.frozen import frozen
 from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
@@ -112,9 +112,9 @@ class SliderCrank(Mechanism):
 
     def __post_init__(self) -> None:
         if not (0 < self.crank < math.inf and self.rod > 0 and abs(self.offset) < math.inf):
-            raise RuleError(Fault(("crank",), "crank and rod must be positive, crank and offset finite"))
+            refused("crank and rod must be positive, crank and offset finite", "crank")
         if self.rod != math.inf and total(self.rod, -self.crank, -abs(self.offset)) <= self._rounding:
-            raise RuleError(Fault(("rod",), self._too_short()))
+            refused(self._too_short(), "rod")
 
     @property
     def _rounding(self) -> float:
@@ -334,12 +334,12 @@ def _crank_of_stroke(stroke: float, rod: float | None, rod_ratio: float | None, 
     if rod is not None:
         span = (rod - half) * (rod + half)
         if span <= offset * offset:
-            raise RuleError(Fault(("rod",), f"{show(rod, 'length')} is too short for this stroke and offset"))
+            refused(f"{show(rod, 'length')} is too short for this stroke and offset", "rod")
         return half * sqrt(1 - offset * offset / span)
     assert rod_ratio is not None
     # k² u² − (1 + k²) u + (ε² + 1) = 0 for u = (R/half)², ε = e/half; the root that is 1 for ε = 0
     square, eps2 = rod_ratio * rod_ratio, (offset / half) ** 2
     root = (square - 1) ** 2 - 4 * square * eps2
     if root < 0:
-        raise RuleError(Fault(("offset",), f"{show(offset, 'length')} is too large for this stroke and rod_ratio"))
+        refused(f"{show(offset, 'length')} is too large for this stroke and rod_ratio", "offset")
     return half * sqrt((1 + square + sqrt(root)) / (2 * square))

@@ -1,6 +1,7 @@
 """Form of several columns of a file."""
 
-from kurbel.declared.forms.scalars import Patterned, refused
+from kurbel.declared.forms.scalars import Patterned
+from kurbel.errors import refused
 
 _ONE = r"[1-9][0-9]{0,4}(\s*-\s*[1-9][0-9]{0,4})?"
 _MOST = 5000

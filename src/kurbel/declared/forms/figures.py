@@ -5,13 +5,13 @@ from abc import abstractmethod
 from collections.abc import Callable, Collection
 from typing import Any, NamedTuple
 
-from kurbel.declared.forms.scalars import Number, Physical, refused
+from kurbel.declared.forms.scalars import Number, Physical
 from kurbel.declared.keys import Form, Schema
 from kurbel.declared.numerals import NUMBER, familiar
 from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import REFUSED, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.declared.units import written_unit
-from kurbel.errors import Path
+from kurbel.errors import Path, refused
 from kurbel.near_words import did_you_mean
 
 Known = Callable[[], tuple[dict[str, "Quantity"], Collection[str]]]

@@ -2,9 +2,10 @@
 
 import os
 
-from kurbel.declared.forms.scalars import Scalar, refused
+from kurbel.declared.forms.scalars import Scalar
 from kurbel.declared.keys import Schema
 from kurbel.declared.reading import shown
+from kurbel.errors import refused
 
 
 class FilePath(Scalar):

@@ -3,7 +3,8 @@
 import re
 
 from kurbel.declared.bounds import MOST_ITEMS
-from kurbel.declared.forms.scalars import Patterned, refused
+from kurbel.declared.forms.scalars import Patterned
+from kurbel.errors import refused
 
 
 class FiringOrder(Patterned):

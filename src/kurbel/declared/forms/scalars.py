@@ -5,7 +5,7 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from functools import cache
 from operator import ge, gt, le, lt
-from typing import Any, NoReturn
+from typing import Any
 
 from kurbel.declared.bounds import out_of_size, range_of
 from kurbel.declared.keys import Form, Key, Schema
@@ -14,7 +14,7 @@ from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio, plain
 from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import example, parse_quantity, plain_quantities, unit_example, unit_factor, unit_names
-from kurbel.errors import Fault, Path, RuleError, UnitError
+from kurbel.errors import Path, UnitError, refused
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.arithmetic import is_number
 
@@ -45,11 +45,6 @@ class Scalar(Form):
     @abstractmethod
     def parse(self, text: str, folder: str) -> Any:
         """Return what a text becomes; raises RuleError."""
-
-
-def refused(message: str) -> NoReturn:
-    """Raise RuleError with this message for the value itself."""
-    raise RuleError(Fault((), message))
 
 
 class _Bounded(Scalar):
