@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+import threading
 
 import pytest
 
@@ -18,6 +19,14 @@ try:
 except yaml.reader.ReaderError:
     print("refused")
 """
+
+
+@pytest.fixture(autouse=True)
+def _alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever runs the tests may have threads of its own."""
+    own = threading.active_count() - 1
+    count = threading.active_count
+    monkeypatch.setattr(threading, "active_count", lambda: count() - own)
 
 
 def test_a_late_pattern_is_the_expression_it_stands_for() -> None:
@@ -40,3 +49,15 @@ def test_a_loader_in_python_works_beside_kurbel() -> None:
     """The types that yaml guesses and the characters that it refuses are those of its late expressions."""
     done = subprocess.run([sys.executable, "-c", _BOTH_WAYS], capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("refused\n", "")
+
+
+def test_nothing_is_late_beside_another_thread() -> None:
+    done = threading.Event()
+    other = threading.Thread(target=done.wait)
+    other.start()
+    try:
+        with late_patterns():
+            assert isinstance(re.compile("a+c"), re.Pattern)
+    finally:
+        done.set()
+        other.join()

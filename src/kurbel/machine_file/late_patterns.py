@@ -5,6 +5,7 @@ of characters, takes longer than any machine file takes to be read. libyaml, whi
 """
 
 import re
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -25,8 +26,9 @@ class LatePattern:
 
 @contextmanager
 def late_patterns() -> Iterator[None]:
-    """Have `re.compile` return late patterns."""
-    re.compile = LatePattern  # type: ignore[assignment]
+    """Have `re.compile` return late patterns, where no other thread could come by one."""
+    if threading.active_count() == 1:
+        re.compile = LatePattern  # type: ignore[assignment]
     try:
         yield
     finally:
