@@ -132,7 +132,7 @@ _STEPS = 4
 
 
 def acceleration_dip(lam: Any, rho: Any) -> Extreme | None:
-    """Return the smallest b R/v² inside the stroke and its angle in degrees, or None where b is smallest at the outer dead centre.
+    """Return the smallest b R/v² inside the stroke and its angle in degrees; None where the outer dead centre has it.
 
     It exists for λ > (√21 − 3)/6 = 0.263763 (the first-order formula says 1/4). With y = −λ cos φ/cos ψ the condition
     is 3y(1 − y)(1 + y)² = ρ, which has exactly one root in (0, λ). Of an array, what has no dip is nan.

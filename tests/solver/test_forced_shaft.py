@@ -20,9 +20,8 @@ from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
 from kurbel.numerics.waves import crests
 from kurbel.solver.case import Case
-from kurbel.solver.shaft_line.chain import Chain
+from kurbel.solver.shaft_line.chain import Chain, responding, twisting
 from kurbel.solver.shaft_line.periodic import ChainEquation
-from kurbel.solver.shaft_line.response import responding, twisting
 from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.torsion.vibration import ShaftVibration
 from kurbel.solver.turning.flywheel import MachineTurning

@@ -9,8 +9,7 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray, Flags
 from kurbel.machine.shaft_line import ShaftLine
 from kurbel.numerics.waves import crests
-from kurbel.solver.shaft_line.chain import Chain
-from kurbel.solver.shaft_line.response import responding, twisting
+from kurbel.solver.shaft_line.chain import Chain, responding, twisting
 from kurbel.solver.turning.harmonics import MachineOrders, Spectrum, spectrum
 from kurbel.solver.turning.speed_lines import speed_law
 

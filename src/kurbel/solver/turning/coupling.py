@@ -16,10 +16,9 @@ from kurbel.numerics.collocation import Periodic, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import Extremes, Sampled, extremes
-from kurbel.solver.shaft_line.chain import Chain
+from kurbel.solver.shaft_line.chain import Chain, responding, twisting
 from kurbel.solver.shaft_line.modes import Modes
 from kurbel.solver.shaft_line.periodic import ChainEquation, Rise
-from kurbel.solver.shaft_line.response import responding, twisting
 from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.harmonics import spectrum
 from kurbel.solver.turning.speed import SpeedLaw
