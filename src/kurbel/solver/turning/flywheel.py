@@ -54,7 +54,7 @@ class MachineTurning(Results):
         return (self, *((self.elastic,) if self.elastic else ()), self.brake)
 
     def _columns(self, phi: Array, within: Array) -> Columns:
-        return TurningCurves(self.turned, self.crank, phi, within).columns(self.speed)
+        return TurningCurves(self, phi, within).columns()
 
     @property
     def breaks(self) -> Array:
@@ -65,14 +65,10 @@ class MachineTurning(Results):
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         from kurbel.numerics.where import where
 
-        of_speed = self.speed if column in OF_SPEED else None
-        grid = of_speed.grid if of_speed else self.excess.grid
-
         def sampled(degrees: Array, within: Array) -> Any:
-            if column in OF_SPEED:
-                return of_speed and of_speed.curves(degrees, within).get(column)
-            return TurningCurves(self.turned, self.crank, degrees, within).curve(column)
+            return TurningCurves(self, degrees, within).curve(column)
 
+        grid = self.speed.grid if column in OF_SPEED and self.speed else self.excess.grid
         samples = sampled(grid.degrees, grid.within)
         return None if samples is None else where(grid, samples, sampled, value)
 
