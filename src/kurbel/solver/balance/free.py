@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.fourier import coefficients
-from kurbel.solver.balance.circles import Circles, unit_vectors
+from kurbel.solver.balance.circles import Circles
 from kurbel.solver.shaft.weights import OwnThrow, Weight
 
 _SHOWN = 1e-9
@@ -97,8 +97,8 @@ def of_throws(throws: Sequence[OwnThrow], curvature: Curvature = lambda one, ang
         row[: len(line)] = line
     bank, late = (np.array([[getattr(throw, name)] for throw in throws]) for name in ("bank", "late"))
     products = Products(
-        masses * unit_vectors(bank - late * orders),
-        masses.conj() * unit_vectors(bank + late * orders),
+        masses * unit_vector(bank - late * orders),
+        masses.conj() * unit_vector(bank + late * orders),
         tuple(throw.place for throw in throws),
     )
     return products.with_weights(throw.weight(throw.rotating) for throw in throws)
