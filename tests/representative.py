@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from kurbel.machine.origin import Origin
 from kurbel.machine_file import load
 from kurbel.machine_file.reader import read_machine
-from kurbel.machine_file.source import Source
 from kurbel.solver.case import Case
 
 SHIPPED = sorted((Path(__file__).parent.parent / "configs").glob("*.yaml"))
@@ -25,9 +25,9 @@ def case_of(name: str) -> Case:
 
 
 @cache
-def case_from(source: Source, overrides: tuple[str, ...]) -> Case:
+def case_from(origin: Origin) -> Case:
     """The results of the machine in a text: computed once, as those above."""
-    return Case(read_machine(source, overrides))
+    return Case(read_machine(origin))
 
 
 def shipped(*names: str) -> list[pytest.ParameterSet]:
