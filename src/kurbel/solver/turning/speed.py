@@ -291,9 +291,9 @@ class SpeedDependentLoad(SpeedLine):
         torque = max(abs(extreme.value) for extreme in excess.effort_extremes)
         energy = inertia.energy(course.on(excess.grid)).value.min()
         noise = 1e-16 * min(torque, float(energy))
-        self.solution: Periodic = periodic(
-            SpeedEquation(course, law, inertia, noise), Elements.over(excess.grid.breaks)
-        )
+        # elements as wide as whole pieces see too little of a load that all but stalls
+        elements = Elements.over(excess.grid.other().breaks)
+        self.solution: Periodic = periodic(SpeedEquation(course, law, inertia, noise), elements)
         self.growth = self.solution.growth
         grid = Grid(np.append(self.solution.elements.low, excess.cycle))
         super().__init__(course, law, inertia, grid, course.on(grid))
