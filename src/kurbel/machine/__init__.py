@@ -58,7 +58,7 @@ def _key_values() -> tuple[dict[str, Quantity], tuple[str, ...]]:
     from kurbel.declared.quantity import by_id
     from kurbel.mechanisms import every_quantity
 
-    known = by_id(every_quantity().all_key_values)
+    known = by_id(*every_quantity().all_key_values)
     return known, tuple(id for id, quantity in known.items() if quantity.listed)
 
 
