@@ -3,8 +3,7 @@
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.declared.bounds import Point, size_faults
-from kurbel.declared.forms import Number, Points, UnitName
-from kurbel.declared.forms.file_path import FilePath
+from kurbel.declared.forms import FilePath, Number, Points, UnitName
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
 from kurbel.errors import refuse, refused

@@ -8,8 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms import not_negative
-from kurbel.declared.forms.file_path import FilePath
+from kurbel.declared.forms import FilePath, not_negative
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import RuleError, refused
 from kurbel.frozen import frozen

@@ -3,8 +3,7 @@
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from kurbel.declared.bounds import Point
-from kurbel.declared.forms import Choice, ColumnRange, Number, OneOf, Physical, Points, Record, UnitName
-from kurbel.declared.forms.file_path import FilePath
+from kurbel.declared.forms import Choice, ColumnRange, FilePath, Number, OneOf, Physical, Points, Record, UnitName
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
 from kurbel.errors import Fault, refuse, refused
