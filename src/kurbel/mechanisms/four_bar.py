@@ -11,7 +11,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
 from kurbel.frozen import frozen
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, turning_column
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, on_request
 from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.four_bar_loop import Loop
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
@@ -28,8 +28,8 @@ def _transmission(id: str, end: str, text: str) -> KeyOffer:
 
 
 def _coupler_column(end: str, symbol: str, kind: str, text: str) -> Quantity:
-    plain = f"theta_K{end}"
-    return turning_column(f"theta_coupler{end}", symbol, kind, f"{text} of the coupler", "theta_ddot", plain)
+    id, plain = f"theta_coupler{end}", f"theta_K{end}"
+    return on_request(id, symbol, kind, f"{text} of the coupler", plain, after="theta_ddot")
 
 
 COUPLER_OFFERS = turning_offers(

@@ -12,7 +12,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
 from kurbel.frozen import frozen
-from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
+from kurbel.mechanisms import Mechanism, Offer, fan, on_request
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
 from kurbel.numerics.extreme import Extreme
 
@@ -28,33 +28,32 @@ CRANK_KEYS: Keys = {
 """The size of the crank, shared by the mechanisms that can be given by their stroke."""
 
 
-def _book(id: str, symbol: str, kind: str, text: str, after: str) -> Quantity:
-    both = ("motion", "forces")
-    return Quantity(f"{id}_book", symbol, kind, f"{text}, first order in λ", "", both, after=after, on_request=both)
+def _book(id: str, symbol: str, kind: str, text: str) -> Quantity:
+    return on_request(f"{id}_book", symbol, kind, f"{text}, first order in λ", after=id)
 
 
 ROD_OFFERS = (
     Offer(
-        _book("x", "x_0", "length", "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)", "x"),
+        _book("x", "x_0", "length", "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)"),
         lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_displacement(a.sin, a.cos, lam)),
     ),
     Offer(
-        _book("c", "c_0", "velocity", "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)", "c"),
+        _book("c", "c_0", "velocity", "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)"),
         lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_velocity(a.sin, a.cos, lam)),
         ("omega",),
     ),
     Offer(
-        _book("b", "b_0", "acceleration", "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)", "b"),
+        _book("b", "b_0", "acceleration", "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)"),
         lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_acceleration(a.sin, a.cos, lam)),
         ("omega", "omega"),
     ),
     Offer(
-        turning_column("psi_dot", "ψ̇", "angular_velocity", "Angular velocity of the rod, dψ/dt", "b"),
+        on_request("psi_dot", "ψ̇", "angular_velocity", "Angular velocity of the rod, dψ/dt", after="b"),
         lambda one, angle: -one.coupler_at(angle).slope,
         ("omega",),
     ),
     Offer(
-        turning_column("psi_ddot", "ψ̈", "angular_acceleration", "Angular acceleration of the rod", "b"),
+        on_request("psi_ddot", "ψ̈", "angular_acceleration", "Angular acceleration of the rod", after="b"),
         lambda one, angle: -one.coupler_at(angle).curvature,
         ("omega", "omega"),
     ),
