@@ -220,13 +220,15 @@ def _known_text(kind: str) -> str:
 
 
 def parse_quantity(text: str, kind: str) -> float:
-    """Return the value of `text`, a number with a unit, in the base of `kind`.
+    """Return the value of `text`, a number with a unit, in the base of `kind`; a ratio has none.
 
-    >>> parse_quantity("450 mm", "length")
-    0.45
+    >>> parse_quantity("450 mm", "length"), parse_quantity("1/80", "ratio")
+    (0.45, 0.0125)
 
     Raises UnitError when there is no number, no unit, or a unit of another kind.
     """
+    if kind == "ratio":
+        return parse_ratio(text)
     stripped = plain(text)
     number = _number_of(stripped)
     if not number:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.declared.numerals import NUMBER, parse_ratio, plain
+from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert_back
 from kurbel.declared.units import example, parse_quantity
@@ -53,7 +53,7 @@ def read_condition(text: str, heads: Sequence[Head]) -> Condition:
     if not head.kind:
         return Condition(place, found[2], written)
     try:
-        value = parse_ratio(written) if head.kind == "ratio" else parse_quantity(written, head.kind)
+        value = parse_quantity(written, head.kind)
     except UnitError as error:
         hint = f"; write for instance {example(head.kind)}" if NUMBER.fullmatch(written) else ""
         raise UsageError(f"--where {shown(text)}: {error}{hint}") from None
