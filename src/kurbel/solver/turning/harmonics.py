@@ -43,13 +43,11 @@ class Spectrum(NamedTuple):
     orders: Array
     amplitudes: ComplexArray
 
-    def times(self, factor: float) -> "Spectrum":
-        """Return that of the torque times a factor."""
-        return self._replace(mean=factor * self.mean, amplitudes=factor * self.amplitudes)
-
-    def plus(self, other: "Spectrum") -> "Spectrum":
-        """Return that of the sum with a torque of the same orders."""
-        return self._replace(mean=self.mean + other.mean, amplitudes=self.amplitudes + other.amplitudes)
+    @classmethod
+    def summed(cls, *parts: tuple[float, "Spectrum"]) -> "Spectrum":
+        """Return that of a sum of torques of the same orders, each with a factor."""
+        amplitudes = sum(factor * one.amplitudes for factor, one in parts)
+        return cls(sum(factor * one.mean for factor, one in parts), parts[0][1].orders, np.asarray(amplitudes))
 
     def cleared(self, size: float) -> "Spectrum":
         """Return it with 0 for what is rounding beside torques of this size in N m, in phase or a quarter behind."""
@@ -110,7 +108,7 @@ class Orders(NamedTuple):
 
     def at_speed(self, ratio: float) -> Spectrum:
         """Return both together at a speed, over the nominal one."""
-        return self.gas if self.inertia is None else self.gas.plus(self.inertia.times(ratio**2))
+        return Spectrum.summed((1.0, self.gas), *([(ratio**2, self.inertia)] if self.inertia else []))
 
     @property
     def size(self) -> float:
@@ -120,11 +118,6 @@ class Orders(NamedTuple):
     def each(self, change: Callable[[Spectrum], Spectrum]) -> "Orders":
         """Return both, each changed."""
         return Orders(change(self.gas), self.inertia and change(self.inertia))
-
-    def plus(self, other: "Orders") -> "Orders":
-        """Return the orders of two torques together."""
-        one, two = self.inertia, other.inertia
-        return Orders(self.gas.plus(other.gas), one.plus(two) if one and two else one or two)
 
 
 class CylinderOrders:
@@ -186,11 +179,11 @@ class MachineOrders:
         if not self.turned.of_cylinders:
             known = spectrum(self.turned.effort, self.orders)
             return Orders(known.cleared(known.size), None)
-        total, *others = each = [one.in_machine for one in self.cylinders]
-        for other in others:
-            total = total.plus(other)
-        size = math.fsum(one.size for one in each)
-        return total.each(lambda one: one.cleared(size).times(self.turned.efficiency))
+        eta, each = self.turned.efficiency, [one.in_machine for one in self.cylinders]
+        gas = Spectrum.summed(*((eta, one.gas) for one in each))
+        inertia = [(eta, one.inertia) for one in each if one.inertia]
+        size = eta * math.fsum(one.size for one in each)
+        return Orders(gas, Spectrum.summed(*inertia) if inertia else None).each(lambda one: one.cleared(size))
 
     @property
     def M_mean(self) -> float:
