@@ -121,22 +121,16 @@ class Orders(NamedTuple):
 
 
 class CylinderOrders:
-    """The orders of the torque of one cylinder, without the losses of the machine.
+    """The orders of the torque of one cylinder, without the losses of the machine; own: over its own crank angle."""
 
-    in_machine: over the angle of crank 1; own: over that of its own crank.
-    """
+    def __init__(self, forces: CylinderForces, own: Orders) -> None:
+        self.forces, self.own = forces, own
 
-    def __init__(self, forces: CylinderForces, in_machine: Orders, own: Orders) -> None:
-        self.forces = forces
-        self.in_machine = in_machine
-        self.own = own
-
-    def at_throw_of(self, other: CylinderForces) -> "CylinderOrders":
-        """Return those of another cylinder that works alike, wherever its crank stands."""
-        if other is self.forces:
-            return self
-        behind = other.drive.cylinder.crank_position
-        return CylinderOrders(other, self.own.each(lambda one: one.turned(-behind)), self.own)
+    @cached_property
+    def in_machine(self) -> Orders:
+        """Those over the angle of crank 1."""
+        behind = self.forces.drive.cylinder.crank_position
+        return self.own.each(lambda one: one.turned(-behind))
 
     @cached_property
     def area(self) -> float | None:
@@ -161,17 +155,16 @@ class MachineOrders:
         """Those of every cylinder in which a force acts; one is asked for all that work alike."""
         found: dict[str, CylinderOrders] = {}
         for group in gathered(self.turned.of_cylinders, _alike):
-            first = self._of(*group[0])
-            found |= {part.forces.drive.name: first.at_throw_of(part.forces) for part in group}
+            own = self._own(*group[0])
+            found |= {part.forces.drive.name: CylinderOrders(part.forces, own) for part in group}
         return tuple(found[part.forces.drive.name] for part in self.turned.of_cylinders)
 
-    def _of(self, forces: CylinderForces, effort: Torque, inertia: Torque | None) -> CylinderOrders:
+    def _own(self, forces: CylinderForces, effort: Torque, inertia: Torque | None) -> Orders:
+        """Return the orders of a cylinder over its own crank angle."""
         rest = effort if inertia is None else Sum((1.0, effort), (-1.0, inertia))
-        of_masses = None if inertia is None else spectrum(inertia, self.orders)
-        found = Orders(spectrum(rest, self.orders), of_masses)
+        found = Orders(spectrum(rest, self.orders), None if inertia is None else spectrum(inertia, self.orders))
         size, behind = found.size, forces.drive.cylinder.crank_position
-        found = found.each(lambda one: one.cleared(size))
-        return CylinderOrders(forces, found, found.each(lambda one: one.turned(behind)))
+        return found.each(lambda one: one.turned(behind).cleared(size))
 
     @cached_property
     def machine(self) -> Orders:
