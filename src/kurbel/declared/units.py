@@ -10,12 +10,9 @@ import re
 from collections.abc import Callable, Iterable
 from functools import cache
 
-from kurbel.declared.kinds import KINDS
+from kurbel.declared.kinds import KINDS, Factor
 from kurbel.declared.numerals import NUMBER, parse_ratio, plain
 from kurbel.errors import UnitError
-
-Factor = tuple[float, float]
-"""A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""
 
 GRAVITY = 9.80665
 """m/s²; makes kgf and at exact."""

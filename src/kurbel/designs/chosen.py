@@ -9,7 +9,7 @@ import numpy as np
 
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI, convert_back
+from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import example, parse_quantity
 from kurbel.designs.sweep import Head, Row
 from kurbel.errors import UnitError, UsageError
@@ -57,11 +57,7 @@ def read_condition(text: str, heads: Sequence[Head]) -> Condition:
     except UnitError as error:
         hint = f"; write for instance {example(head.kind)}" if NUMBER.fullmatch(written) else ""
         raise UsageError(f"--where {shown(text)}: {error}{hint}") from None
-    return Condition(place, found[2], _in_unit(value, head))
-
-
-def _in_unit(value: float, head: Head) -> float:
-    return value / convert_back(1.0, head.kind, head.unit) if head.unit not in ("", SI[head.kind]) else value
+    return Condition(place, found[2], convert(value, head.kind, head.unit))
 
 
 def place_of(name: str, heads: Sequence[Head], option: str) -> int:

@@ -1,6 +1,6 @@
 """Points over the crank angle, `[[deg, value], …]`: what every diagram over the angle must keep to."""
 
-from kurbel.declared.bounds import Point
+from kurbel.declared.kinds import Point
 from kurbel.errors import Fault, Path
 
 CYCLES = {"two-stroke": 1, "four-stroke": 2}

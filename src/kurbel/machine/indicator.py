@@ -3,11 +3,10 @@
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
-from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName, not_negative
 from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import Factor
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.frozen import frozen
 from kurbel.machine.rectangle import Rectangle, Rectangular

@@ -2,10 +2,9 @@
 
 from typing import Any, ClassVar
 
-from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.forms import Number, Points, UnitName, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.units import Factor
+from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.errors import refuse, refused
 from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES, angle_faults, beyond_cycle

@@ -2,10 +2,9 @@
 
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from kurbel.declared.bounds import Point
 from kurbel.declared.forms import Choice, ColumnRange, FilePath, Number, OneOf, Physical, Points, Record, UnitName
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.units import Factor
+from kurbel.declared.kinds import Factor, Point
 from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.indicator import CLEARANCE
 from kurbel.machine_file.samples import Layout, layout_keys, samples_of

@@ -180,10 +180,6 @@ class SlottedLever(Mechanism):
         reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
         return _Lever(crank * angle.sin / reach, sum_along(frame, crank, gap, angle) / reach, reach)
 
-    def direction(self, angle: CrankAngle) -> tuple[Any, Any]:
-        """Return (sin θ, cos θ) of the lever's tilt from the line of the pivots."""
-        return self._lever_at(angle)[:2]
-
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return the crank with its block on the lever, and the ram on its line, which is upright where φ = 0 lies."""
         lever, pivot = self._lever_at(angle), (-self.frame, 0.0)

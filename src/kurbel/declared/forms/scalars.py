@@ -7,9 +7,8 @@ from functools import cache
 from operator import ge, gt, le, lt
 from typing import Any
 
-from kurbel.declared.bounds import out_of_size, range_of
 from kurbel.declared.keys import Form, Key, Schema
-from kurbel.declared.kinds import KINDS
+from kurbel.declared.kinds import KINDS, out_of_size, range_of
 from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio
 from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
