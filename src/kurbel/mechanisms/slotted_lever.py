@@ -78,8 +78,7 @@ class SlottedLever(Mechanism):
         projected_area(self.pin_diameter, self.pin_length)
         if self.crank == self.frame:
             same = show(self.crank, "length")
-            message = f"{same} is also the crank: the pin would pass through the lever's pivot"
-            refused(message, "frame")
+            refused(f"{same} is also the crank: the pin would pass through the lever's pivot", "frame")
         if math.isinf(self.link) and self.ram_height is not None:
             refused("has no meaning for a fork head; give 'link' with it", "ram_height")
         if not math.isfinite(self._height):
