@@ -200,12 +200,12 @@ class _Asked(NamedTuple):
         return SweepOutput(titles, self._look, self.file_name, headed, kept.size), kept.rest(found, conditions)
 
     def _chosen(self, rows: "Iterable[Row]", aims: "Sequence[Aim]", order: "Aim | None") -> "Iterable[Row]":
-        from kurbel.designs.chosen import sorted_rows, unbettered
+        from kurbel.designs.chosen import unbettered
 
         if aims:
             rows = unbettered(rows, aims)
         if order:
-            rows = sorted_rows(rows, order)[: self.top]
+            rows = sorted(rows, key=order.of)[: self.top]
         return rows
 
 

@@ -90,11 +90,6 @@ def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
     return Aim(place_of(name.removeprefix("-"), heads, option), name.startswith("-"))
 
 
-def sorted_rows(rows: Iterable[Row], aim: Aim) -> list[Row]:
-    """Return the rows, the best one first; rows without a value come last, equal ones as they came."""
-    return sorted(rows, key=aim.of)
-
-
 def unbettered(rows: Iterable[Row], aims: Sequence[Aim]) -> Iterator[Row]:
     """Yield the rows than which no other one is better in one aim and as good in all: the front of Pareto."""
     given = list(rows)

@@ -11,8 +11,7 @@ from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, asked_answers, subjects
-from kurbel.designs.inputs import Input, read_input
-from kurbel.designs.plan import Plan
+from kurbel.designs.plan import Input, Plan, read_input
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
@@ -255,9 +254,7 @@ def _limit_answers(machine: Machine) -> Iterable[tuple[Answer, float]]:
                     yield Answer(quantity, command, subject.name), bound
 
 
-@lru_cache(maxsize=4)
-def _sweep(spec: Spec) -> Sweep:
-    return Sweep(spec)
+_sweep = lru_cache(maxsize=4)(Sweep)
 
 
 def computed(spec: Spec, company: range, wanted: range) -> list[Row]:

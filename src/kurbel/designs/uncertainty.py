@@ -278,17 +278,12 @@ def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], sys
         Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2),
     ]
     for place, key in enumerate(keys):
-        columns.append(Column(key, key, key, "%", tuple(_percent(one.shares[place]) for one in own), alone=2))
+        columns.append(Column(key, key, key, "%", tuple(round(100 * one.shares[place], 1) for one in own), alone=2))
     columns.append(Column("sample", "sample", "sample", "", tuple(one.sample or None for one in own), alone=2))
     title = "Standard uncertainty, and the share of each input in its square"
     heads = ("key_value", "symbol", "unit")
     table = PlaceTable("uncertainty", title, heads, tuple(names), tuple(columns), headed=True)
     return part._replace(place_tables=(*part.place_tables, table))
-
-
-def _percent(share: float) -> float:
-    """Return a share in percent, to a tenth."""
-    return round(100 * share, 1)
 
 
 def _notes(found: Sequence[Uncertain]) -> Iterable[str]:

@@ -9,8 +9,7 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.frozen import frozen
-from kurbel.machine.angle_points import CYCLES
-from kurbel.machine.cylinder import Cylinder
+from kurbel.machine.cylinder import CYCLES, Cylinder
 
 
 @frozen
