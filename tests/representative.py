@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from kurbel.machine.origin import Origin
 from kurbel.machine_file.reader import read_machine
-from kurbel.machine_file.source import Source, read
+from kurbel.machine_file.source import read
 from kurbel.solver.case import Case
 
 SHIPPED = sorted((Path(__file__).parent.parent / "configs").glob("*.yaml"))
@@ -18,9 +19,9 @@ CONFIGS = {path.stem: path for path in SHIPPED}
 
 
 @cache
-def case_from(source: Source, overrides: tuple[str, ...] = ()) -> Case:
+def case_from(origin: Origin) -> Case:
     """The results of the machine in a text: computed once, since nothing can change them."""
-    return Case(read_machine(source, overrides))
+    return Case(read_machine(origin))
 
 
 def case_of(name: str) -> Case:

@@ -60,7 +60,7 @@ def test_every_key_value_has_a_definition(command: str) -> None:
 def test_every_common_column_has_a_definition() -> None:
     """Of one cylinder an attribute of its state; of the whole machine a formula, whatever of it the machine has."""
     case = case_of("gas-engine")
-    whole = {"flywheel": case.flywheel, "stress": case.strength, "balance": case.balance}
+    whole = {"flywheel": case.flywheel, "stress": case.stress, "balance": case.balance}
     formulas = {name: set(results.at([0.0]).formulas) for name, results in whole.items()}
     formulas["bearings"] = {id for part in case.bearings.parts for id in part.at([0.0]).formulas}
     known = {"motion": set(dir(State)), "forces": set(dir(State)), **formulas}

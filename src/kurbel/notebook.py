@@ -70,7 +70,7 @@ def _key_values(results: Results, caption: str) -> str:
             found = [shown_key_value(one.quantity, value, "metric") for one, value in zip(every, values)]
         except KurbelError as error:
             return f"<p>{escape(str(error))}</p>"
-    return key_values(found, caption, Look("html"))
+    return "".join(key_values(caption, found, Look("html")))
 
 
 Shown.as_html = as_html

@@ -47,7 +47,7 @@ def strength_warnings(case: Case) -> tuple[str, ...]:
         return ()
 
     def found() -> Iterable[str]:
-        cool, verdict = shell_verdict(case.strength)
+        cool, verdict = shell_verdict(case.stress)
         return () if cool else verdict
 
     return as_far_as_solved(found, "stress")

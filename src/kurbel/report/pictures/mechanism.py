@@ -24,7 +24,7 @@ def mechanism(source: Source) -> Iterator[Panel]:
     drive = source.results.drive
     if drive.mechanism.sketch(CrankAngle.of(0.0)) is None:
         return
-    angles = source.angles
+    angles = source.wish.angles
     moving = np.arange(_FRAMES) * (drive.cycle / _FRAMES)
     drawn = _drawn(source, np.array([_chief_angle(source)] if angles is None else angles, dtype=float))
     if angles is None:
@@ -54,7 +54,7 @@ def _drawn(source: Source, degrees: Array) -> list[Panel]:
         lines = (_curve("guide", [end[k] for end in guide]) for guide in guides)
         curves = (_path(here["shaft"], crank), *lines, *_members(sketch, here, 0.09 * crank))
         panel = Panel(axis, axis, curves, arrows=tuple(one[k] for one in arrows), equal=True, plain=True)
-        panels.append(panel._replace(title=f"φ = {round(angle, 2 if source.angles is None else 6):.9g}°"))
+        panels.append(panel._replace(title=f"φ = {round(angle, 2 if source.wish.angles is None else 6):.9g}°"))
     return panels
 
 
