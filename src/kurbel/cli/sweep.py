@@ -10,6 +10,7 @@ import click
 from kurbel.cli.completion import complete_override
 from kurbel.cli.output_options import format_of, machine_file, output_option, stacked, units_option
 from kurbel.cli.readings import words
+from kurbel.errors import UsageError
 from kurbel.render import Look
 
 if TYPE_CHECKING:
@@ -116,8 +117,6 @@ class _Asked(NamedTuple):
 
     @property
     def _look(self) -> Look:
-        from kurbel.render import Look
-
         return Look(self._written, comma=self.decimal == "comma", digits=self.digits)
 
     @property
@@ -156,7 +155,6 @@ class _Asked(NamedTuple):
         from kurbel.designs.plan import MOST_ROWS, shard
         from kurbel.designs.sweep import Sweep
         from kurbel.designs.workers import likely_jobs, rows_of
-        from kurbel.errors import UsageError
 
         found = Sweep(self._spec())
         if found.rows > MOST_ROWS and not self.yes:

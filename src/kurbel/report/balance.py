@@ -10,7 +10,6 @@ from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.report.frame import Frame, Subject
-from kurbel.report.given import pin_notes
 from kurbel.report.shown import shown_column
 from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
 from kurbel.solver.balance.circles import Circles
@@ -40,14 +39,19 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
 
 def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
     """Yield the whole machine; compare: with what the acceleration of first order gives, beside the true figures."""
-    machine = case.machine
     balance = case.balance
+
+    def warnings() -> Iterable[str]:
+        from kurbel.report.notes import pin_notes
+
+        return pin_notes(case.machine)
+
     yield Subject(
         "whole machine",
         (*balance.answering, *((BookBalance(balance),) if compare else ())),
         balance.at,
         left_out=lambda: _left_out(balance, compare),
-        warnings=lambda: pin_notes(machine),
+        warnings=warnings,
     )
 
 

@@ -155,9 +155,13 @@ def _crankshaft_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
     if machine.crankshaft is None:
         return
     from kurbel.report.bearings import bearing_warnings
+    from kurbel.report.warnings import as_far_as_solved
     from kurbel.solver.shaft.line import shaft_obstacle
 
-    yield from (Entry("bearings", text, "warning", ("crankshaft",)) for text in bearing_warnings(case()))
+    yield from (
+        Entry("bearings", text, "warning", ("crankshaft",))
+        for text in as_far_as_solved(bearing_warnings(case()), "bearings")
+    )
     if not shaft_obstacle(machine):
         yield Entry("computed", "loads on pins and main bearings")
     if obstacle := machine.strength_obstacle:
@@ -189,8 +193,9 @@ def _shaft_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
     if machine.shaft is None and machine.coupling is None:
         return
     from kurbel.report.torsion import torsion_left_out, torsion_warnings
+    from kurbel.report.warnings import as_far_as_solved
 
-    yield from (Entry("torsion", text, "warning") for text in torsion_warnings(case()))
+    yield from (Entry("torsion", text, "warning") for text in as_far_as_solved(torsion_warnings(case()), "torsion"))
     if machine.shaft is None:
         return
     yield Entry("masses", str(len(machine.shaft.masses)))

@@ -10,6 +10,7 @@ from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
+from kurbel.numerics.extreme import Extreme
 from kurbel.report.alike import grouped, together
 
 if TYPE_CHECKING:
@@ -180,7 +181,6 @@ def commands_for(machine: Machine, name: str) -> tuple[str, ...]:
 
 
 def _values(case: "Case", command: str, name: str) -> Iterator[Found]:
-    from kurbel.numerics.extreme import Extreme
     from kurbel.report.frame import subjects_of
 
     for subject in subjects_of(case, command):

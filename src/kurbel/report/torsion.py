@@ -15,7 +15,6 @@ from kurbel.report.harmonics import orders_of
 from kurbel.report.notes import of_machine
 from kurbel.report.shown import counted, shown_column
 from kurbel.report.tables import LeftOut, PlaceTable, Report
-from kurbel.report.warnings import as_far_as_solved
 from kurbel.solver.case import Case
 from kurbel.solver.torsion.forced import Vibration, stress
 from kurbel.solver.torsion.vibration import RUN_UP, Critical, ShaftVibration
@@ -64,14 +63,10 @@ def subjects(
     )
 
 
-def torsion_warnings(case: Case) -> tuple[str, ...]:
-    """Return which of the usual critical speeds lie beside the working speed, or that a vibration has no end."""
-
-    def found() -> Iterable[str]:
-        _refuse_endless(case.torsion)
-        return _warnings(case.torsion, case.torsion.critical_speeds(_MODES, _HIGHEST))
-
-    return as_far_as_solved(found, "torsion")
+def torsion_warnings(case: Case) -> Iterable[str]:
+    """Yield which of the usual critical speeds lie beside the working speed; refuses a vibration without an end."""
+    _refuse_endless(case.torsion)
+    yield from _warnings(case.torsion, case.torsion.critical_speeds(_MODES, _HIGHEST))
 
 
 def _refuse_endless(found: ShaftVibration) -> None:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.report.alike import together
@@ -124,8 +125,6 @@ _TERMS = (
 
 def _energy(case: Case, system: str) -> Section | None:
     """Return for every cylinder where the energy of a cycle goes, and what an independent quadrature leaves open."""
-    from kurbel.declared.unit_systems import convert, shown_unit
-
     items: list[Item] = []
     with np.errstate(all="ignore"):
         for equal in gathered(case.cylinders, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
