@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from kurbel.declared.indicated import CYCLE_VALUES
 from kurbel.errors import UsageError
 from kurbel.report.frame import Frame, Subject, refuse_without_cylinder
-from kurbel.report.shown import shown_column
+from kurbel.report.shown import place_table
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
@@ -39,12 +39,10 @@ def cycles_report(case: Case, system: str) -> Report:
 
 def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
     if cycles := forces.indicated.cycles:
-        shown = [
-            one.absolute() if forces.drive.own_gas and forces.drive.own_gas.absolute else one for one in CYCLE_VALUES
-        ]
-        names = tuple((str(number),) for number in range(1, len(cycles.p_max) + 1))
-        columns = [shown_column(one, getattr(cycles, one.id).tolist(), system) for one in shown]
-        yield PlaceTable("cycles", "Measured cycles", ("cycle",), names, tuple(columns), headed=True)
+        absolute = forces.drive.own_gas and forces.drive.own_gas.absolute
+        names = ((str(number),) for number in range(1, len(cycles.p_max) + 1))
+        found = ((one.absolute() if absolute else one, getattr(cycles, one.id).tolist()) for one in CYCLE_VALUES)
+        yield place_table("cycles", "Measured cycles", ("cycle",), names, found, system, headed=True)
 
 
 def _notes(case: Case) -> Iterable[str]:

@@ -6,14 +6,15 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
+from kurbel.declared.quantity import Quantity
 from kurbel.declared.torsion import TORQUE_ORDERS
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import flywheel_left_out, left_out
 from kurbel.report.notes import of_machine
-from kurbel.report.shown import counted, shown_column
-from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
+from kurbel.report.shown import place_table
+from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
 from kurbel.solver.turning.harmonics import CylinderOrders, MachineOrders, Orders, Spectrum
 
@@ -87,8 +88,8 @@ def _no_cranks(found: MachineOrders) -> Iterable[LeftOut]:
 
 
 def _table(id: str, title: str, orders: Orders, area: float | None, marks: list[str], system: str) -> PlaceTable:
-    columns = (shown_column(TORQUE_ORDERS[name], values, system) for name, values in _columns(orders, area))
-    return PlaceTable(id, title, ("kind",), tuple((mark,) for mark in marks), counted(columns))
+    found = ((TORQUE_ORDERS[name], values) for name, values in _columns(orders, area))
+    return place_table(id, title, ("kind",), ((mark,) for mark in marks), found, system)
 
 
 def _columns(orders: Orders, area: float | None) -> Iterable[tuple[str, Sequence[Any]]]:
@@ -122,15 +123,13 @@ def _speed_tables(
     if not machine.speed:
         raise UsageError("--speeds: the inertia forces are told from those at the 'speed' of the machine; give it one")
     spectra = [found.machine.at_speed(speed / machine.speed) for speed in speeds]
-    columns: dict[str, list[Any]] = {"speed": [speed for speed in speeds for _ in found.orders]}
+    columns: dict[Quantity, list[Any]] = {TORQUE_ORDERS["speed"]: [speed for speed in speeds for _ in found.orders]}
     for one in spectra:
         for name, values in _of_spectrum(one):
-            columns.setdefault(name, []).extend(values)
-    shown: tuple[Column, ...] = counted(
-        shown_column(TORQUE_ORDERS[name], values, system) for name, values in columns.items()
-    )
-    names = tuple(("",) for _ in columns["speed"])
-    yield PlaceTable("orders_by_speed", "Orders of the turning effort at other speeds", ("kind",), names, shown)
+            columns.setdefault(TORQUE_ORDERS[name], []).extend(values)
+    names = [("",)] * len(spectra) * len(found.orders)
+    title = "Orders of the turning effort at other speeds"
+    yield place_table("orders_by_speed", title, ("kind",), names, columns.items(), system)
 
 
 def _notes(found: MachineOrders) -> Iterable[str]:
