@@ -27,6 +27,11 @@ class Section(NamedTuple):
     entries: tuple[Entry, ...]
     cylinder: bool = False
 
+    @property
+    def said(self) -> Hashable:
+        """What equal cylinders have in common."""
+        return self.cylinder or self.title, tuple((one.what, one.text, one.severity) for one in self.entries)
+
 
 class Checked(NamedTuple):
     """The outcome of a check; `broken`: a limit is, or a figure is off; `unjudged`: which cannot be judged, and why."""
@@ -44,13 +49,8 @@ class Checked(NamedTuple):
     @property
     def told_once(self) -> tuple[Section, ...]:
         """The sections, equal cylinders in one."""
-        groups = grouped(self.sections, _said)
+        groups = grouped(self.sections, lambda one: one.said)
         return tuple(group[0]._replace(title=together([one.title for one in group])) for group in groups)
-
-
-def _said(section: Section) -> Hashable:
-    """Return what equal cylinders have in common."""
-    return (section.cylinder or section.title, tuple((one.what, one.text, one.severity) for one in section.entries))
 
 
 def checked(machine: Machine) -> Checked:

@@ -71,10 +71,6 @@ class Taken:
         """Keep a place free of labels."""
         self._boxes.append(box)
 
-    def _on_curves(self, box: Box) -> int:
-        x, y = self._curves.T
-        return int(((x > box.left) & (x < box.right) & (y > box.top) & (y < box.bottom)).sum())
-
     def place(self, x: float, y: float, text: str, upward: bool, clear: bool = False) -> tuple[float, float] | None:
         """Return where a label begins that names a point, above or below it first; None where all is taken.
 
@@ -102,14 +98,15 @@ class Taken:
 
     def _best(self, tries: Iterator[Try], point: tuple[float, float] | None = None) -> Free | None:
         """Return the first of the free places that cover least of the curves; point: to which a line must lead."""
-        free = []
+        free, (x, y) = [], self._curves.T
         for number, (left, base, box) in enumerate(tries):
             inside = box.top >= self._frame.top and box.bottom <= self._frame.bottom and left >= self._frame.left
             if inside and not any(
                 box.meets(other) or (point and other.cuts(*_pointer(*point, box))) for other in self._boxes
             ):
-                free.append(Free(self._on_curves(box), number, left, base, box))
-                if not free[-1].crossed:
+                crossed = int(((x > box.left) & (x < box.right) & (y > box.top) & (y < box.bottom)).sum())
+                free.append(Free(crossed, number, left, base, box))
+                if not crossed:
                     break
         return min(free, default=None)
 
