@@ -65,8 +65,7 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
     from kurbel.machine_file.positions import located_in
     from kurbel.render.json_text import findings_json
     from kurbel.render.output import refuse_overwriting, stdout_look, write_out
-    from kurbel.report.check import checked
-    from kurbel.report.findings import faults_found, findings
+    from kurbel.report.check import checked, faults_found, findings
 
     refuse_overwriting(file_name, (file,))
     try:

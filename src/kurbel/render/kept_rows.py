@@ -69,13 +69,11 @@ class KeptRows:
 
     def _compare(self, line: _Line, row: Row, count: int) -> None:
         """Refuse a line of which one of the first cells is not what the row has there."""
-        for name, there, here in list(zip(self._titles.whole, line.cells, self._cells_of(row)))[:count]:
+        *_, text = WRITERS[self._look.format](self._titles, [row], self._look)
+        cells = self._cells(text.rstrip("\n"))
+        for name, there, here in list(zip(self._titles.whole, line.cells, cells))[:count]:
             if there != here and not self._same(there, here):
                 self._refuse(f"row {line.number} has {there or 'no'} {name} in it, and {here or 'none'} now")
-
-    def _cells_of(self, row: Row) -> list[str]:
-        *_, text = WRITERS[self._look.format](self._titles, [row], self._look)
-        return self._cells(text.rstrip("\n"))
 
     def _parsed(self) -> Iterator[_Line]:
         for text in self._lines[self._headed :]:

@@ -24,16 +24,16 @@ _NOTHING = 1e-6
 """Degrees by which a direction may miss another by rounding."""
 
 
+@np.errstate(all="ignore")  # what overflows is refused, by name
 def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Report:
     """Return what is free and what balances it; orders_only: no columns over the crank angle.
 
     Raises UsageError where no masses move.
     """
     compare = frame.compare
-    with np.errstate(all="ignore"):  # what overflows is refused, by name
-        (whole,) = subjects(case, compare)
-        tables = tuple(_balance_tables(case.balance, frame.system, compare))
-        whole = whole._replace(place_tables=tables, at=None if orders_only or case.machine.speed is None else whole.at)
+    (whole,) = subjects(case, compare)
+    tables = tuple(_balance_tables(case.balance, frame.system, compare))
+    whole = whole._replace(place_tables=tables, at=None if orders_only or case.machine.speed is None else whole.at)
     return frame.report(case.machine, "Massenausgleich", (), whole, _notes(case.balance))
 
 

@@ -21,6 +21,7 @@ from kurbel.solver.turning.harmonics import CylinderOrders, MachineOrders, Order
 _HIGHEST = 1000
 
 
+@np.errstate(all="ignore")  # what overflows is refused, by name
 def harmonics_report(
     case: Case, frame: Frame, orders: Sequence[float] | None = None, speeds: Sequence[float] | None = None
 ) -> Report:
@@ -29,10 +30,9 @@ def harmonics_report(
     speeds: in revolutions per second, at which the orders of the whole machine are told besides. Raises UsageError
     where nothing turns the shaft.
     """
-    with np.errstate(all="ignore"):  # what overflows is refused, by name
-        found = case.harmonics(orders_of(case.machine, orders))
-        each = [_cylinder(case.machine, one, frame.system) for one in found.cylinders]
-        whole = _whole(case, found, tuple(_speed_tables(case.machine, found, speeds, frame.system)), frame.system)
+    found = case.harmonics(orders_of(case.machine, orders))
+    each = [_cylinder(case.machine, one, frame.system) for one in found.cylinders]
+    whole = _whole(case, found, tuple(_speed_tables(case.machine, found, speeds, frame.system)), frame.system)
     return frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
 
 

@@ -63,16 +63,11 @@ def shown_column(
     unit = shown_unit(quantity.kind, system, max(size or largest, beside))
     given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
     given += 0.0
-    shown = values if isinstance(values, array) else _filled(values, given.tolist())
+    following = map(float, given)
+    shown = values if isinstance(values, array) else tuple(None if v is None else next(following) for v in values)
     size = convert(size, quantity.kind, unit)
     symbols = quantity.symbol, quantity.ascii_symbol
     return Column(quantity.id, *symbols, quantity.marked(unit), shown, quantity.text, size=size)
-
-
-def _filled(values: Sequence[float | None], given: list[float]) -> tuple[float | None, ...]:
-    """Return the given values in the places of those that are not None."""
-    following = iter(given)
-    return tuple(None if value is None else next(following) for value in values)
 
 
 def place_table(

@@ -23,17 +23,17 @@ _TITLES = {
 }
 
 
+@np.errstate(all="ignore")  # what overflows is refused, by name
 def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report:
     """Return the stresses of the crankshaft; places_only: no columns over the crank angle.
 
     Raises UsageError where no crankshaft can be examined.
     """
-    with np.errstate(all="ignore"):  # what overflows is refused, by name
-        (whole,) = subjects(case)
-        tables = tuple(_place_tables(case.strength, frame.system))
-        whole = whole._replace(name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
-        cool, verdict = shell_verdict(case.strength)
-        notes = (*_NOTES, *((_TURNING_ROD,) if case.strength.C_rod else ()), *(verdict if cool else ()))
+    (whole,) = subjects(case)
+    tables = tuple(_place_tables(case.strength, frame.system))
+    whole = whole._replace(name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
+    cool, verdict = shell_verdict(case.strength)
+    notes = (*_NOTES, *((_TURNING_ROD,) if case.strength.C_rod else ()), *(verdict if cool else ()))
     return frame.report(case.machine, "Festigkeit der Kurbelwelle", (), whole, notes)
 
 

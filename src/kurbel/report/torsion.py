@@ -35,18 +35,18 @@ class Wanted(NamedTuple):
     speeds: Sequence[float] | None = None
 
 
+@np.errstate(all="ignore")  # what overflows is refused, by name
 def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Report:  # noqa: B008 (immutable)
     """Return the torsional vibration of the shaft line; without columns of the frame only its tables are told.
 
     Raises UsageError without a shaft line, NoSolutionError where an undamped resonance has no end.
     """
-    with np.errstate(all="ignore"):  # what overflows is refused, by name
-        found = case.torsion_of(orders_of(case.machine, wanted.orders))
-        critical = found.critical_speeds(wanted.modes, _HIGHEST if wanted.orders is None else math.inf)
-        (whole,) = subjects(case, found, critical)
-        whole = whole._replace(place_tables=tuple(_tables(found, critical, wanted, frame.system)))
-        pieces = found.pieces if frame.columns else ()
-        each = [Subject(one.name, (), one.at) for one in pieces]
+    found = case.torsion_of(orders_of(case.machine, wanted.orders))
+    critical = found.critical_speeds(wanted.modes, _HIGHEST if wanted.orders is None else math.inf)
+    (whole,) = subjects(case, found, critical)
+    whole = whole._replace(place_tables=tuple(_tables(found, critical, wanted, frame.system)))
+    pieces = found.pieces if frame.columns else ()
+    each = [Subject(one.name, (), one.at) for one in pieces]
     return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found, wanted, critical))
 
 

@@ -54,7 +54,10 @@ def whole_report(case: Case, given: Given, system: str, step: float, progress: P
     for command in COMMANDS:
         progress(command.title.lower())
         sections.append(_section(case, command, system, step, left_out))
-    sections += [_verdicts(found), _energy(case, system), _left_out(left_out)]
+    sections += [_verdicts(found), _energy(case, system)]
+    if left_out:
+        grid = Grid("", ("Part", "Why"), tuple((one.what, one.why) for one in left_out))
+        sections.append(Section("left-out", "Left out", (grid,)))
     name = case.machine.name
     return Document(name, (provenance(case.machine),), tuple(one for one in sections if one))
 
@@ -145,9 +148,3 @@ def _energy(case: Case, system: str) -> Section | None:
             name = together([one.drive.name for one in equal])
             items.append(Grid(name, ("Per cycle", "Energy", "Unit"), tuple(rows), numbers=(1,), units=(2,)))
     return Section("energy", "Energy balance", tuple(items)) if items else None
-
-
-def _left_out(found: Sequence[LeftOut]) -> Section | None:
-    rows = tuple((one.what, one.why) for one in found)
-    items = (Grid("", ("Part", "Why"), rows),) if rows else ()
-    return Section("left-out", "Left out", items) if items else None
