@@ -93,6 +93,7 @@ class Frame(NamedTuple):
     over: str = ""
     compare: bool = False
 
+    @np.errstate(all="ignore")
     def report(
         self,
         machine: Machine,
@@ -102,16 +103,15 @@ class Frame(NamedTuple):
         notes: Iterable[str] = (),
     ) -> Report:
         """Return the report on these subjects; what overflows is refused by name."""
-        with np.errstate(all="ignore"):
-            every = (*subjects, *((whole,) if whole else ()))
-            parts = [self._part(one) for one in every]
-            self._refuse_absent(every, parts)
-            told = (*notes, *self._nothing_compared(parts), *_nowhere(parts))
-            last = parts.pop() if whole else None
-            name = machine.name
-            report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=told)
-            names = tuple(cylinder.name for cylinder in machine.cylinders)
-            return report._replace(provenance=provenance(machine), cylinders=names)
+        every = (*subjects, *((whole,) if whole else ()))
+        parts = [self._part(one) for one in every]
+        self._refuse_absent(every, parts)
+        told = (*notes, *self._nothing_compared(parts), *_nowhere(parts))
+        last = parts.pop() if whole else None
+        name = machine.name
+        report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=told)
+        names = tuple(cylinder.name for cylinder in machine.cylinders)
+        return report._replace(provenance=provenance(machine), cylinders=names)
 
     def _part(self, subject: Subject) -> Part:
         try:

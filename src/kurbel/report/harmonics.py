@@ -32,7 +32,9 @@ def harmonics_report(
     """
     found = case.harmonics(orders_of(case.machine, orders))
     each = [_cylinder(case.machine, one, frame.system) for one in found.cylinders]
-    whole = _whole(case, found, tuple(_speed_tables(case.machine, found, speeds, frame.system)), frame.system)
+    (whole,) = subjects(case, found)
+    tables = (_machine_table(found, frame.system), *_speed_tables(case.machine, found, speeds, frame.system))
+    whole = whole._replace(place_tables=tables)
     return frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
 
 
@@ -58,27 +60,27 @@ def orders_of(machine: Machine, asked: Sequence[float] | None) -> Array | None:
 def _cylinder(machine: Machine, one: CylinderOrders, system: str) -> Subject:
     cylinder = one.forces.drive.cylinder
     title = f"Orders of the torque of {cylinder.name}, φ from its own inner dead centre"
-    table = _table("orders", title, one.own, one.area, [""] * len(one.own.gas.orders), system)
+    table = _table(title, one.own, one.area, [""] * len(one.own.gas.orders), system)
     return Subject(cylinder.name, (), left_out=lambda: left_out(machine, cylinder), place_tables=(table,))
 
 
-def _whole(case: Case, found: MachineOrders, more: tuple[PlaceTable, ...], system: str) -> Subject:
+def _machine_table(found: MachineOrders, system: str) -> PlaceTable:
     major = found.major_orders or ()
     marks = ["major" if order in major else "" for order in found.orders.tolist()]
-    title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
-    table = _table("orders", title, found.machine, None, marks, system)
-    return Subject(
+    return _table(
+        "Orders of the turning effort, φ from the inner dead centre of crank 1", found.machine, None, marks, system
+    )
+
+
+def subjects(case: Case, asked: MachineOrders | None = None) -> Iterable[Subject]:
+    """Yield the whole machine; asked: by other than the usual orders."""
+    found = asked or case.harmonics()
+    yield Subject(
         "whole machine",
         (found,),
         left_out=lambda: (*flywheel_left_out(case.machine), *_no_cranks(found)),
         warnings=lambda: of_machine(case),
-        place_tables=(table, *more),
     )
-
-
-def subjects(case: Case) -> Iterable[Subject]:
-    """Yield the whole machine."""
-    yield _whole(case, case.harmonics(), (), "si")
 
 
 def _no_cranks(found: MachineOrders) -> Iterable[LeftOut]:
@@ -87,9 +89,9 @@ def _no_cranks(found: MachineOrders) -> Iterable[LeftOut]:
         yield LeftOut("gas and inertia apart", why)
 
 
-def _table(id: str, title: str, orders: Orders, area: float | None, marks: list[str], system: str) -> PlaceTable:
+def _table(title: str, orders: Orders, area: float | None, marks: list[str], system: str) -> PlaceTable:
     found = ((TORQUE_ORDERS[name], values) for name, values in _columns(orders, area))
-    return place_table(id, title, ("kind",), ((mark,) for mark in marks), found, system)
+    return place_table("orders", title, ("kind",), ((mark,) for mark in marks), found, system)
 
 
 def _columns(orders: Orders, area: float | None) -> Iterable[tuple[str, Sequence[Any]]]:

@@ -93,11 +93,12 @@ def _on_results(case: "Case") -> Iterable[Note]:
     yield from (Note(None, text) for text in told(warnings.strength_warnings(case), "stress"))
 
 
-def of_cylinder(found: Iterable[Note], machine: Machine, cylinder: Cylinder) -> Iterable[str]:
-    """Yield the notes on a cylinder; below the last one also those on the whole machine."""
-    for name, text in found:
-        if name == cylinder.name or (name is None and cylinder is machine.cylinders[-1]):
-            yield text
+def by_cylinder(case: "Case") -> dict[str, list[str]]:
+    """Return the notes on each cylinder by its name; those on the whole machine stand below the last one."""
+    found: dict[str, list[str]] = {one.name: [] for one in case.machine.cylinders}
+    for name, text in machine_notes(case.machine, case):
+        found[name or [*found][-1]].append(text)
+    return found
 
 
 def of_machine(case: "Case") -> Iterable[str]:

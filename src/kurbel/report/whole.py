@@ -126,25 +126,25 @@ _TERMS = (
 """Works of a cycle by their names in `CylinderForces`, the sign with which they reach the shaft, and what they are."""
 
 
+@np.errstate(all="ignore")
 def _energy(case: Case, system: str) -> Section | None:
     """Return for every cylinder where the energy of a cycle goes, and what an independent quadrature leaves open."""
     items: list[Item] = []
-    with np.errstate(all="ignore"):
-        for equal in gathered(case.cylinders, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
-            forces = equal[0]
-            try:
-                left = forces.work_left
-                terms = [(text, sign * value) for name, sign, text in _TERMS if (value := getattr(forces, name))]
-                residual = forces.energy_residual
-            except KurbelError:
-                continue
-            if left is None:
-                continue
-            unit = shown_unit("energy", system, max((abs(value) for _, value in terms), default=abs(left)))
-            terms.append(("Reaches the shaft, 2π R W per turn", left))
-            rows = [(text, f"{convert(value, 'energy', unit):.5g}", unit) for text, value in terms]
-            open_ = "below 1e-14" if residual is not None and abs(residual) < 1e-14 else f"{residual:.2g}"
-            rows.append(("Left open by an independent quadrature, over the turnover", open_, ""))
-            name = together([one.drive.name for one in equal])
-            items.append(Grid(name, ("Per cycle", "Energy", "Unit"), tuple(rows), numbers=(1,), units=(2,)))
+    for equal in gathered(case.cylinders, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
+        forces = equal[0]
+        try:
+            left = forces.work_left
+            terms = [(text, sign * value) for name, sign, text in _TERMS if (value := getattr(forces, name))]
+            residual = forces.energy_residual
+        except KurbelError:
+            continue
+        if left is None:
+            continue
+        unit = shown_unit("energy", system, max((abs(value) for _, value in terms), default=abs(left)))
+        terms.append(("Reaches the shaft, 2π R W per turn", left))
+        rows = [(text, f"{convert(value, 'energy', unit):.5g}", unit) for text, value in terms]
+        open_ = "below 1e-14" if residual is not None and abs(residual) < 1e-14 else f"{residual:.2g}"
+        rows.append(("Left open by an independent quadrature, over the turnover", open_, ""))
+        name = together([one.drive.name for one in equal])
+        items.append(Grid(name, ("Per cycle", "Energy", "Unit"), tuple(rows), numbers=(1,), units=(2,)))
     return Section("energy", "Energy balance", tuple(items)) if items else None

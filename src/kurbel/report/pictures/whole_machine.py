@@ -26,14 +26,12 @@ def effort(source: Source) -> Iterator[Panel]:
     for id, mean in (("E", None), ("omega", "omega_mean"), ("M_coupling", "M_mean")):
         if source.having((id,)):
             panel = source.panel((id,))
-            yield _with_mean(source, panel, id, mean) if mean else panel
-
-
-def _with_mean(source: Source, panel: Panel, id: str, mean: str) -> Panel:
-    value = getattr(source.results, mean)
-    quantity = source.results.lists.key_values("flywheel")[mean]
-    line = level(panel.curves, float(convert(value, source.quantity(id).kind, panel.y.unit)), words(quantity))
-    return panel._replace(curves=(*panel.curves, line))
+            if mean:
+                quantity = source.results.lists.key_values("flywheel")[mean]
+                height = convert(getattr(source.results, mean), source.quantity(id).kind, panel.y.unit)
+                line = level(panel.curves, float(height), words(quantity))
+                panel = panel._replace(curves=(*panel.curves, line))
+            yield panel
 
 
 def _effort(source: Source) -> Panel:
