@@ -50,7 +50,7 @@ def solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
     from kurbel.machine_file import source
     from representative import case_from
 
-    monkeypatch.setattr(Asked, "case", lambda asked: case_from(source.read(asked.file), asked.overrides))
+    monkeypatch.setattr(Asked, "case", lambda asked: case_from(source.read(asked.file).set_over(asked.overrides)))
 
 
 @pytest.fixture

@@ -21,7 +21,7 @@ from kurbel.report.check import checked
 from kurbel.report.compared import Unjudged, compared
 from kurbel.report.frame import Frame, report_of
 from kurbel.report.whole import COMMANDS
-from representative import few, shipped
+from representative import case_of, few, shipped
 
 ENDLESS = "{constant: {expansion: 1e300 at, compression: 1e300 at}}"
 HUGE = f"crank: 1 m\nrod_ratio: 5\nbore: 1 m\nindicator: {{head_end: {ENDLESS}}}\n"
@@ -63,9 +63,10 @@ def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
 
 @pytest.mark.parametrize("path", shipped("marine-diesel", "gas-engine", "coupled-blower"))
 def test_check_shows_the_warnings_of_every_command(path: Path) -> None:
-    machine = load(path)
-    case = solve(machine)
-    shown = {one.text for section in checked(machine).sections for one in section.entries if one.severity == "warning"}
+    case = case_of(path.stem)
+    shown = {
+        one.text for section in checked(case.machine).sections for one in section.entries if one.severity == "warning"
+    }
     frames = [Frame(command.word, (0.0,), None, "metric") for command in COMMANDS]
     for frame in frames:
         with suppress(UsageError):

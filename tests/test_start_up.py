@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from imported import modules_after
 from kurbel.machine_file import load
 from kurbel.report.warnings import cylinder_warnings
 from kurbel.solver.case import Case
@@ -54,13 +55,7 @@ NEEDLESS = (
 
 @pytest.mark.parametrize(("arguments", "needless"), NEEDLESS, ids=[arguments[0] for arguments, _ in NEEDLESS])
 def test_a_command_imports_nothing_that_it_does_not_need(arguments: list[str], needless: tuple[str, ...]) -> None:
-    code = (
-        "import sys\nfrom kurbel.cli import kurbel\n"
-        "try:\n    kurbel.main(sys.argv[1:])\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
-        "print(*sys.modules, file=sys.stderr)"
-    )
-    done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, encoding="utf-8", check=True)
-    assert {f"kurbel.{name}" for name in needless} & set(done.stderr.split()) == set()
+    assert {f"kurbel.{name}" for name in needless} & modules_after(arguments) == set()
 
 
 def test_the_end_loses_nothing_that_was_written_before() -> None:

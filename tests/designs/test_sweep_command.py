@@ -176,7 +176,8 @@ def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
 
 def test_rows_that_are_answered_one_after_another_are_handed_over_early() -> None:
     """In the company of others, so that they read as ever; a limit on delta makes the rows of any column slow."""
-    spec = sweep.Spec(source.read(WATERWORKS), ("limits.delta=1/20",), ("rod_ratio=3:6:0.1",), columns=("S_peak",))
+    origin = source.read(WATERWORKS).set_over(["limits.delta=1/20"])
+    spec = sweep.Spec(origin, ("rod_ratio=3:6:0.1",), columns=("S_peak",))
     chunks = list(sweep.Sweep(spec).chunks(range(5, 31)))
     assert chunks == [
         (range(20), range(5, 15)),
@@ -184,7 +185,7 @@ def test_rows_that_are_answered_one_after_another_are_handed_over_early() -> Non
         (range(20, 31), range(20, 30)),
         (range(20, 31), range(30, 31)),
     ]
-    without = sweep.Sweep(spec._replace(overrides=("limits={}",)))
+    without = sweep.Sweep(spec._replace(origin=origin.set_over(["limits={}"])))
     assert list(without.chunks(range(5, 31))) == [(range(20), range(5, 20)), (range(20, 31), range(20, 31))]
 
 

@@ -62,7 +62,7 @@ def _loaded(file: str, overrides: tuple[str, ...], file_name: str | None = None)
 
 def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> int:
     """Write all findings, those of a file that cannot be read, too, and return the status."""
-    from kurbel.machine_file.positions import located_in
+    from kurbel.machine_file.positions import located
     from kurbel.render.json_text import findings_json
     from kurbel.render.output import refuse_overwriting, stdout_look, write_out
     from kurbel.report.check import checked, faults_found, findings
@@ -75,7 +75,7 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
     else:
         refuse_overwriting(file_name, machine.trace_files)
         result = checked(machine)
-        found = findings(machine, result, located_in)
+        found = findings(machine, result, located)
         status = min((error.exit_status for error in result.errors), default=BROKEN if result.broken else DONE)
     write_out(findings_json(found, Look() if file_name else stdout_look()), file_name)
     return status

@@ -184,7 +184,8 @@ class _Asked(NamedTuple):
         refuse_overwriting(self.file_name, (self.file,))
         system = self.units or ("si" if self._written in ("csv", "json", "parquet") else "metric")
         plan = self.vary, self.side_by_side, self.sample, self.seed, self.sobol
-        return Spec(source.read(self.file), self.overrides, *plan, self.columns or (), self.with_angles, system)
+        origin = source.read(self.file).set_over(self.overrides)
+        return Spec(origin, *plan, self.columns or (), self.with_angles, system)
 
     def _out(self, found: "Sweep", rows: range, conditions: "Sequence[Condition]") -> "tuple[SweepOutput, range]":
         """Return where the rows go, and those that are not there yet."""

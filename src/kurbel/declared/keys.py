@@ -22,6 +22,8 @@ class Form(ABC):
     """Of the tree: str, list or dict."""
     shared: ClassVar[bool] = False
     """Whether keys of another record stand in the mapping in place of the key."""
+    kind: str = ""
+    """Kind of quantity of the number that stands under a key, or of each one of a list; '' where none does."""
 
     @abstractmethod
     def take(self, reading: Reading, value: Any, path: Path) -> Any:

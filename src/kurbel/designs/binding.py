@@ -3,7 +3,7 @@
 Every record that is made anew keeps its rules as when it is read; what a row breaks is told as `--set` would tell it.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -13,11 +13,11 @@ from kurbel.declared.keys import Form
 from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
 from kurbel.machine import Machine
+from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot, joined, one_kind, sort_of
-from kurbel.machine_file.events import parse
-from kurbel.machine_file.overrides import by_numbers, overridden, read_override
+from kurbel.machine_file.given import leaves, tree_of
+from kurbel.machine_file.overrides import by_numbers, read_override
 from kurbel.machine_file.reader import read_machine, reading_of
-from kurbel.machine_file.source import Source
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.varied import Parted
 
@@ -96,13 +96,14 @@ class Binder:
     start: texts that make a machine, from which the others differ. Raises UsageError for a key that is none.
     """
 
-    def __init__(self, source: Source, overrides: Sequence[str], keys: Sequence[str], start: Sequence[str]) -> None:
-        self._reading = reading_of(source)
+    def __init__(self, origin: Origin, keys: Sequence[str], start: Sequence[str]) -> None:
+        self._reading = reading_of(origin)
         births: list[Birth] = []
         self._reading.births = births
-        given = (*overrides, *(f"{key}={text}" for key, text in zip(keys, start)))
-        self.machine = read_machine(source, given, self._reading)
-        self._forms: list[Form] = []
+        begun = origin.set_over(f"{key}={text}" for key, text in zip(keys, start))
+        self.machine = read_machine(begun, self._reading)
+        self.kinds: list[str] = []
+        """Of the numbers that stand under the keys, '' of words."""
         self._slots: list[_Slot] = []
         for number, key in enumerate(keys):
             self._place(number, read_override(f"{key}=0").path, births)
@@ -111,7 +112,7 @@ class Binder:
     def _place(self, number: int, path: Path, births: list[Birth]) -> None:
         """Note in which slots a key stands: that of its record, and those of what is `like` that."""
         owner, name = _owner(path, births)
-        self._forms.append(owner.form.keys[name].form)
+        self.kinds.append(owner.form.keys[name].form.kind)
         for birth in births:
             if _reads(birth, name) and birth.mapping.get(name) is owner.mapping.get(name):
                 slot = next((one for one in self._slots if one.birth is birth and one.name == name), None)
@@ -119,10 +120,6 @@ class Binder:
                     slot = _Slot(birth, name, [])
                     self._slots.append(slot)
                 slot.varied.append((number, path[len(owner.path) + 1 :]))
-
-    def form(self, number: int) -> Form:
-        """Return what stands under a key."""
-        return self._forms[number]
 
     def _planned(self, births: list[Birth]) -> list[_Step]:
         steps: list[_Step] = []
@@ -210,9 +207,9 @@ def _of_one_sort(read: _Part) -> list[_Part]:
     return list(parts.values())
 
 
-def written_texts(source: Source, overrides: Sequence[str], keys: Sequence[str]) -> list[str]:
+def written_texts(origin: Origin, keys: Sequence[str]) -> list[str]:
     """Return what a file has under these dotted keys; raises UsageError for a key under which no value stands."""
-    tree = tree_of(source, overrides)
+    tree = tree_of(origin)
     return [_named(tree, key) for key in keys]
 
 
@@ -221,13 +218,6 @@ def _named(tree: Tree, key: str) -> str:
         return written(tree, key)
     except UsageError as error:
         raise UsageError(f"{shown(key)}: {error}") from None
-
-
-def tree_of(source: Source, overrides: Sequence[str]) -> Tree:
-    """Return a file as mappings, lists and texts, with what is set over it."""
-    tree: Tree = parse(source.text, Reading(source.folder))
-    overridden(tree, [read_override(one) for one in overrides])
-    return tree
 
 
 def written(tree: Tree, key: str) -> str:
@@ -245,21 +235,10 @@ def written(tree: Tree, key: str) -> str:
 
 def _meant(tree: Tree, key: str) -> str:
     """Return which key with a value was probably meant by one without, or an empty text."""
-    known = tuple(one for one in _keys_with_value(tree) if not one.startswith("uncertainty."))
+    texts = (path for path, value in leaves(tree) if isinstance(value, str) and path[0] != "uncertainty")
+    known = tuple(".".join(map(str, path)) for path in texts)
     ending = next((f"; did you mean '{one}'?" for one in known if one.endswith(f".{key}")), "")
     return ending or did_you_mean(by_numbers(tree, key), known)
-
-
-def _keys_with_value(tree: Tree, below: str = "") -> Iterator[str]:
-    """Yield the dotted keys under which a value stands, but for those of points."""
-    for step, node in tree.items():
-        if isinstance(node, str):
-            yield f"{below}{step}"
-        elif isinstance(node, dict):
-            yield from _keys_with_value(node, f"{below}{step}.")
-        else:
-            records = {str(place): one for place, one in enumerate(node) if isinstance(one, dict)}
-            yield from _keys_with_value(records, f"{below}{step}.")
 
 
 def _owner(path: Path, births: list[Birth]) -> tuple[Birth, str]:

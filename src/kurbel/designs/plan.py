@@ -73,19 +73,6 @@ class Plan:
         return tuple(found[one.key] for one in self.inputs)
 
 
-class Fixed:
-    """Rows whose texts are given one by one, (rows, keys)."""
-
-    def __init__(self, keys: Sequence[str], texts: Sequence[Sequence[str]]) -> None:
-        self.inputs = tuple(Input(key) for key in keys)
-        self._texts = texts
-        self.rows = len(texts)
-
-    def texts(self, row: int) -> tuple[str, ...]:
-        """Return the texts of the keys in a row."""
-        return tuple(self._texts[row])
-
-
 def shard(text: str, rows: int) -> range:
     """Return the rows of one shard of many, `2/8`; one after another they are all rows. Raises UsageError.
 

@@ -13,11 +13,11 @@ from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, asked_answers, subjects
 from kurbel.designs.inputs import Input, read_input
-from kurbel.designs.plan import Fixed, Plan
+from kurbel.designs.plan import Plan
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot
-from kurbel.machine_file.source import Source
 from kurbel.numerics.extreme import Extreme
 
 CHUNK = 200
@@ -33,12 +33,11 @@ _STARTS = 100
 class Spec(NamedTuple):
     """All that a sweep is made of, in texts, so that any process can make it anew.
 
-    vary: `KEY=…` each; or keys and rows of texts in `given`. columns: ids or symbols; with_angles: beside extremes the
-    angle where each stands; system: of units; the others: see `Plan`.
+    vary: `KEY=…` each; given: inputs beside these. columns: ids or symbols; with_angles: beside extremes the angle
+    where each stands; system: of units; the others: see `Plan`.
     """
 
-    source: Source
-    overrides: tuple[str, ...] = ()
+    origin: Origin
     vary: tuple[str, ...] = ()
     side_by_side: bool = False
     sample: int | None = None
@@ -47,7 +46,7 @@ class Spec(NamedTuple):
     columns: tuple[str, ...] = ()
     with_angles: bool = False
     system: str = "si"
-    given: tuple[tuple[str, ...], tuple[tuple[str, ...], ...]] | None = None
+    given: tuple[Input, ...] = ()
 
 
 class Head(NamedTuple):
@@ -80,13 +79,9 @@ class Sweep:
 
     def __init__(self, spec: Spec) -> None:
         self.spec = spec
-        plan: Plan | Fixed
-        if spec.given is None:
-            plan = Plan(list(map(read_input, spec.vary)), spec.side_by_side, spec.sample, spec.seed, spec.sobol)
-        else:
-            plan = Fixed(*spec.given)
-        self.plan = plan
-        self.rows = plan.rows
+        inputs = [*map(read_input, spec.vary), *spec.given]
+        self.plan = Plan(inputs, spec.side_by_side, spec.sample, spec.seed, spec.sobol)
+        self.rows = self.plan.rows
         self._binder = self._started()
         machine = self._binder.machine
         self.asked = asked_answers(machine, spec.columns)
@@ -99,7 +94,7 @@ class Sweep:
         failed = ""
         for row in range(min(self.rows, _STARTS)):
             try:
-                return Binder(self.spec.source, self.spec.overrides, keys, self.plan.texts(row))
+                return Binder(self.spec.origin, keys, self.plan.texts(row))
             except MachineFileError as error:
                 failed = failed or _as_varied(str(error), zip(keys, self.plan.texts(row)))
             except UsageError as error:
@@ -120,7 +115,7 @@ class Sweep:
         return tuple(heads)
 
     def _input_head(self, number: int, one: Input) -> Head:
-        kind = kind_of_form(self._binder.form(number))
+        kind = self._binder.kinds[number]
         first = _in_base([self.plan.texts(0)[number]], kind)[0] or 0.0
         return Head(one.key, shown_unit(kind, self.spec.system, first) if kind else "", True, kind)
 
@@ -231,13 +226,6 @@ def _one_in_base(text: str, kind: str) -> float | None:
         return parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
     except KurbelError:
         return None
-
-
-def kind_of_form(form: Any) -> str:
-    """Return the kind of the number that stands under a key; '' where none does."""
-    if hasattr(form, "kind"):
-        return form.kind if hasattr(form, "parse") else ""
-    return next((kind for _, part in form.parts() if not part.parts() and (kind := kind_of_form(part))), "")
 
 
 def _in_unit(number: Any, kind: str, unit: str) -> Any:

@@ -17,14 +17,14 @@ from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import answers_of, stands_beside
-from kurbel.designs.binding import Binder, tree_of, written
+from kurbel.designs.binding import Binder, written
 from kurbel.designs.columns import Answer, subjects
 from kurbel.designs.sampling import latin_hypercube
-from kurbel.designs.sweep import kind_of_form
 from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine.origin import Origin
+from kurbel.machine_file.given import tree_of
 from kurbel.machine_file.positions import located
-from kurbel.machine_file.source import Source, decode
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
@@ -79,13 +79,12 @@ class Uncertainty:
     Raises WrongUncertainty for keys under which no number stands, and for units that do not fit: all of them.
     """
 
-    def __init__(self, source: Source, overrides: Sequence[str], spreads: Mapping[str, str]) -> None:
-        tree, wrong = tree_of(source, overrides), dict[str, str]()
+    def __init__(self, origin: Origin, spreads: Mapping[str, str]) -> None:
+        tree, wrong = tree_of(origin), dict[str, str]()
         texts = _of_each(spreads, lambda key: written(tree, key), wrong)
         self.keys = tuple(texts)
-        self._binder = Binder(source, overrides, self.keys, list(texts.values()))
-        self._kinds = [kind_of_form(self._binder.form(number)) for number in range(len(self.keys))]
-        kinds = dict(zip(self.keys, self._kinds))
+        self._binder = Binder(origin, self.keys, list(texts.values()))
+        kinds = dict(zip(self.keys, self._binder.kinds))
         values = _of_each(self.keys, lambda key: _number(texts[key], kinds[key]), wrong)
         self._values = list(values.values())
         widths = _of_each(values, lambda key: _spread(spreads[key], kinds[key], values[key]), wrong)
@@ -96,7 +95,7 @@ class Uncertainty:
     def _texts(self, shifts: Sequence[float]) -> list[str]:
         """Return the texts of the inputs where each is off by so many of its uncertainties."""
         values = (value + shift * spread for value, shift, spread in zip(self._values, shifts, self._spreads))
-        return [f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._kinds)]
+        return [f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._binder.kinds)]
 
     def _answers(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer]) -> Any:
         """Return the answers (machines, asked) as floats, nan where there are none."""
@@ -245,16 +244,13 @@ def given_uncertainty(machine: Machine, more: Sequence[tuple[str, str]] = ()) ->
     spreads = dict(machine.uncertainty) | outside
     if not spreads or origin is None:
         return None
-    import os
-
-    source = decode(origin.name, origin.content, os.path.dirname(origin.name))
     try:
-        return Uncertainty(source, origin.overrides, spreads)
+        return Uncertainty(origin, spreads)
     except WrongUncertainty as error:
         wrong = error.faults
     if told := [f"--uncertainty {key}: {wrong[key]}" for key in outside if key in wrong]:
         raise UsageError("; ".join(told))
-    raise source.error(*located(source.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
+    raise origin.error(*located(origin.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
 
 
 def _asked(case: Case, command: str) -> list[Answer]:

@@ -291,13 +291,9 @@ class SliderCrank(Mechanism):
         return bearing + sweep if outstroke else 360.0 + bearing - sweep
 
     def landmarks(self) -> tuple[float, ...]:
-        """Return 90°, 270° and the velocity peaks, with a fan round 90° and 270° where the rod barely reaches."""
+        """Return a fan round 90° and 270° where the rod barely reaches."""
         beyond, within = (sqrt(2 * gap) * (180 / math.pi) for gap in self._gaps)
-        marks = (*fan(90.0, beyond), *fan(270.0, within))
-        if not self._straight:
-            return marks
-        peak = formulas.velocity_peak(self.lam, self.rho).degrees
-        return *marks, peak, 360 - peak
+        return *fan(90.0, beyond), *fan(270.0, within)
 
     def velocity_extremes(self) -> tuple[Extreme, ...]:
         """Return ±c_max/ω in m in closed form, straight slider-crank only."""

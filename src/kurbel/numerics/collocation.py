@@ -11,8 +11,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Flags
 from kurbel.numerics.cyclic import around
-from kurbel.numerics.elements import STAGES, Elements, Prepared, rule
-from kurbel.numerics.legendre import legendre
+from kurbel.numerics.elements import STAGES, Elements, Prepared, legendre, rule
 
 _TOLERANCE = 1e-13
 """What the last two Legendre coefficients of an element may be, over the swing of the unknown."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.gauss import LOBATTO_12
-from kurbel.numerics.grid import SAME, Grid, Pieces
+from kurbel.numerics.grid import SAME, Grid, Pieces, narrow
 
 
 class Unlike(Exception):
@@ -72,9 +72,7 @@ class Cycles(Grid):
 
     def __init__(self, breaks: Flat, cycle: float) -> None:
         self.variant, low = breaks
-        last = np.append(self.variant[1:] != self.variant[:-1], True)
-        high = np.where(last, cycle, np.append(low[1:], cycle))
-        Pieces.__init__(self, low, high, LOBATTO_12)
+        Pieces.__init__(self, low, _ends(breaks, cycle), LOBATTO_12)
         self.cycle = cycle
 
     @cached_property
@@ -112,18 +110,26 @@ class Cycles(Grid):
 
 
 def cycles_of_turns(landmarks: Iterable[Any], cycle: float, jumps: Iterable[Any], count: int) -> Cycles:
-    """Return the cycles (360 or 720 deg) of so many variants, every turn cut at the landmarks, and every 45°.
+    """Return the cycles (360 or 720 deg) of so many variants, every turn cut at the landmarks, in pieces up to 45°.
 
     landmarks: floats, or arrays (v,), nan where a variant has none; jumps: further angles in the cycle, (n,) or
     `Flat`.
     """
     more = [one if isinstance(one, Flat) else Flat.alike(one, count) for one in jumps]
     turns = np.arange(0.0, cycle, 360.0)
-    each = np.stack([np.broadcast_to(mark, count) for mark in (*landmarks, *np.arange(0.0, 360.0, 45.0))], axis=1)
+    each = np.stack([np.broadcast_to(mark, count) for mark in (0.0, *landmarks)], axis=1)
     angles = np.add.outer(np.mod(each, 360.0), turns).reshape(count, -1)
     smooth = Flat(np.repeat(np.arange(count), angles.shape[1]), angles.ravel())
     whole = Flat(*(np.concatenate(parts) for parts in zip(smooth, *more, strict=True)))
-    return Cycles(_breaks(whole, cycle), cycle)
+    breaks = _breaks(whole, cycle)
+    low, whose = narrow(breaks.values, _ends(breaks, cycle))
+    return Cycles(Flat(breaks.variant[whose], low), cycle)
+
+
+def _ends(breaks: Flat, cycle: float) -> Array:
+    """Return the angles at which the pieces of every variant end that begin at these."""
+    last = np.append(breaks.variant[1:] != breaks.variant[:-1], True)
+    return np.where(last, cycle, np.append(breaks.values[1:], cycle))
 
 
 def _breaks(angles: Flat, cycle: float) -> Flat:

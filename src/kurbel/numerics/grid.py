@@ -10,6 +10,7 @@ from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.gauss import GAUSS, LOBATTO_4, LOBATTO_16, Rule
 
 _MANY = 300  # jumps; where there are fewer, sixteen points a piece cost nothing
+_WIDEST = 45.0  # degrees of a smooth piece
 _PARTS = 23  # of a smooth piece, 2° of 45°; on each four points integrate as exactly as sixteen on the whole
 SAME = 1e-10  # degrees; two angles that differ by rounding only would leave a piece without width
 _HALVES = np.array([0.0, 0.5, 1.0])
@@ -216,9 +217,9 @@ def _interpolation(nodes: Array, at: Array) -> Array:
 class Cuts(NamedTuple):
     """Where a cycle is cut into smooth pieces, both in degrees from 0 to its end.
 
-    smooth: ascending, so dense, toward a pole beside the real axis too, that on every piece the polynomial through
-    sixteen points is exact, and the integral of that through twelve. jumps: further angles at which something bends or
-    jumps, be they thousands.
+    smooth: ascending, so dense toward a pole beside the real axis that on every piece, none being wider than 45°, the
+    polynomial through sixteen points is exact, and the integral of that through twelve. jumps: further angles at which
+    something bends or jumps, be they thousands.
     """
 
     smooth: Array
@@ -226,8 +227,8 @@ class Cuts(NamedTuple):
 
     @classmethod
     def of_turns(cls, landmarks: Iterable[float], cycle: float, jumps: Iterable[Array] = ()) -> "Cuts":
-        """Return the cuts of a cycle (360 or 720 deg) of which every turn is cut at the landmarks, and every 45°."""
-        each = np.mod([*landmarks, *np.arange(0.0, 360.0, 45.0)], 360.0)
+        """Return the cuts of a cycle (360 or 720 deg) of which every turn is cut at the landmarks."""
+        each = np.mod(np.array([*landmarks]), 360.0)
         turns = [each + turn for turn in np.arange(0.0, cycle, 360.0)]
         return cls(_cycle(np.array([0.0, cycle]), *turns), np.concatenate([np.array([]), *jumps]))
 
@@ -251,9 +252,22 @@ class Cuts(NamedTuple):
     def grid(self, rule: Rule = GAUSS) -> Grid:
         """Return the pieces. Between many jumps they have four points, and the smooth pieces are cut to suit them."""
         if len(self.jumps) <= _MANY:
-            return Grid(_cycle(self.smooth, self.jumps), rule)
-        parts = self.smooth[:-1, None] + np.diff(self.smooth)[:, None] * (np.arange(_PARTS) / _PARTS)
-        return Grid(_cycle(self.smooth[[0, -1]], parts.ravel(), self.jumps), LOBATTO_4)
+            return Grid(_narrow(_cycle(self.smooth, self.jumps)), rule)
+        smooth = _narrow(self.smooth)
+        parts = smooth[:-1, None] + np.diff(smooth)[:, None] * (np.arange(_PARTS) / _PARTS)
+        return Grid(_cycle(smooth[[0, -1]], parts.ravel(), self.jumps), LOBATTO_4)
+
+
+def narrow(low: Array, high: Array) -> tuple[Array, Indices]:
+    """Return where the equal parts of pieces (n,) begin, none of them wider than 45°, and of which piece each is."""
+    counts = np.maximum(np.ceil((high - low) / _WIDEST - SAME), 1).astype(np.intp)
+    whose = np.repeat(np.arange(len(low)), counts)
+    number = np.arange(len(whose)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return low[whose] + number * ((high - low) / counts)[whose], whose
+
+
+def _narrow(breaks: Array) -> Array:
+    return np.append(narrow(breaks[:-1], breaks[1:])[0], breaks[-1])
 
 
 def _cycle(*angles: Array) -> Array:

@@ -9,7 +9,6 @@ from kurbel.declared.forms import Physical
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.origin import Origin
 from kurbel.mechanisms import Mechanism
 from kurbel.report.alike import grouped, together
 from kurbel.report.compared import Entry, Unjudged, judged
@@ -256,11 +255,11 @@ def faults_found(file: str, error: KurbelError) -> Findings:
     )
 
 
-Locate = Callable[[Origin, "list[Fault]"], "list[Fault]"]
+Locate = Callable[[str, "list[Fault]"], "list[Fault]"]
 
 
 def findings(machine: Machine, checked: Checked, locate: Locate) -> Findings:
-    """Return what was found of a machine; locate: returns faults with their places in the machine file."""
+    """Return what was found of a machine; locate: returns faults with their places in the text of the file."""
     several = len(machine.cylinders) > 1
     said = [
         (
@@ -274,7 +273,7 @@ def findings(machine: Machine, checked: Checked, locate: Locate) -> Findings:
     ]
     said += [(path, str(error).removeprefix(f"{path_text(path)}: "), "error") for path, error in checked.unjudged]
     origin, paths = machine.origin, {path for path, _, _ in said if path}
-    placed = locate(origin, [Fault(path, "", at_key=True) for path in paths]) if origin and paths else []
+    placed = locate(origin.text, [Fault(path, "", at_key=True) for path in paths]) if origin and paths else []
     places = {fault.path: fault for fault in placed}
     file = origin.name if origin else machine.name
     found = tuple(_finding(file, path, places.get(path), text, severity) for path, text, severity in said)

@@ -30,16 +30,16 @@ def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report
     Raises UsageError where no crankshaft can be examined.
     """
     (whole,) = subjects(case)
-    tables = tuple(_place_tables(case.strength, frame.system))
+    tables = tuple(_place_tables(case.stress, frame.system))
     whole = whole._replace(name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
-    cool, verdict = shell_verdict(case.strength)
-    notes = (*_NOTES, *((_TURNING_ROD,) if case.strength.C_rod else ()), *(verdict if cool else ()))
+    cool, verdict = shell_verdict(case.stress)
+    notes = (*_NOTES, *((_TURNING_ROD,) if case.stress.C_rod else ()), *(verdict if cool else ()))
     return frame.report(case.machine, "Festigkeit der Kurbelwelle", (), whole, notes)
 
 
 def subjects(case: Case) -> Iterable[Subject]:
     """Yield the crankshaft."""
-    machine, strength = case.machine, case.strength
+    machine, strength = case.machine, case.stress
     yield Subject(
         "crankshaft",
         (strength,),

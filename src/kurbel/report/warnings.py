@@ -165,7 +165,7 @@ def _coupling_warnings(turning: "MachineTurning") -> Iterable[str]:
 def strength_warnings(case: Case) -> Iterable[str]:
     """Yield what looks wrong in the crankshaft."""
     if not case.machine.strength_obstacle:
-        cool, verdict = shell_verdict(case.strength)
+        cool, verdict = shell_verdict(case.stress)
         yield from () if cool else verdict
 
 

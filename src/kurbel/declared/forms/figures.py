@@ -134,7 +134,7 @@ class Expectations(_Figures):
     what = "expectation"
 
     def figure(self, quantity: Quantity) -> Form:
-        return _Figure(Number() if quantity.kind == "ratio" else Physical(quantity.kind), quantity.kind)
+        return _Figure(Number() if quantity.kind == "ratio" else Physical(quantity.kind))
 
     def expected(self) -> str:
         return "a mapping of key values to figures, such as 'b_max: 13.16 m/s2 ± 0.5 %'"
@@ -150,8 +150,8 @@ _PERCENT = rf"({NUMBER.pattern})\s*%"
 class _Figure(Form):
     """A figure with its tolerance, such as `13.16 m/s2 ± 0.5 %`, or a list of two bounds; becomes an Expected."""
 
-    def __init__(self, size: Number | Physical, kind: str) -> None:
-        self.size, self.kind = size, kind
+    def __init__(self, size: Number | Physical) -> None:
+        self.size = size
 
     def expected(self) -> str:
         return (
@@ -165,7 +165,7 @@ class _Figure(Form):
         return f"{self.size.example()} ± 0.1 {written_unit(self.size.example())}".rstrip()
 
     def schema(self, definitions: Schema) -> Schema:
-        name = f"figure_{self.kind}"
+        name = f"figure_{self.size.kind}"
         definitions[name] = {
             "anyOf": [
                 {"type": "string", "pattern": r"^[^±]*[0-9][^±]*(±|\+\s*/?\s*-)\s*[0-9.][^±]*$"},

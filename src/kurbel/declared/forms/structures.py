@@ -19,7 +19,7 @@ class Listing(Form):
     shape = list
 
     def __init__(self, item: Form) -> None:
-        self.item = item
+        self.item, self.kind = item, item.kind
 
     def expected(self) -> str:
         return "a list, each item after '- '"
@@ -55,6 +55,7 @@ class OneOf(Form):
 
     def __init__(self, *forms: Form) -> None:
         self.forms = forms
+        self.kind = next((form.kind for form in forms if form.kind), "")
 
     def expected(self) -> str:
         return ", or ".join(form.expected() for form in self.forms)

@@ -296,7 +296,7 @@ def _sources(case: "Case", declared: Declared, wish: Wish) -> "Iterator[tuple[So
 
 _OF_MACHINE: "dict[str, Callable[[Case], Any]]" = {
     "flywheel": lambda case: case.flywheel,
-    "stress": lambda case: case.strength,
+    "stress": lambda case: case.stress,
     "balance": lambda case: case.balance,
     "harmonics": lambda case: case.harmonics(),
     "torsion": lambda case: case.torsion,

@@ -17,7 +17,7 @@ from kurbel.solver.cylinder.following import Following
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.pins import on_crosshead_pin, on_pin
 from kurbel.solver.shaft.line import ShaftLine, Throw, shaft_obstacle
-from kurbel.solver.shaft.statics import Vector, norm, turned
+from kurbel.solver.shaft.statics import Vector, norm
 
 
 class RodPin(Bearing):
@@ -76,22 +76,22 @@ class MainBearing(Bearing):
 
     def loads(self, degrees: Array, within: Array) -> Loads:
         """Return the load; see `Bearing`."""
-        throw = Plane.of_throw(self._force(degrees, within, rubbed=True))
+        throw = self._force(degrees, within, rubbed=True)
         angle = jet_angle(degrees)
         return Loads({"throw": throw, "engine": throw.turned(angle.cos, angle.sin)})
 
-    def _force(self, degrees: Array, within: Array, rubbed: bool) -> Vector:
+    def _force(self, degrees: Array, within: Array, rubbed: bool) -> Plane:
         """Return the force in N in the frame of crank 1; rubbed: with what the friction of the pins does to it."""
         found = [self._of_throw(throw, degrees, within, rubbed) for throw in self._throws]
-        return Vector(*(sum(parts[1:], parts[0]) for parts in zip(*found)))
+        return Plane(*map(sum, zip(*found)))
 
-    def _of_throw(self, throw: Throw, degrees: Array, within: Array, rubbed: bool) -> Vector:
+    def _of_throw(self, throw: Throw, degrees: Array, within: Array, rubbed: bool) -> Plane:
         every = [self._of_cylinder[index].jets_at(degrees, within) for index in throw.cylinders]
         pins = [on_pin(one if rubbed else one.unrubbed) for one in every if one.drive.has_force]
         none = np.zeros_like(degrees)
-        pin = Vector(*(sum(parts, none) for parts in zip(*pins))) if pins else Vector(none, none)
+        pin = Vector(*map(sum, zip(Vector(none, none), *pins)))
         both = self._line.carried(throw, pin, every[0].drive.cylinder, every[0].angle)
-        return turned(both[0] if self._number == throw.A else both[1], throw.angle)
+        return Plane.of_throw(both[0] if self._number == throw.A else both[1]).turned_by(throw.angle)
 
     @cached_property
     def work_rubbing(self) -> float | None:

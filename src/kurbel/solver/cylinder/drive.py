@@ -245,7 +245,10 @@ class Drive:
 
     @property
     def _smooth(self) -> list[Any]:
-        return [*self.mechanism.cuts(), *self._near_locking(), *(angle for gas in self.gas for angle in gas.bends)]
+        # where the rod turns back, friction in its pins jumps
+        turns = (90.0, 270.0) if self.pin_friction else ()
+        bends = (angle for gas in self.gas for angle in gas.bends)
+        return [*self.mechanism.cuts(), *turns, *self._near_locking(), *bends]
 
     def _near_locking(self) -> Iterator[Any]:
         """Yield angles, ever denser, round those at which a driven crosshead comes nearest to locking itself.

@@ -104,7 +104,7 @@ class PinFriction:
             with np.errstate(all="ignore"):
                 beside = np.hypot(x, y) / np.hypot(dx, dy)
             for one in np.flatnonzero(beside < _NEAR).tolist():
-                found += fan(float(degrees[one]), math.degrees(beside[one]))
+                found += (float(degrees[one]), *fan(float(degrees[one]), math.degrees(beside[one])))
         return np.asarray(np.mod(found, self._drive.cycle))
 
     def moments(self, state: "State") -> Rubbing:

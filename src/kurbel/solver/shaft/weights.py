@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 
@@ -53,12 +53,6 @@ class OwnThrow:
         """Return a counterweight whose angle counts from this throw; beside: its place where none is given."""
         product = one.product * unit_vector(self.bank - self.late + one.angle)
         return Weight(product, 1, beside if one.axial_position is None else one.axial_position, self.number)
-
-
-def unit_vector(degrees: float) -> complex:
-    """Return e^{iφ} of an angle in degrees, reduced exactly."""
-    angle = CrankAngle.of(degrees)
-    return complex(angle.cos, angle.sin)
 
 
 def middle_of(machine: Machine) -> float | None:

@@ -4,7 +4,6 @@ One sampling of both torques on the grid of their common pieces serves the mean,
 """
 
 import math
-from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -17,7 +16,7 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
 from kurbel.numerics.piecewise import Piecewise
-from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
+from kurbel.numerics.search import Extremes, Sampled, extremes, zeros
 from kurbel.solver.turning.torques import Sum, Torque, Uniform
 
 _ROUNDING = 1e-13
@@ -77,7 +76,8 @@ class Excess:
         # an effort that equals the resistance over a while differs from it by rounding only
         size = max(abs(extreme.value) for extreme in self.effort_extremes)
         sampled = Sampled.of(self._sampled, self.grid.degrees.shape)
-        return tuple(zeros(self.grid, {"M": sampled}, _evaluated(self.line.at), size)["M"].tolist())
+        found = zeros(self.grid, {"M": sampled}, lambda *at: {"M": Sampled.of(self.line.at(*at), at[0].shape)}, size)
+        return tuple(found["M"].tolist())
 
     def at(self, degrees: Array) -> Array:
         """Return E in J at crank angles (…,) in degrees, counted from φ = 0; an angle's E hangs on no other one."""
@@ -145,7 +145,3 @@ class _Evaluated:
 
     def __call__(self, degrees: Array, within: Any) -> dict[str, Sampled]:
         return {"M": Sampled.of(self._torque.torque(degrees, within), degrees.shape)}
-
-
-def _evaluated(torque: Callable[[Array, Array], Jet]) -> Evaluate:
-    return lambda degrees, within: {"M": Sampled.of(torque(degrees, within), degrees.shape)}

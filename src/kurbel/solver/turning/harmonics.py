@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import unit_vector
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.numerics.gauss import GAUSS
 from kurbel.numerics.grid import Pieces
@@ -61,8 +61,7 @@ class Spectrum(NamedTuple):
 
     def turned(self, degrees: float) -> "Spectrum":
         """Return that of the torque put earlier by an angle."""
-        turn = CrankAngle.of(self.orders * degrees)
-        return self._replace(amplitudes=self.amplitudes * (turn.cos + 1j * np.asarray(turn.sin)))
+        return self._replace(amplitudes=self.amplitudes * unit_vector(self.orders * degrees))
 
     @property
     def size(self) -> float:
@@ -71,8 +70,7 @@ class Spectrum(NamedTuple):
 
     def at(self, degrees: Array) -> Array:
         """Return the sum of the mean and these orders in N m at crank angles (k,) in degrees."""
-        turned = np.radians(np.mod(np.multiply.outer(degrees, self.orders), 360.0))
-        return np.asarray(self.mean + np.cos(turned) @ self.amplitudes.real - np.sin(turned) @ self.amplitudes.imag)
+        return np.asarray(self.mean + (unit_vector(np.multiply.outer(degrees, self.orders)) @ self.amplitudes).real)
 
 
 def spectrum(torque: Torque, orders: Array) -> Spectrum:
@@ -218,10 +216,5 @@ class MachineOrders:
         positions = np.array([one.forces.drive.cylinder.crank_position for one in self.cylinders])
         if len(positions) < 2:
             return None
-        together = np.abs(phases(self.orders, positions).sum(axis=1)) >= (1 - _ALIKE) * len(positions)
+        together = np.abs(unit_vector(np.outer(self.orders, positions)).sum(axis=1)) >= (1 - _ALIKE) * len(positions)
         return tuple(self.orders[together].tolist())
-
-
-def phases(orders: Array, positions: Array) -> ComplexArray:
-    """Return e^{−iνβ} for orders (n,) and crank positions β (k,) in degrees, (n, k)."""
-    return np.asarray(np.exp(-1j * np.radians(np.mod(np.multiply.outer(orders, positions), 360.0))))
