@@ -4,9 +4,9 @@ It is said as notes, since the file may be right.
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.declared.unit_systems import show
 from kurbel.machine import Cylinder, Machine
@@ -42,22 +42,14 @@ def machine_notes(machine: Machine, case: "Case | None" = None) -> tuple[Note, .
 
     case: the machine with its results; of a machine that only moves nothing is computed.
     """
-    chambers = [(cylinder, *one) for cylinder in machine.cylinders for one in _chambers(cylinder)]
-    found = [
-        Note(cylinder.name, f"{where}: {text}")
-        for cylinder, where, chamber in chambers
-        for text in getattr(chamber, "notes", ())
-    ]
-    found += [
-        Note(cylinder.name, text)
-        for cylinder in machine.cylinders
-        for piston in cylinder.pistons
-        for text in (*_card_end_notes(piston), *_exponent_notes(piston))
-    ]
-    found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
-    found += [Note(None, text) for text in _speed_notes(machine)]
-    found += [Note(cylinder.name, text) for cylinder in machine.cylinders for text in _size_notes(cylinder)]
-    found += [Note(None, text) for text in pin_notes(machine)]
+
+    def of_each(judge: Callable[[Cylinder], Iterable[str]]) -> list[Note]:
+        return [Note(cylinder.name, text) for cylinder in machine.cylinders for text in judge(cylinder)]
+
+    effort = (f"effort: {text}" for text in getattr(machine.effort, "notes", ()))
+    found = [*of_each(_chamber_notes), *of_each(_card_notes)]
+    found += [Note(None, text) for text in (*effort, *_speed_notes(machine))]
+    found += [*of_each(_size_notes), *(Note(None, text) for text in pin_notes(machine))]
     if machine.effort or any(map(_acts, machine.cylinders)):
         import numpy as np
 
@@ -68,11 +60,16 @@ def machine_notes(machine: Machine, case: "Case | None" = None) -> tuple[Note, .
     return tuple(dict.fromkeys(found))
 
 
-def _chambers(cylinder: Cylinder) -> Iterable[tuple[str, Any]]:
+def _chamber_notes(cylinder: Cylinder) -> Iterable[str]:
     for piston in cylinder.pistons:
-        if piston.indicator:
-            yield f"{piston.name}, head end", piston.indicator.head_end
-            yield f"{piston.name}, crank end", piston.indicator.crank_end
+        for end, chamber in piston.chambers.items():
+            for text in getattr(chamber, "notes", ()):
+                yield f"{piston.name}, {end.replace('_', ' ')}: {text}"
+
+
+def _card_notes(cylinder: Cylinder) -> Iterable[str]:
+    for piston in cylinder.pistons:
+        yield from (*_card_end_notes(piston), *_exponent_notes(piston))
 
 
 def _acts(cylinder: Cylinder) -> bool:
@@ -136,13 +133,12 @@ def _size_notes(cylinder: Cylinder) -> Iterable[str]:
 def _exponent_notes(piston: Piston) -> Iterable[str]:
     """Yield a note on each exponent of a card by which no gas expands or is compressed."""
     least, most = _EXPONENTS
-    ends = (piston.indicator.head_end, piston.indicator.crank_end) if piston.indicator else ()
-    for end, chamber in zip(("head end", "crank end"), ends):
+    for end, chamber in piston.chambers.items():
         given = {getattr(chamber, key) for key in ("exponent", "expansion_exponent") if hasattr(chamber, key)}
         for value in sorted(given):
             if not least <= value <= most:
                 said = f"an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
-                yield f"{piston.name}, {end}: {said}"
+                yield f"{piston.name}, {end.replace('_', ' ')}: {said}"
 
 
 def pin_notes(machine: Machine) -> Iterator[str]:
@@ -172,11 +168,11 @@ def _card_end_notes(piston: Piston) -> Iterable[str]:
 
     Their cards may be drawn from the same dead centre.
     """
-    if not piston.indicator:
+    if not piston.chambers:
         return
     from kurbel.machine.indicator import Card
 
-    leans = [_lean(end) for end in (piston.indicator.head_end, piston.indicator.crank_end) if isinstance(end, Card)]
+    leans = [_lean(end) for end in piston.chambers.values() if isinstance(end, Card)]
     if len(leans) < 2 or min(leans) >= -_PLAIN or max(leans) <= _PLAIN:
         return
     end, centre = ("crank end", "outer") if leans[1] < 0 else ("head end", "inner")

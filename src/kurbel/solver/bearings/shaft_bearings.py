@@ -147,10 +147,10 @@ class ShaftBearings:
             of = f" of {one.drive.name}" if several else ""
             yield RodPin(f"crank pin{of}", one, self._pin_size(number), "crank_pin")
             yield RodPin(f"crosshead pin{of}", one, _crosshead_size(one), "crosshead_pin")
-        line = self.line
-        for number in range(line.bearings) if line else ():
-            name = f"bearing {'AB'[number] if line.bearings == 2 else number + 1}"  # type: ignore[union-attr]
-            yield MainBearing(name, number, line, followed, self._journal_size())  # type: ignore[arg-type]
+        if self.line:
+            names = "AB" if self.line.bearings == 2 else range(1, self.line.bearings + 1)
+            for number, name in enumerate(names):
+                yield MainBearing(f"bearing {name}", number, self.line, followed, self._journal_size())
 
     def _pin_size(self, number: int) -> Size:
         """Return the size of a crank pin; rods side by side on one pin have equal parts of its length."""
