@@ -87,7 +87,7 @@ def _aligned(one: _Shown, whole: int) -> str:
 def _shown(one: KeyValue, look: Look) -> _Shown:
     charset = look.charset
     whole, fraction = _number(one, look)
-    place = "" if one.at_deg is None else f"at {angle(one.at_deg, look.comma)}{charset.degree}"
+    place = "" if one.at_deg is None else f"at {angle(one.at_deg, look.comma)}{charset.text('°')}"
     return _Shown(
         charset.symbol(one.symbol, one.ascii_symbol), whole, fraction, charset.unit(one.unit), place, one.text
     )
@@ -107,7 +107,7 @@ def _number(one: KeyValue, look: Look) -> tuple[str, str]:
 def number_text(one: KeyValue, look: Look) -> str:
     """Return the number of a key value, or its numbers in one line; of a long list how many there are."""
     if one.value is None or one.value == ():
-        return look.charset.no_value
+        return look.charset.text("–")
     if one.noise:
         return look.charset.below(NOISE_POWER)
     if not isinstance(one.value, tuple):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from kurbel.render import Look
 from kurbel.render.charset import width
-from kurbel.render.numbers import Scale, angle_scale, cell, scale_of, whole_if_integral
+from kurbel.render.numbers import Scale, angle_scale, cell, decimal, scale_of, whole_if_integral
 from kurbel.report.tables import Column, Part, Report, Value
 
 MARK = "*"
@@ -113,7 +113,7 @@ def ratio_text(part: Part, look: Look) -> str:
     ratio = str(whole_if_integral(float(part.name)))
     if ratio == "inf" and look.charset.has("∞"):
         return "∞"
-    return ratio.replace(".", ",") if look.comma else ratio
+    return decimal(ratio, look.comma)
 
 
 def _row(column: Column, look: Look, pad: str) -> Row:

@@ -15,7 +15,7 @@ from kurbel.designs.chosen import Unit
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.csv_text import _harmless, _quoted
-from kurbel.render.numbers import exact, single
+from kurbel.render.numbers import decimal, exact, single
 from kurbel.render.output import silence, stdout_look
 
 _AT_LEAST_EVERY = 0.5
@@ -108,8 +108,7 @@ def _cell(value: Any, look: Look, in_full: bool = False) -> str:
     if isinstance(value, tuple):
         return " ".join(_cell(one, look, in_full) for one in value)
     if in_full:
-        text = exact(value, look.digits)
-        return text.replace(".", ",") if look.comma else text
+        return decimal(exact(value, look.digits), look.comma)
     text, power = single(value, look.digits, look.comma)
     return f"{text}e{power}" if power else text
 

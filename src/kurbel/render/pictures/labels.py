@@ -183,7 +183,8 @@ def figure_text(figure: Figure, look: Look) -> str:
         number = look.charset.counted(signed(number, look), power)
         text += f" {number} {look.charset.unit(figure.unit)}".rstrip()
     if figure.at_deg is not None:
-        text += f"{',' if figure.value is not None else ''} {angle(figure.at_deg, look.comma)}{look.charset.degree}"
+        comma = "," if figure.value is not None else ""
+        text += f"{comma} {angle(figure.at_deg, look.comma)}{look.charset.text('°')}"
     return text
 
 

@@ -120,7 +120,7 @@ def _below(panel: Panel, scale: Scale, canvas: Canvas, side: int, look: Look) ->
     """Yield the axis below a panel, its ticks, and what runs along it."""
     values = ticks(scale, panel.x, max(2, canvas.columns // 10))
     texts = tick_texts(panel.x, values, look)
-    rule = [look.charset.rule] * canvas.columns
+    rule = [look.charset.text("─")] * canvas.columns
     under = [" "] * canvas.columns
     end = 0
     for value, text in zip(values, texts):

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.render.numbers import decimal
 from kurbel.report.pictures.picture import Axis, Panel
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
@@ -100,4 +101,4 @@ def tick_text(value: float, values: list[float], comma: bool) -> str:
     else:
         decimals = max((len(f"{one:.9g}".partition(".")[2]) for one in values if "e" not in f"{one:.9g}"), default=0)
         text = f"{value:.{decimals}f}"
-    return text.replace(".", ",") if comma else text
+    return decimal(text, comma)
