@@ -104,16 +104,9 @@ def part_name(report: Report, part: Part, look: Look) -> str:
     if part is report.whole:
         return look.charset.text(str(part.name)) if report.parts else ""
     if report.group == "ratios":
-        return f"L/R = {ratio_text(part, look)}"
+        ratio = str(whole_if_integral(float(part.name))).replace("inf", "∞")
+        return look.charset.text(f"L/R = {decimal(ratio, look.comma)}")
     return look.charset.text(str(part.name)) if len(report.all_parts) > 1 else ""
-
-
-def ratio_text(part: Part, look: Look) -> str:
-    """Return L/R as a person writes it."""
-    ratio = str(whole_if_integral(float(part.name)))
-    if ratio == "inf" and look.charset.has("∞"):
-        return "∞"
-    return decimal(ratio, look.comma)
 
 
 def _row(column: Column, look: Look, pad: str) -> Row:

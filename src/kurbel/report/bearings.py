@@ -1,6 +1,7 @@
 """The report of `kurbel bearings`: the load on every pin and main bearing, each a part of its own."""
 
 from collections.abc import Iterable
+from functools import partial
 
 from kurbel.declared.unit_systems import show
 from kurbel.report.frame import Frame, Subject
@@ -31,17 +32,9 @@ def subjects(case: Case) -> Iterable[Subject]:
     """Yield every pin and main bearing."""
     for forces in case.cylinders:
         forces.refuse_locking()
-    return map(_subject, case.bearings.parts)
-
-
-def _subject(part: Bearing) -> Subject:
-    return Subject(
-        part.name,
-        (part,),
-        part.at,
-        left_out=lambda: _left_out(part),
-        of=part.followed[0].drive.name if part.of_rod else "",
-    )
+    for part in case.bearings.parts:
+        of = part.followed[0].drive.name if part.of_rod else ""
+        yield Subject(part.name, (part,), part.at, left_out=partial(_left_out, part), of=of)
 
 
 _FRAMES = (
