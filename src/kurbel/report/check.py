@@ -13,7 +13,7 @@ from kurbel.mechanisms import Mechanism
 from kurbel.report.alike import grouped, together
 from kurbel.report.compared import Entry, Unjudged, judged
 from kurbel.report.left_out import left_out, missing, stages, strength_left_out, turning_stages
-from kurbel.report.notes import Note, machine_notes
+from kurbel.report.notes import Note, Solved, machine_notes
 from kurbel.report.provenance import provenance
 from kurbel.report.tables import LeftOut, Provenance
 
@@ -54,18 +54,21 @@ class Checked(NamedTuple):
         return tuple(group[0]._replace(title=together([one.title for one in group])) for group in groups)
 
 
-def checked(machine: Machine) -> Checked:
-    """Return what is to be said of a machine; key values are computed only as far as it needs."""
-    found = tuple(judged(machine))
-    entries = [one for one in found if isinstance(one, Entry)]
+def checked(machine: Machine, solved: "Case | None" = None) -> Checked:
+    """Return what is to be said of a machine; key values are computed only as far as it needs.
+
+    solved: the machine with its results, where there are some.
+    """
 
     @cache
     def case() -> "Case":
         from kurbel.solver.case import Case
 
-        return Case(machine)
+        return solved or Case(machine)
 
-    notes = machine_notes(machine)
+    found = tuple(judged(machine, case))
+    entries = [one for one in found if isinstance(one, Entry)]
+    notes = machine_notes(machine, case)
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
@@ -80,10 +83,6 @@ def checked(machine: Machine) -> Checked:
     broken = any(one.severity == "error" for one in entries)
     unjudged = tuple(one for one in found if isinstance(one, Unjudged))
     return Checked(f"{machine.name}: a valid machine", tuple(s for s in sections if s.entries), broken, unjudged)
-
-
-Solved = Callable[[], "Case"]
-"""Returns the machine with its results; asked only where some are needed, which loads what computes them."""
 
 
 def _machine_entries(machine: Machine) -> Iterable[Entry]:

@@ -37,11 +37,12 @@ class Note(NamedTuple):
     text: str
 
 
-def machine_notes(machine: Machine, case: "Case | None" = None) -> tuple[Note, ...]:
-    """Return the notes on a machine, each once: on what was given, on measurements, and on what comes out.
+Solved = Callable[[], "Case"]
+"""Returns a machine with its results; asked only where some are needed, which loads what computes them."""
 
-    case: the machine with its results; of a machine that only moves nothing is computed.
-    """
+
+def machine_notes(machine: Machine, solved: Solved) -> tuple[Note, ...]:
+    """Return the notes on a machine, each once: on what was given, on measurements, and on what comes out."""
 
     def of_each(judge: Callable[[Cylinder], Iterable[str]]) -> list[Note]:
         return [Note(cylinder.name, text) for cylinder in machine.cylinders for text in judge(cylinder)]
@@ -53,10 +54,8 @@ def machine_notes(machine: Machine, case: "Case | None" = None) -> tuple[Note, .
     if machine.effort or any(map(_acts, machine.cylinders)):
         import numpy as np
 
-        from kurbel.solver.case import Case
-
         with np.errstate(all="ignore"):
-            found += _on_results(case or Case(machine))
+            found += _on_results(solved())
     return tuple(dict.fromkeys(found))
 
 
@@ -93,14 +92,14 @@ def _on_results(case: "Case") -> Iterable[Note]:
 def by_cylinder(case: "Case") -> dict[str, list[str]]:
     """Return the notes on each cylinder by its name; those on the whole machine stand below the last one."""
     found: dict[str, list[str]] = {one.name: [] for one in case.machine.cylinders}
-    for name, text in machine_notes(case.machine, case):
+    for name, text in machine_notes(case.machine, lambda: case):
         found[name or [*found][-1]].append(text)
     return found
 
 
 def of_machine(case: "Case") -> Iterable[str]:
     """Yield all notes on a machine, each after the names of its cylinders where there are several."""
-    for notes in grouped(machine_notes(case.machine, case), lambda note: note.text):
+    for notes in grouped(machine_notes(case.machine, lambda: case), lambda note: note.text):
         names = [note.cylinder for note in notes if note.cylinder is not None]
         several = names and len(case.machine.cylinders) > 1
         yield f"{together(names)}: {notes[0].text}" if several else notes[0].text

@@ -48,7 +48,7 @@ COMMANDS = (
 def whole_report(case: Case, given: Given, system: str, step: float, progress: Progress) -> Document:
     """Return everything that a machine has. progress: is told what is being done."""
     stepped(step, 360.0)  # a step that is none is refused at once
-    found = checked(case.machine)
+    found = checked(case.machine, case)
     sections: list[Section | None] = [_input(case, given, found)]
     left_out: list[LeftOut] = []
     for command in COMMANDS:
