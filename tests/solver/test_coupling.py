@@ -235,9 +235,11 @@ def under_a_law(machine: MachineTurning, torque: Points, law: Any, own: float) -
         return state, rows
 
     start = np.array([machine.M_mean / k, omega, omega])
-    for _ in range(8):
+    step = np.full(3, np.inf)
+    while np.abs(step).max() > 1e-12 * omega:
         state, _ = turn(start)
-        start = start - np.linalg.solve(state[3:].reshape(3, 3) - np.eye(3), state[:3] - start)
+        step = np.linalg.solve(state[3:].reshape(3, 3) - np.eye(3), state[:3] - start)
+        start = start - step
     state, rows = turn(start, dense=True)
     angles, twist, one, two = np.hstack(rows)
     return np.stack((angles, k * twist + d * (one - two), one)), state[3:].reshape(3, 3)

@@ -7,7 +7,7 @@ import numpy as np
 
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
-from kurbel.crank_angle import jet_angle
+from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.grid import Pieces, integral
@@ -77,7 +77,7 @@ class MainBearing(Bearing):
     def loads(self, degrees: Array, within: Array) -> Loads:
         """Return the load; see `Bearing`."""
         throw = self._force(degrees, within, rubbed=True)
-        angle = jet_angle(degrees)
+        angle = CrankAngle.of(degrees).jets
         return Loads({"throw": throw, "engine": throw.turned(angle.cos, angle.sin)})
 
     def _force(self, degrees: Array, within: Array, rubbed: bool) -> Plane:
