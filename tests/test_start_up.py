@@ -29,6 +29,7 @@ def test_where_named_tuples_are_declared_annotations_are_taken_as_they_stand(mod
 
 NEEDLESS = (
     (["--help"], ("cli.table", "cli.output_options", "render", "report", "declared")),
+    (["example"], ("report.check", "machine", "mechanisms", "declared.quantities")),
     (["table"], ("mechanisms", "declared.quantities", "declared.units", "declared.keys", "machine", "solver")),
     (
         ["forces", WATERWORKS, "-f", "csv"],
