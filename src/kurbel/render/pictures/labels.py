@@ -153,7 +153,7 @@ def _pointer(x: float, y: float, box: Box) -> Pointer:
 
 def symbol(words: Words, look: Look) -> str:
     """Return a symbol in the characters of the output; what no character must do in it, does nothing."""
-    return look.charset.text(look.charset.symbol(words.symbol, words.ascii_symbol))
+    return look.charset.text(look.charset.symbol(words.symbol, words.ascii_symbol or words.symbol))
 
 
 def signed(number: str, look: Look) -> str:

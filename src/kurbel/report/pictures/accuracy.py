@@ -34,7 +34,7 @@ def accuracy_picture(report: Report) -> Picture:
         tuple(_panel(quantity, scenes, methods, span) for quantity, scenes in found.items()),
         report.title,
         across=min(4, len(found)),
-        legend=tuple((Words(method, method), number) for number, method in enumerate(methods)),
+        legend=tuple((Words(method), number) for number, method in enumerate(methods)),
     )
 
 
@@ -59,14 +59,9 @@ def _panel(
     span: tuple[float, float],
 ) -> Panel:
     curves = [
-        Curve(
-            Words(method, method),
-            tuple(Piece(*np.array(answers).T) for answers in scenes),
-            "dots",
-            methods.index(method),
-        )
+        Curve(Words(method), tuple(Piece(*np.array(answers).T) for answers in scenes), "dots", methods.index(method))
         for method, scenes in found.items()
     ]
-    rounding = Curve(Words("", ""), (Piece(np.array([_ROUNDING, _ROUNDING]), np.array(span)),), "faint")
-    x = Axis(Words("error", "error"), "", True, _LEAST, 1.0, falling=True)
-    return Panel(x, Axis(Words("time", "time"), "ms", True, *span), (rounding, *curves), title=quantity)
+    rounding = Curve(Words(""), (Piece(np.array([_ROUNDING, _ROUNDING]), np.array(span)),), "faint")
+    x = Axis(Words("error"), "", True, _LEAST, 1.0, falling=True)
+    return Panel(x, Axis(Words("time"), "ms", True, *span), (rounding, *curves), title=quantity)

@@ -47,7 +47,7 @@ def _drawn(source: Source, degrees: Array) -> list[Panel]:
     joints = {name: convert(_along(point, degrees), "length", unit) for name, point in sketch.joints.items()}
     guides = [[convert(_along(end, degrees), "length", unit) for end in guide] for guide in sketch.guides]
     arrows = list(_arrows(source, degrees, sketch, unit))
-    axis, around = Axis(Words("", ""), unit), CrankAngle.of(np.linspace(0.0, 360.0, 73))
+    axis, around = Axis(Words(""), unit), CrankAngle.of(np.linspace(0.0, 360.0, 73))
     way = crank * np.column_stack((around.cos, around.sin))
     panels = []
     for k, angle in enumerate(degrees.tolist()):
@@ -79,7 +79,7 @@ def _members(sketch: Sketch, joints: dict[str, Array], size: float) -> Iterator[
 
 def _curve(kind: str, points: Sequence[Array]) -> Curve:
     x, y = np.array(points, dtype=float).T
-    return Curve(Words("", ""), (Piece(x, y),), kind)
+    return Curve(Words(""), (Piece(x, y),), kind)
 
 
 def _box(middle: Array, way: Array, size: float) -> list[Array]:

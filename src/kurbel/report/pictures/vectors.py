@@ -17,7 +17,7 @@ _FRAMES = {
     "load_engine": "engine: stroke line →",
     "load_rod": "rod: its line →",
 }
-_F = Words("F", "F")
+_F = Words("F")
 
 
 def free_vectors(source: Source) -> Iterator[Panel]:
