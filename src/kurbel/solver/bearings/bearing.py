@@ -50,11 +50,11 @@ class Bearing(Results):
     contact = 180.0
     of_rod = False
 
-    def __init__(self, name: str, followed: Sequence[Following], size: Size, speed: float | None) -> None:
+    def __init__(self, name: str, followed: Sequence[Following], size: Size) -> None:
         self.name = name
         self.followed = tuple(followed)
         self.size = size
-        self.omega = None if speed is None else 2 * math.pi * speed
+        self.omega = followed[0].drive.omega
 
     @abstractmethod
     def loads(self, degrees: Array, within: Array) -> Loads:
