@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from functools import cache
 from typing import Any
 
-from kurbel.declared.indicated import CYCLE_VALUES
+from kurbel.declared.forces import CYCLE_VALUES
 from kurbel.errors import UsageError
 from kurbel.report.frame import Frame, Subject, refuse_without_cylinder
 from kurbel.report.shown import place_table
