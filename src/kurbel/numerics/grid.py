@@ -66,9 +66,14 @@ class Pieces:
         return part
 
     @cached_property
+    def half_degrees(self) -> Array:
+        """Half the width of each piece in degrees, (pieces,)."""
+        return np.asarray((self.high - self.low) / 2)
+
+    @cached_property
     def half_widths(self) -> Array:
         """Half the width of each piece in radians, (pieces,)."""
-        return np.asarray(np.radians(self.high - self.low) / 2)
+        return np.radians(self.half_degrees)
 
     def integral(self, value: Array) -> float:
         """Return ∫ value dφ (φ in radians) over all pieces by the rule, of every variant; value (pieces, nodes)."""
@@ -105,8 +110,8 @@ class Grid(Pieces):
         return np.diff(np.append(self.first, len(self.low)))
 
     def of_each(self, found: Array) -> Array:
-        """Return what was found of every variant, (v,), spread over its pieces, (pieces,)."""
-        return np.repeat(found, self.counts)
+        """Return what was found of every variant, (…, v), spread over its pieces, (…, pieces)."""
+        return np.repeat(found, self.counts, axis=-1)
 
     def told(self, values: Array) -> Any:
         """Return what was found of every variant (v,), or of the only machine as a number."""
@@ -143,8 +148,8 @@ class Grid(Pieces):
 
     @cached_property
     def coefficients(self) -> Array:
-        """What turns values at the nodes into coefficients of their polynomial on −1 … 1, from the highest power on."""
-        return np.linalg.inv(np.vander(self.nodes))
+        """What turns values at the nodes into coefficients of their polynomial on −1 … 1, from the lowest power on."""
+        return np.linalg.inv(np.vander(self.nodes, increasing=True))
 
     def other(self) -> "Grid":
         """Return the same cycle in other pieces: each cut in two unequal ones."""
