@@ -123,8 +123,9 @@ def may_be_extreme(grid: Grid, samples: Sequence[Sampled]) -> Rows:
     at = rows.owner, rows.piece
     varies = reach[at] > _FLAT * np.maximum(high[at], -low[at])
     before, after, rise = rows.between_nodes(grid)
-    above = np.maximum(before, after) + rise >= grid.of_each(top)[at][:, None]
-    below = np.minimum(before, after) - rise <= grid.of_each(bottom)[at][:, None]
+    variant = rows.owner, grid.number[rows.piece]
+    above = np.maximum(before, after) + rise >= top[variant][:, None]
+    below = np.minimum(before, after) - rise <= bottom[variant][:, None]
     return rows._replace(worth=(above | below) & varies[:, None])
 
 
@@ -212,6 +213,8 @@ def roots(grid: Grid, rows: Rows, brackets: Brackets, evaluate: Evaluate, part: 
     part: "value" or "slope". The polynomial through those at the nodes has a root beside each, from which Newton's
     method needs a step or two; where it needs more, the bracket tells.
     """
+    if not len(brackets.place):
+        return brackets.low, brackets.low
     degrees, rise, size = _roots_of_polynomials(grid, rows, brackets, part)
     values, left = np.empty_like(degrees), np.arange(len(degrees))
     half = grid.half_degrees[rows.piece[brackets.place]]
@@ -241,13 +244,12 @@ def _roots_of_polynomials(grid: Grid, rows: Rows, brackets: Brackets, part: str)
     """
     along = getattr(rows, part).T.take(brackets.place, axis=1)
     coefficients = grid.coefficients @ along
-    derived = np.arange(1, len(along))[:, None] * coefficients[1:]
 
     def polynomials(place: Array) -> tuple[Array, Array]:
-        powers = np.ones_like(along)
-        powers[1:] = place
-        np.multiply.accumulate(powers, axis=0, out=powers)
-        return np.einsum("pn,pn->n", coefficients, powers), np.einsum("pn,pn->n", derived, powers[:-1])
+        value, slope = coefficients[0], np.zeros_like(place)
+        for one in coefficients[1:]:  # the rule of Horner
+            value, slope = value * place + one, slope * place + value
+        return value, slope
 
     pieces = rows.piece[brackets.place]
     middle, half = grid.within[pieces, 0], grid.half_degrees[pieces]

@@ -109,9 +109,14 @@ class Grid(Pieces):
         """How many pieces every variant has, (v,)."""
         return np.diff(np.append(self.first, len(self.low)))
 
+    @cached_property
+    def number(self) -> Indices:
+        """Of which variant each piece is, counted from 0 on, (pieces,)."""
+        return np.repeat(np.arange(len(self.first)), self.counts)
+
     def of_each(self, found: Array) -> Array:
         """Return what was found of every variant, (…, v), spread over its pieces, (…, pieces)."""
-        return np.repeat(found, self.counts, axis=-1)
+        return found.take(self.number, axis=-1)
 
     def told(self, values: Array) -> Any:
         """Return what was found of every variant (v,), or of the only machine as a number."""
@@ -148,8 +153,8 @@ class Grid(Pieces):
 
     @cached_property
     def coefficients(self) -> Array:
-        """What turns values at the nodes into coefficients of their polynomial on −1 … 1, from the lowest power on."""
-        return np.linalg.inv(np.vander(self.nodes, increasing=True))
+        """What turns values at the nodes into coefficients of their polynomial on −1 … 1, from the highest power on."""
+        return np.linalg.inv(np.vander(self.nodes))
 
     def other(self) -> "Grid":
         """Return the same cycle in other pieces: each cut in two unequal ones."""

@@ -111,14 +111,17 @@ def curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dict[
 
 
 def _curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, rows: Rows) -> dict[str, Curve]:
-    """Return several quantities as curves; of pieces that are not worth a search only their ends."""
+    """Return several quantities as curves; of intervals that are not worth a search only the ends of their piece."""
     turns = _turning_points(grid, rows, evaluate)
     owner, piece = rows.owner[turns.place], rows.piece[turns.place]
     found = {}
     for number, (name, sampled) in enumerate(samples.items()):
         kept = np.zeros(sampled.value.shape, dtype=bool)
         kept[:, 0] = kept[:, -1] = True
-        kept[rows.piece[rows.owner == number]] = True
+        mine = rows.owner == number
+        beside = np.broadcast_to(rows.worth, (len(mine), len(grid.gaps)))[mine]
+        kept[rows.piece[mine], :-1] |= beside
+        kept[rows.piece[mine], 1:] |= beside
         row, node = np.nonzero(kept)
         nodes, own = len(grid.nodes), owner == number
         into = np.searchsorted(row * nodes + node, piece[own] * nodes + turns.node[own]) + 1
@@ -163,7 +166,7 @@ def _extreme_pieces(grid: Grid, rows: Rows, turns: _Turns) -> Curve:
     Every quantity of every variant is one of its variants.
     """
     variants = len(grid.first)
-    whose = rows.owner * variants + np.searchsorted(grid.first, rows.piece, side="right") - 1
+    whose = rows.owner * variants + grid.number[rows.piece]
     first = np.flatnonzero(np.append(True, whose[1:] != whose[:-1]))
     high, low = rows.value.max(axis=1), rows.value.min(axis=1)
     np.maximum.at(high, turns.place, turns.value)
