@@ -20,6 +20,8 @@ from kurbel.solver.case import Case
 from kurbel.solver.turning.machine_effort import dead_centre_force
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 CONFIGS = Path(__file__).parents[2] / "configs"
 ENGINE = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8")
 PUNCH = (CONFIGS / "punch.yaml").read_text(encoding="utf-8")
