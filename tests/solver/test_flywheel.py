@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from functools import cache
 from pathlib import Path
 from random import Random
 
@@ -31,6 +32,7 @@ def run(text: str, *arguments: str) -> Result:
     return CliRunner().invoke(kurbel, ["flywheel", "-", *arguments], input=text)
 
 
+@cache
 def results(text: str, *arguments: str) -> dict[str, object]:
     answer = run(text, "-f", "json", *arguments)
     assert answer.exit_code == 0, answer.stderr
