@@ -26,7 +26,7 @@ from kurbel.report.angles import MOST_ROWS, check_rows, stepped
 from kurbel.report.forces import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
-from representative import few
+from representative import few, law_of_each
 
 POSIX_ONLY = pytest.mark.skipif(os.name != "posix", reason="needs POSIX files and signals")
 MACHINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -227,7 +227,7 @@ def test_no_status_hangs_on_standard_error(arguments: str, status: int, stderr: 
     assert subprocess.run(["bash", "-c", command], cwd=tmp_path, check=False, stdout=-3).returncode == status
 
 
-@pytest.mark.parametrize("command", ["", *COMMANDS])
+@law_of_each(["", *COMMANDS])
 def test_help_names_the_statuses(command: str) -> None:
     text = " ".join(CliRunner().invoke(kurbel, [*command.split(), "--help"]).stdout.split())
     said = text.partition("Exit status: ")[2]
