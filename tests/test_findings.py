@@ -57,7 +57,7 @@ def test_what_overflows_is_neither_kept_nor_broken() -> None:
 @pytest.mark.parametrize("name", ["mean_pressure", "T_min", "energy_residual"])
 def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
     for figure, key in ((1.0, "limits"), (Expected(0.0, 1.0), "expect")):
-        found = compared((key, name), by_id(COMMON.all_key_values)[name], figure, "cylinder 1", value)
+        found = compared((key, name), by_id(*COMMON.all_key_values)[name], figure, "cylinder 1", value)
         assert isinstance(found, Unjudged)
         assert isinstance(found.error, UsageError)
         assert f"{key}.{name} (cylinder 1): {name} is too large to compute with" in str(found.error)

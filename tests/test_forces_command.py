@@ -81,10 +81,10 @@ def test_every_id_is_declared_and_every_number_finite(path: Path) -> None:
         pytest.skip("a machine for other commands, and tested there")
     for part in json.loads(result.stdout)["cylinders"]:
         for column in part["columns"]:
-            assert column["id"] in by_id(every_quantity().all_columns)
+            assert column["id"] in by_id(*every_quantity().all_columns)
             assert all(math.isfinite(value) for value in column["values"])
         for one in part["key_values"]:
-            assert one["id"] in by_id(every_quantity().all_key_values)
+            assert one["id"] in by_id(*every_quantity().all_key_values)
             values = one["value"] if isinstance(one["value"], list) else [one["value"]]
             assert all(math.isfinite(value) for value in values)
 

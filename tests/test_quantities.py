@@ -78,7 +78,7 @@ def test_every_quantity_stands_in_the_list_of_a_command() -> None:
 
 
 def test_extremes_derive_from_the_column() -> None:
-    found = by_id(COMMON.all_key_values)
+    found = by_id(*COMMON.all_key_values)
     assert found["S_max"][:4] == ("S_max", "S_max", "force", "Largest rod force")
     assert found["P_start_min"].symbol == "P_0,min"
     assert found["M_max"].commands == ("flywheel",)

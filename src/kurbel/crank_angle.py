@@ -7,6 +7,7 @@ from kurbel.numerics.arithmetic import where
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.numerics.grid import Pieces
 
 _RADIANS_PER_DEGREE = math.pi / 180
 
@@ -23,13 +24,10 @@ class CrankAngle(NamedTuple):
     cos: Any
 
     @classmethod
-    def of(
-        cls, degrees: "float | Array", beyond: "float | Array" = 0.0, right_angle: "Array | None" = None
-    ) -> "CrankAngle":
+    def of(cls, degrees: "float | Array", beyond: "float | Array" = 0.0) -> "CrankAngle":
         """Return the angle for a number or an array of degrees.
 
         beyond: degrees to be added that are too small to show in `degrees`: 90 and 1e-20 are an angle just beyond 90°.
-        right_angle: multiples of 90 beside them, of a shape that fits, where they are known.
 
         >>> CrankAngle.of(180.0)
         CrankAngle(degrees=180.0, sin=0.0, cos=-1.0)
@@ -38,7 +36,19 @@ class CrankAngle(NamedTuple):
         """
         if isinstance(degrees, (int, float)) and isinstance(beyond, (int, float)):
             return cls(degrees, *_sin_cos_scalar(degrees, beyond))
-        return cls(degrees, *_sin_cos_array(degrees, beyond, right_angle))
+        return cls(degrees, *_sin_cos_array(degrees, beyond))
+
+    @classmethod
+    def at_nodes(cls, pieces: "Pieces") -> "CrankAngle":
+        """Return the angles of the nodes of pieces of a cycle, (pieces, nodes)."""
+        return cls(pieces.degrees, *_turned(pieces.right_angle, pieces.offset))
+
+    @property
+    def jets(self) -> "CrankAngle":
+        """The same with sine and cosine as jets."""
+        from kurbel.numerics.jet import Jet
+
+        return CrankAngle(self.degrees, Jet(self.sin, self.cos), Jet(self.cos, -self.sin))
 
     @property
     def versine(self) -> Any:
@@ -70,14 +80,6 @@ def within_cycle(degrees: "Array", cycle: float) -> "Array":
     return np.asarray(np.mod(degrees, cycle))
 
 
-def jet_angle(degrees: "Array", beyond: "Array | float" = 0.0) -> CrankAngle:
-    """Return the crank angles (n,) in degrees, as `CrankAngle.of`, with sine and cosine as jets."""
-    from kurbel.numerics.jet import Jet
-
-    angle = CrankAngle.of(degrees, beyond)
-    return CrankAngle(degrees, Jet(angle.sin, angle.cos), Jet(angle.cos, -angle.sin))
-
-
 def _sin_cos_scalar(degrees: float, beyond: float) -> tuple[float, float]:
     if not math.isfinite(degrees):
         raise ValueError("a crank angle must be finite")
@@ -90,17 +92,21 @@ def _sin_cos_scalar(degrees: float, beyond: float) -> tuple[float, float]:
     return pair[0] + 0.0, pair[1] + 0.0
 
 
-def _sin_cos_array(
-    degrees: "float | Array", beyond: "float | Array", right_angle: "Array | None"
-) -> "tuple[Array, Array]":
+def _sin_cos_array(degrees: "float | Array", beyond: "float | Array") -> "tuple[Array, Array]":
     import numpy as np
 
     if not np.isfinite(degrees).all():
         raise ValueError("a crank angle must be finite")
-    if right_angle is None:
-        degrees = degrees if np.abs(degrees).max(initial=0.0) <= 720.0 else np.fmod(degrees, 360.0)
-        right_angle = 90.0 * np.rint(degrees / 90.0)
-    rest = (degrees - right_angle + beyond) * _RADIANS_PER_DEGREE
+    degrees = degrees if np.abs(degrees).max(initial=0.0) <= 720.0 else np.fmod(degrees, 360.0)
+    right_angle = 90.0 * np.rint(degrees / 90.0)
+    return _turned(right_angle, degrees - right_angle + beyond)
+
+
+def _turned(right_angle: "Array", offset: "Array") -> "tuple[Array, Array]":
+    """Return sine and cosine of multiples of 90° and an offset in degrees."""
+    import numpy as np
+
+    rest = offset * _RADIANS_PER_DEGREE
     sin, cos = np.sin(rest), np.cos(rest)
     quarter = (right_angle / 90.0).astype(int) % 4
     turned_sin, turned_cos = np.array((0.0, 1.0, 0.0, -1.0))[quarter], np.array((1.0, 0.0, -1.0, 0.0))[quarter]

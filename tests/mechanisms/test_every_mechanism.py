@@ -12,7 +12,7 @@ import pytest
 from precise import by_radian, exact_angle
 from statics import FREE_BODIES
 
-from kurbel.crank_angle import CrankAngle, jet_angle
+from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Described, required
 from kurbel.errors import RuleError
@@ -323,7 +323,7 @@ def test_every_answer_grows_with_the_lengths_as_its_unit_says(machine, command):
 @every()
 def test_jets_pass_through_and_carry_the_derivatives(machine):
     angles = np.linspace(-30.0, 400.0, 87)
-    plain, jets = CrankAngle.of(angles), jet_angle(angles)
+    plain, jets = CrankAngle.of(angles), CrankAngle.of(angles).jets
     size = machine.stroke + abs(machine.curvature(plain)).max()
     if machine.slides:
         assert machine.coordinate(jets).slope == pytest.approx(machine.slope(plain), abs=1e-13 * size)

@@ -145,6 +145,14 @@ def test_matplotlib_is_imported_only_for_png_and_pdf(
     assert not {"matplotlib", "rich"} & {name.partition(".")[0] for name in modules_after(command)}
 
 
+def test_masked_arrays_are_not_imported() -> None:
+    """numpy imports them behind some functions, `unique` for one; they take longer than the whole picture."""
+    command = [sys.executable, "-X", "importtime", "-m", "kurbel", "plot", WATERWORKS]
+    imported = subprocess.run(command, capture_output=True, text=True, check=True, encoding="utf-8").stderr
+    assert "kurbel.render.pictures.scene" in imported
+    assert "numpy.ma" not in {line.rpartition("|")[2].strip() for line in imported.splitlines()}
+
+
 @pytest.mark.slow
 def test_no_display_is_needed(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")

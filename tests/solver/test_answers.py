@@ -47,7 +47,7 @@ class TestPeaks:
         assert found is not None
         larger = max(found.largest, found.smallest, key=lambda one: abs(one.value))
         assert found.peak == (abs(larger.value), larger.degrees)
-        declared = by_id(COMMON.all_key_values)[f"{name}_peak"]
+        declared = by_id(*COMMON.all_key_values)[f"{name}_peak"]
         assert declared.asks == ("extremes_of", name, "peak")
 
     def test_the_largest_pressure_stands_at_either_end(self) -> None:

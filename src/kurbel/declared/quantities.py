@@ -231,11 +231,11 @@ class Lists(NamedTuple):
 
     def columns(self, command: str) -> dict[str, Quantity]:
         """Return the columns of a command, by id."""
-        return by_id(one for one in self.all_columns if command in one.commands)
+        return by_id(*(one for one in self.all_columns if command in one.commands))
 
     def key_values(self, command: str) -> dict[str, Quantity]:
         """Return the key values of a command, by id."""
-        return by_id(one for one in self.all_key_values if command in one.commands)
+        return by_id(*(one for one in self.all_key_values if command in one.commands))
 
     def commands_of(self, id: str) -> tuple[str, ...]:
         """Return the commands that have a key value, the one whose own it is first."""
@@ -244,4 +244,4 @@ class Lists(NamedTuple):
 
 COMMON = Lists.of()
 """What every machine may have; a mechanism adds its own (`kurbel.mechanisms.every_quantity`)."""
-COLUMNS = by_id(one for one in COMMON.all_columns if one.commands)
+COLUMNS = by_id(*(one for one in COMMON.all_columns if one.commands))

@@ -142,7 +142,7 @@ class _Answers:
 def _listed(value: Any, count: int) -> Sequence[Any]:
     """Return the values of so many machines side by side, one by one."""
     if isinstance(value, Extreme):
-        return list(map(Extreme, *(_listed(part, count) for part in value)))
+        return Extreme.each(*(_listed(part, count) for part in value))
     if value is None or isinstance(value, tuple):
         each = isinstance(value, tuple) and len(value) == count and all(isinstance(one, tuple) for one in value)
         return value if each else [value] * count  # type: ignore[return-value]

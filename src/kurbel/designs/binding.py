@@ -36,14 +36,6 @@ class Bound(NamedTuple):
     failures: dict[int, str]
 
 
-class _Link(NamedTuple):
-    """Where the record of an earlier step stands in the values of a later one: key, and place in a tuple, or None."""
-
-    key: str
-    place: int | None
-    step: int
-
-
 class _Slot(NamedTuple):
     """A value of a record that is read anew: under which of its keys, and which varied keys stand there, and where."""
 
@@ -83,11 +75,11 @@ class _Slot(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """A record that is made anew: which slots are its own, each with its key, and which records of earlier steps."""
+    """A record that is made anew: which slots are its own, each with its key, and the keys of such records in it."""
 
     birth: Birth
     own: list[tuple[int, str]]
-    links: list[_Link]
+    inner: list[str]
 
 
 class Binder:
@@ -123,13 +115,13 @@ class Binder:
 
     def _planned(self, births: list[Birth]) -> list[_Step]:
         steps: list[_Step] = []
-        made: dict[int, int] = {}
+        anew: set[int] = set()
         for birth in births:
             own = [(number, slot.name) for number, slot in enumerate(self._slots) if slot.birth is birth]
-            links = [link for key, value in birth.values.items() for link in _links(key, value, made)]
-            if own or links:
-                made[id(birth.born)] = len(steps)
-                steps.append(_Step(birth, own, links))
+            inner = [key for key, value in birth.values.items() if anew.intersection(map(id, _parts(value)))]
+            if own or inner:
+                anew.add(id(birth.born))
+                steps.append(_Step(birth, own, inner))
         return steps
 
     def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
@@ -172,27 +164,27 @@ class Binder:
 
     def _made(self, given: Sequence[Any]) -> Machine:
         """Return the machine with these values in the slots; raises Unbound with all that is wrong."""
-        found: list[Any] = []
+        anew: dict[int, Any] = {}
         reading = Reading()
         reading.alike = self._reading.alike
         with suppress(StopReading):
             for step in self._steps:
-                found.append(_born(step, given, found, reading))
+                anew[id(step.birth.born)] = _born(step, given, anew, reading)
         if reading.faults:
             raise Unbound(_told(reading.faults))
-        return found[-1] if found else self.machine
+        machine: Machine = anew[id(self._steps[-1].birth.born)] if self._steps else self.machine
+        return machine
 
 
-def _born(step: _Step, given: Sequence[Any], found: Sequence[Any], reading: Reading) -> Any:
-    """Return the record of a step, or REFUSED after noting its faults; found: the records of earlier steps."""
+def _born(step: _Step, given: Sequence[Any], anew: dict[int, Any], reading: Reading) -> Any:
+    """Return the record of a step, or REFUSED after noting its faults; anew: what came of records of earlier steps."""
     birth = step.birth
-    values = dict(birth.values)
-    for number, name in step.own:
-        values[name] = given[number]
-    for key, place, earlier in step.links:
-        if found[earlier] is REFUSED:
+    values = birth.values | {name: given[number] for number, name in step.own}
+    for key in step.inner:
+        parts = [anew.get(id(part), part) for part in _parts(values[key])]
+        if any(part is REFUSED for part in parts):
             return REFUSED
-        values[key] = _replaced(values[key], place, found[earlier])
+        values[key] = tuple(parts) if isinstance(values[key], tuple) else parts[0]
     try:
         return birth.form.born(values)
     except RuleError as error:
@@ -261,15 +253,9 @@ def _reads(birth: Birth, name: Step) -> bool:
     return name in birth.values and name in birth.form.keys
 
 
-def _links(key: str, value: Any, made: dict[int, int]) -> list[_Link]:
-    if id(value) in made:
-        return [_Link(key, None, made[id(value)])]
-    items = value if isinstance(value, tuple) else ()
-    return [_Link(key, place, made[id(item)]) for place, item in enumerate(items) if id(item) in made]
-
-
-def _replaced(value: Any, place: int | None, new: Any) -> Any:
-    return new if place is None else (*value[:place], new, *value[place + 1 :])
+def _parts(value: Any) -> tuple[Any, ...]:
+    """Return the items of a list, as what it was read into, or the value itself."""
+    return value if isinstance(value, tuple) else (value,)
 
 
 def _with(tree: Any, path: Path, value: Any) -> Any:

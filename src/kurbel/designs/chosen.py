@@ -155,11 +155,6 @@ def _rank_correlation(first: Any, second: Any) -> float | None:
 
 def _ranks(values: Any) -> Any:
     """Return the rank of every value, equal ones sharing the mean of theirs."""
-    order = np.argsort(values, kind="stable")
-    inverse = np.empty(len(values), dtype=np.intp)
-    inverse[order] = np.arange(len(values))
-    ordered = values[order]
-    begins = np.flatnonzero(np.append(True, ordered[1:] != ordered[:-1]))
-    group = np.searchsorted(begins, inverse, side="right") - 1
-    ends = np.append(begins[1:], len(values))
-    return (begins[group] + ends[group] - 1) / 2
+    _, group, counts = np.unique(values, return_inverse=True, return_counts=True)
+    ends = np.cumsum(counts)
+    return (ends - (counts + 1) / 2)[group]

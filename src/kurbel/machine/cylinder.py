@@ -10,7 +10,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Choice, Inline, Listing, OneOf, Physical, Record, Text, Variant
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, refuse
+from kurbel.errors import Fault, refuse, refused
 from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES
 from kurbel.mechanisms import MECHANISMS, Mechanism
@@ -133,9 +133,9 @@ class Cylinder(Described):
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
         if like:
-            refuse(Fault(("like",), "'like' stands in a list of 'cylinders', which has another one above"))
+            refused("'like' stands in a list of 'cylinders', which has another one above", "like")
         if tandem and piston is None:
-            refuse(Fault(("tandem",), "a tandem piston stands beside the cylinder's own one; give its 'bore'"))
+            refused("a tandem piston stands beside the cylinder's own one; give its 'bore'", "tandem")
         return cls(pistons=() if piston is None else (piston, *tandem), **{"name": "", **keys})
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor
-from kurbel.errors import Fault, Path, refuse
+from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.frozen import frozen
 from kurbel.machine.rectangle import Rectangle, Rectangular
 
@@ -275,10 +275,10 @@ class Indicator(Described):
         """Return the indicator that these keys of a machine file describe; raises RuleError."""
         if head_end is None and crank_end in (None, "mirrored"):
             path: Path = () if crank_end is None else ("crank_end",)
-            refuse(Fault(path, "the indicator shows no pressure; give 'head_end'"))
+            refused("the indicator shows no pressure; give 'head_end'", *path)
         for end, chamber in (("head_end", head_end), ("crank_end", crank_end)):
             if pressures == "absolute" and getattr(chamber, "drawn", False):
-                refuse(Fault((end, "drawn"), "a drawn card counts from the atmospheric line; write 'pressures: gauge'"))
+                refused("a drawn card counts from the atmospheric line; write 'pressures: gauge'", end, "drawn")
         # a mirrored card is the same card: each chamber's fractions count from its own dead centre
         other = head_end if isinstance(crank_end, str) else crank_end
         return cls(head_end, other, pressures == "absolute")

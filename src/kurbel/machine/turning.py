@@ -6,7 +6,7 @@ from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.forms import Number, Points, UnitName, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.units import Factor
-from kurbel.errors import Fault, refuse
+from kurbel.errors import refuse, refused
 from kurbel.frozen import frozen
 from kurbel.machine.angle_points import CYCLES, angle_faults, beyond_cycle
 
@@ -94,10 +94,10 @@ class Load(Described):
         forms = {"power_law": self.power, "slip": self.slip, "points": self.diagram}
         given = [name for name, value in forms.items() if value is not None]
         if not given:
-            refuse(Fault((), "give one of 'power_law', 'slip' or 'points'; or write 'load: constant'"))
+            refused("give one of 'power_law', 'slip' or 'points'; or write 'load: constant'")
         if len(given) > 1:
             names = " and ".join(f"'{name}'" for name in given)
-            refuse(Fault((given[1],), f"{names} are different loads; keep one of them"))
+            refused(f"{names} are different loads; keep one of them", given[1])
 
     def cycle_fault(self, cycle: str) -> str:
         """Return what does not fit the cycle of the machine, or an empty text."""

@@ -7,7 +7,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, RuleError
+from kurbel.errors import refused
 from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
 from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area, sum_along
@@ -74,21 +74,21 @@ class SlottedLever(Mechanism):
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
         if not (self.slides or self._forked):
-            raise RuleError(Fault(("link",), "has no lever's end to hang on; give 'lever' with it"))
+            refused("has no lever's end to hang on; give 'lever' with it", "link")
         projected_area(self.pin_diameter, self.pin_length)
         if self.crank == self.frame:
             same = show(self.crank, "length")
             message = f"{same} is also the crank: the pin would pass through the lever's pivot"
-            raise RuleError(Fault(("frame",), message))
+            refused(message, "frame")
         if math.isinf(self.link) and self.ram_height is not None:
-            raise RuleError(Fault(("ram_height",), "has no meaning for a fork head; give 'link' with it"))
+            refused("has no meaning for a fork head; give 'link' with it", "ram_height")
         if not math.isfinite(self._height):
-            raise RuleError(Fault(("ram_height",), "must be finite"))
+            refused("must be finite", "ram_height")
         if not self._forked:
             check_lengths(link=self.link)
             fault = self._full_turn_fault() if self.rotates else self._swing_fault()
             if fault:
-                raise RuleError(Fault(("link",), f"{show(self.link, 'length')} {fault}"))
+                refused(f"{show(self.link, 'length')} {fault}", "link")
 
     def _full_turn_fault(self) -> str:
         if math.fsum((self.link, -self._end, -abs(self._height))) > 0:

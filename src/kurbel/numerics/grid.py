@@ -41,25 +41,23 @@ class Pieces:
         return np.asarray(90.0 * np.rint(self.within[:, :1] / 90.0))
 
     @cached_property
-    def _offset(self) -> Array:
-        """The angles of the nodes from these right angles on in degrees."""
+    def offset(self) -> Array:
+        """How far the nodes are from these right angles in degrees: with R/L near 1 the rod swings round within a hair.
+
+        Added up to `degrees` they would lose some digits.
+        """
         start, end = self.low - self.right_angle[:, 0], self.high - self.right_angle[:, 0]
         # node by node in memory: what is one number to a piece then meets whole rows of pieces at once
-        return np.asarray(((start + end) / 2 + (self.high - self.low) / 2 * self.nodes[:, None]).T)
+        offset = ((start + end) / 2 + (self.high - self.low) / 2 * self.nodes[:, None]).T
+        offset[:, 0], offset[:, -1] = start, end
+        return np.asarray(offset)
 
     @cached_property
     def degrees(self) -> Array:
         """The angles of the nodes, (pieces, nodes)."""
-        degrees = self.right_angle + self._offset
+        degrees = self.right_angle + self.offset
         degrees[:, 0], degrees[:, -1] = self.low, self.high
         return np.asarray(degrees)
-
-    @cached_property
-    def beyond(self) -> Array:
-        """What their rounding took from the nodes: with R/L near 1 the rod swings round within a hair of 90°."""
-        beyond = self._offset - (self.degrees - self.right_angle)
-        beyond[:, 0] = beyond[:, -1] = 0.0
-        return np.asarray(beyond)
 
     def part(self, rows: Indices | Flags) -> "Pieces":
         """Return these of the pieces."""
@@ -160,7 +158,8 @@ class Grid(Pieces):
 def _inside(low: Array, high: Array, rule: Rule) -> Pieces:
     """Return pieces whose nodes at the ends, too, stand inside, though next to the end."""
     pieces = Pieces(low, high, rule)
-    pieces.degrees[:, 0], pieces.degrees[:, -1] = np.nextafter(low, high), np.nextafter(high, low)
+    for end, degrees in ((0, np.nextafter(low, high)), (-1, np.nextafter(high, low))):
+        pieces.degrees[:, end], pieces.offset[:, end] = degrees, degrees - pieces.right_angle[:, 0]
     return pieces
 
 

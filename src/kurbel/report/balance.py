@@ -66,7 +66,7 @@ def _left_out(balance: MachineBalance, compare: bool) -> Iterable[LeftOut]:
 
 def _without_place(balance: MachineBalance) -> Iterable[str]:
     yield from (throw.name for throw in balance.throws if throw.place is None)
-    if any(one.place is None for one in balance.loose_counterweights):
+    if any(one.place is None for one in balance.counterweights):
         yield "counterweights of the machine"
     if any(one.axial_position is None for one in balance.machine.balance_shafts):
         yield "balance_shafts"

@@ -49,7 +49,7 @@ def judged(machine: Machine) -> Iterator[Judged]:
     """Yield how each limit and then each expectation stands, or why that cannot be told."""
     if not machine.limits and not machine.expect:
         return
-    declared = by_id(every_quantity().all_key_values)
+    declared = by_id(*every_quantity().all_key_values)
     opposites = [other for name, _ in machine.limits if (other := _opposite(name)) in declared]
     asked = (*(name for name, _ in (*machine.limits, *machine.expect)), *opposites)
     values = limited_values(machine, dict.fromkeys(asked))

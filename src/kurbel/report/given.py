@@ -52,13 +52,12 @@ def size_notes(cylinder: Cylinder) -> Iterable[str]:
 def exponent_notes(piston: "Piston") -> Iterable[str]:
     """Yield a note on each exponent of a card by which no gas expands or is compressed."""
     least, most = _EXPONENTS
-    ends = (piston.indicator.head_end, piston.indicator.crank_end) if piston.indicator else ()
-    for end, chamber in zip(("head end", "crank end"), ends):
+    for end, chamber in piston.chambers.items():
         given = {getattr(chamber, key) for key in ("exponent", "expansion_exponent") if hasattr(chamber, key)}
         for value in sorted(given):
             if not least <= value <= most:
                 said = f"an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
-                yield f"{piston.name}, {end}: {said}"
+                yield f"{piston.name}, {end.replace('_', ' ')}: {said}"
 
 
 def pin_notes(machine: Machine) -> Iterator[str]:
@@ -92,7 +91,7 @@ def card_end_notes(piston: "Piston") -> Iterable[str]:
         return
     from kurbel.machine.indicator import Card
 
-    leans = [_lean(end) for end in (piston.indicator.head_end, piston.indicator.crank_end) if isinstance(end, Card)]
+    leans = [_lean(end) for end in piston.chambers.values() if isinstance(end, Card)]
     if len(leans) < 2 or min(leans) >= -_PLAIN or max(leans) <= _PLAIN:
         return
     end, centre = ("crank end", "outer") if leans[1] < 0 else ("head end", "inner")

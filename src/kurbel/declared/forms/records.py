@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any, NoReturn
 
-from kurbel.declared.forms.scalars import Choice, reference, refused
+from kurbel.declared.forms.scalars import Choice, reference
 from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, contradictions, none_of, required
 from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, glued_hint, kind_of
-from kurbel.errors import Fault, Path, RuleError
+from kurbel.errors import Fault, Path, RuleError, refused
 from kurbel.near_words import near
 from kurbel.numerics.arithmetic import is_number
 

@@ -81,17 +81,19 @@ class Scene(NamedTuple):
 def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
     """Return places x, y (n,) without those that lie on a straight line between others, but for `within`."""
     places = x + 1j * y
-    kept = np.unique([0, len(x) - 1])
+    kept = np.zeros(len(x), dtype=bool)
+    kept[[0, -1]] = True
     while True:
-        spans = np.diff(kept)
-        start, chord = (np.repeat(each, spans) for each in (kept[:-1], np.diff(places[kept])))
-        far = _distances(places[: kept[-1]] - places[start], chord)
-        farthest = np.repeat(np.maximum.reduceat(far, kept[:-1]), spans)
+        ends = np.flatnonzero(kept)
+        spans = np.diff(ends)
+        start, chord = (np.repeat(each, spans) for each in (ends[:-1], np.diff(places[ends])))
+        far = _distances(places[: ends[-1]] - places[start], chord)
+        farthest = np.repeat(np.maximum.reduceat(far, ends[:-1]), spans)
         tops = np.flatnonzero((far == farthest) & (far > within))
         if not len(tops):
             return tuple(zip(x[kept].tolist(), y[kept].tolist()))
         # of several that lie equally far from a chord the first
-        kept = np.sort(np.append(kept, tops[np.unique(start[tops], return_index=True)[1]]))
+        kept[tops[np.diff(start[tops], prepend=-1) != 0]] = True
 
 
 def _distances(reached: ComplexArray, chord: ComplexArray) -> Array:

@@ -99,11 +99,6 @@ class MachineBalance(Results):
 
     # what moves, all of it over ω²
 
-    @property
-    def loose_counterweights(self) -> tuple[Weight, ...]:
-        """The counterweights of which nobody told where they stand, beside throws of which it is known."""
-        return tuple(one for one in self.counterweights if one.place is None)
-
     @cached_property
     def _throws_alone(self) -> Products:
         return of_throws(self.throws)

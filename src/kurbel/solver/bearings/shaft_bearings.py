@@ -7,7 +7,7 @@ import numpy as np
 
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
-from kurbel.crank_angle import jet_angle
+from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.grid import Pieces, integral
@@ -77,7 +77,7 @@ class MainBearing(Bearing):
     def loads(self, degrees: Array, within: Array) -> Loads:
         """Return the load; see `Bearing`."""
         throw = self._force(degrees, within, rubbed=True)
-        angle = jet_angle(degrees)
+        angle = CrankAngle.of(degrees).jets
         return Loads({"throw": throw, "engine": throw.turned(angle.cos, angle.sin)})
 
     def _force(self, degrees: Array, within: Array, rubbed: bool) -> Plane:
@@ -147,10 +147,10 @@ class ShaftBearings:
             of = f" of {one.drive.name}" if several else ""
             yield RodPin(f"crank pin{of}", one, self._pin_size(number), "crank_pin")
             yield RodPin(f"crosshead pin{of}", one, _crosshead_size(one), "crosshead_pin")
-        line = self.line
-        for number in range(line.bearings) if line else ():
-            name = f"bearing {'AB'[number] if line.bearings == 2 else number + 1}"  # type: ignore[union-attr]
-            yield MainBearing(name, number, line, followed, self._journal_size())  # type: ignore[arg-type]
+        if self.line:
+            names = "AB" if self.line.bearings == 2 else range(1, self.line.bearings + 1)
+            for number, name in enumerate(names):
+                yield MainBearing(f"bearing {name}", number, self.line, followed, self._journal_size())
 
     def _pin_size(self, number: int) -> Size:
         """Return the size of a crank pin; rods side by side on one pin have equal parts of its length."""

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from kurbel.arrays import Array, Indices
-from kurbel.crank_angle import CrankAngle, jet_angle
+from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.variants import taken
@@ -216,14 +216,14 @@ class Drive:
         """Return the state at crank angles (n,) in degrees, on the sides of jumps that hold `within`, or just after."""
         return State(self, CrankAngle.of(degrees), within)
 
-    def jets_at(self, degrees: Array, within: Array | Inside, beyond: Array | float = 0.0) -> State:
+    def jets_at(self, degrees: Array, within: Array | Inside) -> State:
         """Return the state with slopes by φ at crank angles (n,), on the sides of jumps that hold `within`."""
-        return State(self, jet_angle(degrees, beyond), within)
+        return State(self, CrankAngle.of(degrees).jets, within)
 
     def on(self, pieces: Pieces) -> State:
         """Return the state at the nodes of pieces, each on its side of every jump."""
         drive = self if pieces.variant is None else self.taken(pieces.variant[:, None])
-        return State(drive, CrankAngle.of(pieces.degrees, pieces.beyond, pieces.right_angle), pieces.within)
+        return State(drive, CrankAngle.at_nodes(pieces), pieces.within)
 
     @cached_property
     def cuts(self) -> Cuts:

@@ -337,4 +337,4 @@ class CylinderForces(Searched, Results):
         return np.asarray(self._on(pieces).M)
 
     def _on(self, pieces: Pieces) -> State:
-        return State(self.drive, CrankAngle.of(pieces.degrees, pieces.beyond))
+        return State(self.drive, CrankAngle.at_nodes(pieces))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.crank_angle import CrankAngle, jet_angle
+from kurbel.crank_angle import CrankAngle
 from kurbel.machine.variants import count_of, taken
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import every, where
@@ -213,7 +213,7 @@ class _Evaluated:
         self.function = function
 
     def __call__(self, degrees: Array, within: Array) -> dict[str, Sampled]:
-        return {"it": Sampled.of(self.function(self.mechanism, jet_angle(degrees)), degrees.shape)}
+        return {"it": Sampled.of(self.function(self.mechanism, CrankAngle.of(degrees).jets), degrees.shape)}
 
     def of(self, variant: Indices) -> "_Evaluated":
         """Return the same of these variants."""

@@ -34,7 +34,7 @@ class PinWorks:
         return dict(zip(self._given, found.tolist()))
 
     def _moments(self, pieces: Pieces) -> Array:
-        rubbing = State(self._forces.drive, CrankAngle.of(pieces.degrees, pieces.beyond)).rubbing
+        rubbing = State(self._forces.drive, CrankAngle.at_nodes(pieces)).rubbing
         every = [np.broadcast_to(getattr(rubbing, name), pieces.degrees.shape) for name in self._given]
         return np.stack(every)
 

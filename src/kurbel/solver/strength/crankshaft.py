@@ -99,7 +99,7 @@ class CrankshaftStrength(Results):
 
     def _on(self, grid: Grid, asked: Asked) -> dict[str, Sampled]:
         """Return what is asked of the body, on a grid."""
-        samples = self._sampled(asked, self.forces.drive.jets_at(grid.degrees, grid.within, grid.beyond))
+        samples = self._sampled(asked, State(self.forces.drive, CrankAngle.at_nodes(grid).jets, grid.within))
         if not all(np.isfinite(sampled.value).all() for sampled in samples.values()):
             raise UsageError(
                 f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
@@ -237,7 +237,7 @@ class CrankshaftStrength(Results):
         """Means over time in N of the force of the rod on the pin, and of the forces on both bearings."""
 
         def loads(pieces: Pieces) -> Array:
-            state = State(self.forces.drive, CrankAngle.of(pieces.degrees, pieces.beyond))
+            state = State(self.forces.drive, CrankAngle.at_nodes(pieces))
             body = self._running(state)
             return np.stack([np.hypot(*force) for force in ((state.D, state.T), body.A, body.B)])
 
