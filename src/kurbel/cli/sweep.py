@@ -151,7 +151,7 @@ class _Asked(NamedTuple):
         """Compute and write the rows."""
         gc.freeze()
         gc.enable()  # what thousands of machines leave behind in circles would fill the memory
-        from kurbel.designs.chosen import read_aim, read_condition, sorted_rows, summary, unbettered
+        from kurbel.designs.chosen import read_aim, read_condition, summary, unbettered
         from kurbel.designs.plan import MOST_ROWS, shard
         from kurbel.designs.sweep import Sweep
         from kurbel.designs.workers import likely_jobs, rows_of
@@ -173,7 +173,7 @@ class _Asked(NamedTuple):
             kept = summary(kept, found.heads)
         else:
             kept = unbettered(kept, aims) if aims else kept
-            kept = sorted_rows(kept, order)[: self.top] if order else kept
+            kept = sorted(kept, key=order.of)[: self.top] if order else kept
         out.write(kept)
 
     def _spec(self) -> "Spec":
