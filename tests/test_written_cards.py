@@ -12,6 +12,8 @@ from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError
 from kurbel.solver.cylinder.forces import CylinderForces
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
 AREA, STROKE, AT = math.pi / 4 * 0.45**2, 0.8, 98066.5
 LINES = "expansion: [[0, 57], [32.2, 57], [92, 13.2]], compression: [[92, 7.2], [0, 57]]"
