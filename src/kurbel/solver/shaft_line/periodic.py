@@ -6,6 +6,7 @@ All masses move nearly uniformly: d/dt = ω_n d/dφ. With the torque T = S + d (
 
 import math
 from collections.abc import Callable
+from copy import copy
 from functools import cached_property
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ from kurbel.arrays import Array, Indices
 from kurbel.numerics.collocation import Periodic, periodic
 from kurbel.numerics.elements import Elements
 from kurbel.solver.shaft_line.chain import Chain
+from kurbel.solver.shaft_line.modes import Modes
 
 _SWING = 120.0
 """Degrees of a natural oscillation that one element may hold at first, …"""
@@ -38,17 +40,15 @@ class ChainEquation:
     """
 
     def __init__(
-        self,
-        chain: Chain,
-        omega: float,
-        order: float,
-        driving: Callable[[Array, Array], Array],
-        rise: Rise | None = None,
-        eased: float = 0.0,
+        self, chain: Chain, omega: float, driving: Callable[[Array, Array], Array], rise: Rise | None = None
     ) -> None:
-        self.chain, self.omega, self.order, self.driving, self.rise = chain, omega, order, driving, rise
-        self.noise = 0.0
-        self._more = eased
+        self.chain, self.omega, self.driving, self.rise = chain, omega, driving, rise
+        self.noise = self._more = 0.0
+
+    @cached_property
+    def order(self) -> float:
+        """The largest natural order."""
+        return float(Modes(self.chain).omegas[-1]) / self.omega
 
     @cached_property
     def speeds(self) -> Array:
@@ -110,7 +110,9 @@ class ChainEquation:
 
     def eased(self, by: float) -> "ChainEquation":
         """See `collocation.Equation`: the load minds the speed as if its mass had so much more J ω_n², in N m."""
-        return ChainEquation(self.chain, self.omega, self.order, self.driving, self.rise, by)
+        tamer = copy(self)
+        tamer._more = by
+        return tamer
 
     def parts(self, breaks: Array) -> Indices:
         """Return into how many elements each piece of the cycle between the breaks in degrees is cut at first."""
