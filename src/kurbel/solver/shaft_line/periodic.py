@@ -15,6 +15,7 @@ import numpy as np
 from kurbel.arrays import Array, Indices
 from kurbel.numerics.collocation import Periodic, periodic
 from kurbel.numerics.elements import Elements
+from kurbel.numerics.grid import cut_equally
 from kurbel.solver.shaft_line.chain import Chain
 from kurbel.solver.shaft_line.modes import Modes
 
@@ -123,10 +124,7 @@ class ChainEquation:
 
         A load that does not mind the speed leaves the mean speed open: it is the nominal one.
         """
-        parts = self.parts(breaks)
-        cuts = [low + step * np.arange(n) / n for low, step, n in zip(breaks[:-1], np.diff(breaks), parts)]
-        elements = Elements.over(np.append(np.concatenate(cuts), breaks[-1]))
-        found = periodic(self, elements, len(self.matrix))
+        found = periodic(self, Elements.over(cut_equally(breaks, self.parts(breaks))), len(self.matrix))
         if self.rise is None and not self.chain.mass_damping.any() and not self.chain.ground:
             pieces = len(self.chain.stiffnesses)
             width = np.radians(found.elements.width)
