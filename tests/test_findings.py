@@ -23,6 +23,8 @@ from kurbel.report.frame import Frame, report_of
 from kurbel.report.whole import COMMANDS
 from representative import case_of, few, shipped
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ENDLESS = "{constant: {expansion: 1e300 at, compression: 1e300 at}}"
 HUGE = f"crank: 1 m\nrod_ratio: 5\nbore: 1 m\nindicator: {{head_end: {ENDLESS}}}\n"
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"

@@ -18,6 +18,8 @@ from kurbel.declared.quantity import by_id
 from kurbel.mechanisms import MECHANISMS, every_quantity
 from representative import shipped
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = str(CONFIGS / "waterworks.yaml")
 DEMO = """\

@@ -19,6 +19,8 @@ from click.testing import CliRunner, Result
 from kurbel.cli import kurbel
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 FOLDER = Path(__file__).parent
 CONFIGS = FOLDER.parent / "configs"
 SLIDER = "crank: 400 mm\nrod: 2000 mm\n"

@@ -38,6 +38,8 @@ from kurbel.solver.turning.flywheel import MachineTurning
 from representative import case_of
 from toy_mechanism import HarmonicCam
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
     "motion": (Motion,),

@@ -19,6 +19,8 @@ from kurbel.numerics.search import Curve, lasting
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 COMPRESSOR = """
 speed: 600 rpm
 crank: 50 mm
