@@ -174,7 +174,7 @@ def test_friction_work_of_a_driven_machine_near_self_locking(ratio: float, f: fl
 CLIMBED = [(lam, column) for lam in (0.2, 0.6, 0.95) for column in ("P", "S", "N", "T")]
 
 
-@pytest.mark.parametrize(("lam", "column"), few(CLIMBED, [(0.6, "N"), (0.2, "P")]))
+@pytest.mark.parametrize(("lam", "column"), few(CLIMBED, [(0.6, "N")]))
 def test_extremes(lam: float, column: str) -> None:
     """Brute force over 20,000 angles finds the hill, high precision climbs it."""
     forces = machine(lam)
