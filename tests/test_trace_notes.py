@@ -13,8 +13,9 @@ from click.testing import CliRunner
 
 from indicated import Engine, absolute, columns_file, cycles, indicated
 from kurbel.cli import kurbel
+from kurbel.machine import Machine
 from kurbel.machine_file import loads
-from kurbel.report.notes import machine_notes
+from kurbel.report.notes import Note, machine_notes
 from kurbel.solver.case import Case
 from representative import few
 
@@ -37,9 +38,13 @@ def machine_text(file: Path, keys: str = "", pressures: str = "absolute", cycle:
     )
 
 
+def noted(machine: Machine) -> tuple[Note, ...]:
+    return machine_notes(machine, lambda: Case(machine))
+
+
 def notes_of(text: str) -> list[str]:
     """All notes on a machine, but for that on the rod load, which every motored engine has."""
-    return [note.text for note in machine_notes(loads(text)) if not note.text.startswith("the rod load")]
+    return [note.text for note in noted(loads(text)) if not note.text.startswith("the rod load")]
 
 
 def test_good_noisy_cycles_are_not_accused(tmp_path: Path) -> None:
@@ -270,6 +275,6 @@ def test_a_measured_stirling_engine(tmp_path: Path) -> None:
     machine = loads(text % (tmp_path / "s.csv", 60 / period, zero))
     found = Case(machine).cylinders[0]
     assert found["mean_pressure"].value / 1e3 == pytest.approx(loop, rel=0.05)
-    assert [note.text for note in machine_notes(machine) if "left out" not in note.text] == []
-    notes = [note.text for note in machine_notes(loads(text % (STIRLING, 60 / period, zero)))]
+    assert [note.text for note in noted(machine) if "left out" not in note.text] == []
+    notes = [note.text for note in noted(loads(text % (STIRLING, 60 / period, zero)))]
     assert any("the cycles wander" in note for note in notes)

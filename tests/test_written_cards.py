@@ -35,6 +35,13 @@ def refused(text: str) -> str:
     return str(caught.value)
 
 
+def test_a_clearance_with_a_unit_is_not_to_be_written_without_it() -> None:
+    said = refused("indicator: {head_end: {compressor: {suction: 0 bar, delivery: 3 bar, clearance: 5 mm}}}\n")
+    assert "got '5 mm'; it is a share of the stroke, such as 0.05 or 5 %" in said
+    said = refused("indicator: {head_end: {compressor: {suction: 0 bar, delivery: 3 bar, clearance: '0,05'}}}\n")
+    assert "share" not in said
+
+
 @pytest.mark.parametrize("cycle", ["two-stroke", "four-stroke"])
 @pytest.mark.parametrize("end", ["head_end", "crank_end"])
 def test_one_pressure_stands_on_every_stroke(end: str, cycle: str) -> None:

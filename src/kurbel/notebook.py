@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.case import Case as Case
@@ -56,8 +58,6 @@ def as_html(shown: Case | Results) -> str:
 def _key_values(results: Results, caption: str) -> str:
     """Return a table, or the reason why there is none."""
     from html import escape
-
-    import numpy as np
 
     from kurbel.render import Look
     from kurbel.render.html import key_values

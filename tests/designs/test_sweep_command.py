@@ -211,14 +211,16 @@ def test_chunks_that_others_compute_keep_their_order(monkeypatch: pytest.MonkeyP
 
         def result(self) -> list[object]:
             function, *rest = self.args
-            return function(*rest)  # type: ignore[operator, no-any-return]
+            chunk = function(*rest)  # type: ignore[operator]
+            handed.append(len(chunk))
+            return chunk  # type: ignore[no-any-return]
 
     monkeypatch.setattr(sweep, "CHUNK", 7)
     monkeypatch.setattr(sweep, "_FIRST", 3)
-    found = swept("rod_ratio=3:6:0.1", "stroke")
-    chunks = list(workers._gathered(found, range(found.rows), Future, 2))
-    assert [len(chunk) for chunk in chunks] == [3, 4, 7, 7, 7, 3]
-    assert [row.number for chunk in chunks for row in chunk] == list(range(1, 32))
+    found, handed = swept("rod_ratio=3:6:0.1", "stroke"), list[int]()
+    rows = list(workers._gathered(found, range(found.rows), Future, 2))
+    assert handed == [3, 4, 7, 7, 7, 3]
+    assert [row.number for row in rows] == list(range(1, 32))
 
 
 def test_a_row_is_computed_in_the_same_company_by_every_run() -> None:

@@ -131,7 +131,7 @@ def test_an_overflow_that_no_bound_keeps_off_is_an_error_without_a_warning(monke
 
     from kurbel.report import notes
 
-    monkeypatch.setattr(notes, "speed_notes", lambda *_: [str(np.array([1e300]) * 1e300)])
+    monkeypatch.setattr(notes, "_speed_notes", lambda *_: [str(np.array([1e300]) * 1e300)])
     result = run("check", ENGINE)
     assert result.exit_code == 2
     assert "lead beyond what can be computed with (overflow" in result.stderr

@@ -8,9 +8,8 @@ from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES, PIN_LOSSES
 from kurbel.declared.factors import PHI
 from kurbel.declared.flywheel import EFFORT_VALUES, FLYWHEEL_COLUMNS, FLYWHEEL_VALUES
-from kurbel.declared.indicated import INDICATED_COLUMNS, INDICATED_VALUES
+from kurbel.declared.forces import INDICATED_COLUMNS, INDICATED_VALUES, ROD_COLUMNS, ROD_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
-from kurbel.declared.rod_load import ROD_COLUMNS, ROD_VALUES
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
 from kurbel.declared.torsion import HARMONIC_VALUES, TORSION_COLUMNS, TORSION_VALUES
 

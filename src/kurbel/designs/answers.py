@@ -110,7 +110,9 @@ class _Answers:
             self._together(rows[: len(rows) // 2])
             self._together(rows[len(rows) // 2 :])
         else:
-            fit = np.all([np.broadcast_to(_is_finite(value), len(rows)) for value in found], axis=0)
+            fit = np.ones(len(rows), dtype=bool)
+            for value in found:
+                fit &= _is_finite(value)
             values = zip(*(_listed(value, len(rows)) for value in found))
             for row, finite, own in zip(rows, fit.tolist(), values):
                 if finite:
@@ -146,7 +148,7 @@ def _listed(value: Any, count: int) -> Sequence[Any]:
     if value is None or isinstance(value, tuple):
         each = isinstance(value, tuple) and len(value) == count and all(isinstance(one, tuple) for one in value)
         return value if each else [value] * count  # type: ignore[return-value]
-    return np.broadcast_to(np.asarray(value, dtype=float), (count,)).tolist()  # type: ignore[no-any-return]
+    return value.tolist() if np.ndim(value) else [float(value)] * count
 
 
 def _is_finite(value: Any) -> Any:

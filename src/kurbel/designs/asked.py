@@ -8,7 +8,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import SI
 from kurbel.designs.binding import Binder, written_texts
-from kurbel.designs.inputs import Input
+from kurbel.designs.plan import Input
 from kurbel.designs.sweep import Row, Spec, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError

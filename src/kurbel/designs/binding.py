@@ -201,15 +201,13 @@ def _of_one_sort(read: _Part) -> list[_Part]:
 
 def written_texts(origin: Origin, keys: Sequence[str]) -> list[str]:
     """Return what a file has under these dotted keys; raises UsageError for a key under which no value stands."""
-    tree = tree_of(origin)
-    return [_named(tree, key) for key in keys]
-
-
-def _named(tree: Tree, key: str) -> str:
-    try:
-        return written(tree, key)
-    except UsageError as error:
-        raise UsageError(f"{shown(key)}: {error}") from None
+    tree, texts = tree_of(origin), []
+    for key in keys:
+        try:
+            texts.append(written(tree, key))
+        except UsageError as error:
+            raise UsageError(f"{shown(key)}: {error}") from None
+    return texts
 
 
 def written(tree: Tree, key: str) -> str:

@@ -33,8 +33,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.reading import REFUSED
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.frozen import frozen
-from kurbel.machine.angle_points import CYCLES
-from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder, crowded
+from kurbel.machine.cylinder import COUNTERWEIGHTS, CYCLES, Cylinder, crowded
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record, positive
 from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.kinds import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.frozen import frozen
-from kurbel.machine.angle_points import CYCLES
-from kurbel.machine.cylinder import Cylinder
+from kurbel.machine.cylinder import CYCLES, Cylinder
 
 
 @frozen

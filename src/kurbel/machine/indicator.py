@@ -3,11 +3,10 @@
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
-from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName, not_negative
 from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import Factor
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.frozen import frozen
 from kurbel.machine.rectangle import Rectangle, Rectangular
@@ -15,9 +14,9 @@ from kurbel.machine.rectangle import Rectangle, Rectangular
 if TYPE_CHECKING:
     from kurbel.machine.drawn import Drawn
 
-CLEARANCE = Number(least=1e-6, most=1e5)
+CLEARANCE = Number("the stroke", least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
-CLEARANCE_OR_NONE = Number(least=1e-6, most=1e5, zero=True)
+CLEARANCE_OR_NONE = Number("the stroke", least=1e-6, most=1e5, zero=True)
 """The same where nothing need be compressed into it: then it may be left out of the theory."""
 
 

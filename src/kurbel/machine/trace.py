@@ -11,7 +11,7 @@ from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import refused
 from kurbel.frozen import frozen
-from kurbel.machine.angle_points import CYCLES
+from kurbel.machine.cylinder import CYCLES
 
 PERIODS = (360.0, 720.0)
 _EVEN = 1e-3  # of a step: what rounded angles may miss

@@ -73,8 +73,7 @@ def read_columns(file: str, columns: Columns) -> Table:
     """Return the columns of a file; raises RuleError with the line of the first that cannot be read."""
     text = text_of(file)
     if columns.delimiter == columns.decimal and '"' not in text:
-        message = "a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'"
-        refused(message, "decimal")
+        refused("a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'", "decimal")
     table = _table(text, columns)
     if not table.size:
         refused(f"{os.path.basename(file)} has no figures{_below(columns)}", "file")

@@ -2,10 +2,9 @@
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.forms import FilePath, Number, Points, UnitName
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.units import Factor
+from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.errors import refuse, refused
 from kurbel.machine.turning import Effort, Harmonics
 from kurbel.machine_file.samples import Layout, layout_keys, samples_of

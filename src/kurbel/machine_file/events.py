@@ -7,7 +7,7 @@ from it. Numbers stay text: what a scalar means is decided by the key that it st
 
 from typing import Any
 
-from kurbel.declared.bounds import MOST_POINTS
+from kurbel.declared.kinds import MOST_POINTS
 from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, shown
 from kurbel.errors import Fault, Path, Step
 from kurbel.machine_file.late_patterns import late_patterns

@@ -117,10 +117,6 @@ class FourBar(Mechanism):
         """The four links over the frame."""
         return Loop.of(self.crank, self.coupler, self.rocker, self.frame)
 
-    def direction(self, angle: CrankAngle) -> tuple[Any, Any]:
-        """Return (sin θ, cos θ) of the rocker."""
-        return self.loop.at(angle).direction
-
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return θ in radians; where it turns fully, it runs on with φ."""
         return self.swing_at(angle).degrees * (math.pi / 180)

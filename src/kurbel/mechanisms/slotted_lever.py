@@ -78,8 +78,7 @@ class SlottedLever(Mechanism):
         projected_area(self.pin_diameter, self.pin_length)
         if self.crank == self.frame:
             same = show(self.crank, "length")
-            message = f"{same} is also the crank: the pin would pass through the lever's pivot"
-            refused(message, "frame")
+            refused(f"{same} is also the crank: the pin would pass through the lever's pivot", "frame")
         if math.isinf(self.link) and self.ram_height is not None:
             refused("has no meaning for a fork head; give 'link' with it", "ram_height")
         if not math.isfinite(self._height):
@@ -179,10 +178,6 @@ class SlottedLever(Mechanism):
         crank, frame, gap = self._shares
         reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
         return _Lever(crank * angle.sin / reach, sum_along(frame, crank, gap, angle) / reach, reach)
-
-    def direction(self, angle: CrankAngle) -> tuple[Any, Any]:
-        """Return (sin θ, cos θ) of the lever's tilt from the line of the pivots."""
-        return self._lever_at(angle)[:2]
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return the crank with its block on the lever, and the ram on its line, which is upright where φ = 0 lies."""

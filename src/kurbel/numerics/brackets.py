@@ -1,13 +1,13 @@
 """Brackets of what a quantity does between the nodes of a grid: where it turns round, where that is worth a search."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.grid import Grid
-from kurbel.numerics.roots import bracketed_roots
+from kurbel.numerics.roots import bracketed_roots, roots_by_slope
 
 
 class Sampled(NamedTuple):
@@ -36,17 +36,44 @@ It may have `inside(within)`: what it takes in their place, so that what all ang
 """
 
 
-class Brackets(NamedTuple):
-    """Intervals that hold one root each: number of the quantity, ends in degrees, row of the piece, values at the ends.
+class Rows(NamedTuple):
+    """Pieces of several quantities, those of one after those of another: what is searched of them is searched at once.
 
-    node: after which the interval begins. Each is (n,).
+    owner, piece: number of the quantity and of the piece, (n,); value, slope: at the nodes, (n, nodes), node by node in
+    memory; worth: which intervals between two nodes are worth a search, (n, nodes − 1).
     """
 
-    owner: Any
+    owner: Indices
+    piece: Indices
+    value: Array
+    slope: Array
+    worth: Any = True
+
+    @classmethod
+    def of(cls, samples: Iterable[Sampled], chosen: Flags) -> "Rows":
+        """Return the pieces for which a flag (quantities, pieces) is set."""
+        parts = [np.flatnonzero(own) for own in chosen]
+        values, slopes = (
+            np.concatenate([one.T.take(rows, axis=1) for one, rows in zip(part, parts)], axis=1).T
+            for part in zip(*samples)
+        )
+        owner = np.repeat(np.arange(len(parts)), [len(rows) for rows in parts])
+        return cls(owner, np.concatenate(parts), values, slopes)
+
+    def between_nodes(self, grid: Grid) -> tuple[Array, Array, Array]:
+        """Return values at both ends of the intervals, and what those between may differ by, (n, nodes − 1)."""
+        slope = np.abs(self.slope)
+        rise = np.maximum(slope[:, :-1], slope[:, 1:]) * grid.half_widths[self.piece, None] * grid.gaps
+        return self.value[:, :-1], self.value[:, 1:], rise
+
+
+class Brackets(NamedTuple):
+    """Intervals that hold one root each: place of the row, node before, ends in degrees, values at the ends, (n,)."""
+
+    place: Indices
+    node: Indices
     low: Array
     high: Array
-    row: Indices
-    node: Indices
     f_low: Array
     f_high: Array
 
@@ -60,135 +87,116 @@ class Brackets(NamedTuple):
         return cls(*map(np.concatenate, zip(*parts, strict=True)))
 
 
-class Worth(NamedTuple):
-    """Where a quantity is worth a search: rows (k,) of pieces, and flags (k, nodes − 1) of the intervals in them."""
-
-    rows: Indices
-    intervals: Any
-
-
-class Slopes(NamedTuple):
-    """Slopes and their derivatives on the pieces (k,) that are searched, (k, nodes), and which intervals are."""
-
-    rows: Indices
-    slope: Array
-    bends: Array
-    worth: Any
-
-
-def slopes_worth(grid: Grid, sampled: Sampled, worth: Worth) -> Slopes:
-    slope = _of_rows(sampled.slope, worth.rows)
-    return Slopes(worth.rows, slope, grid.slopes(slope, worth.rows), worth.intervals)
-
-
-def _of_rows(values: Array, rows: Indices) -> Array:
-    """Return the values (pieces, nodes) of these pieces, node by node in memory as they were."""
-    return np.asarray(values.T.take(rows, axis=1).T)
-
-
-def _reach(grid: Grid, sampled: Sampled) -> Array:
-    """Return what values in a piece (pieces,) may at most differ by from those at the nodes beside them.
+class Ranges(NamedTuple):
+    """Largest and smallest values at the nodes of pieces, and what those between may differ by, (quantities, pieces).
 
     Slope times width is four times what a parabola with these slopes rises above its ends.
     """
-    steepest = np.maximum(sampled.slope.max(axis=1), -sampled.slope.min(axis=1))
-    return np.asarray(steepest * grid.half_widths * grid.gaps.max())
 
+    high: Array
+    low: Array
+    reach: Array
 
-def _between_nodes(grid: Grid, sampled: Sampled, rows: Indices) -> tuple[Array, Array, Array]:
-    """Return values at both ends of the intervals of these rows, and the reach in each, (k, nodes − 1)."""
-    value, slope = _of_rows(sampled.value, rows), np.abs(_of_rows(sampled.slope, rows))
-    rise = np.maximum(slope[:, :-1], slope[:, 1:]) * grid.half_widths[rows, None] * grid.gaps
-    return value[:, :-1], value[:, 1:], rise
+    @classmethod
+    def of(cls, grid: Grid, samples: Sequence[Sampled]) -> "Ranges":
+        high, low = (
+            np.stack([one.value.max(axis=1) for one in samples]),
+            np.stack([one.value.min(axis=1) for one in samples]),
+        )
+        steepest = np.stack([np.maximum(one.slope.max(axis=1), -one.slope.min(axis=1)) for one in samples])
+        return cls(high, low, steepest * (grid.half_widths * grid.gaps.max()))
 
 
 _FLAT = 32 * np.finfo(float).eps
 """Beside its values, what a quantity that does not vary seems to by the rounding of its slopes."""
+REPEATED = 64 * np.finfo(float).eps
+"""By which, beside the largest value, equal summits of a curve differ that is summed over cylinders and the cycle."""
 
 
-def may_be_extreme(grid: Grid, sampled: Sampled) -> Worth:
-    """Return where a quantity may be larger or smaller than at every node of its variant."""
-    reach, high, low = _reach(grid, sampled), sampled.value.max(axis=1), sampled.value.min(axis=1)
-    varies = reach > _FLAT * np.maximum(high, -low)
-    top = grid.of_each(np.maximum.reduceat(high, grid.first))
-    bottom = grid.of_each(np.minimum.reduceat(low, grid.first))
-    rows = np.flatnonzero(varies & ((high + reach >= top) | (low - reach <= bottom)))
-    before, after, rise = _between_nodes(grid, sampled, rows)
-    above = np.maximum(before, after) + rise >= top[rows, None]
-    return Worth(rows, above | (np.minimum(before, after) - rise <= bottom[rows, None]))
+def may_be_extreme(grid: Grid, samples: Sequence[Sampled]) -> Rows:
+    """Return where quantities may pass all nodes of their variant; of each at least one row."""
+    high, low, reach = Ranges.of(grid, samples)
+    top, bottom = np.maximum.reduceat(high, grid.first, axis=1), np.minimum.reduceat(low, grid.first, axis=1)
+    slack = REPEATED * np.maximum(np.abs(top), np.abs(bottom))
+    within = (high + reach < grid.of_each(top - slack)) & (low - reach > grid.of_each(bottom + slack))
+    rows = Rows.of(samples, ~within)  # what is no number, too
+    at = rows.owner, rows.piece
+    varies = reach[at] > _FLAT * np.maximum(high[at], -low[at])
+    before, after, rise = rows.between_nodes(grid)
+    variant = rows.owner, grid.number[rows.piece]
+    above = np.maximum(before, after) + rise >= top[variant][:, None]
+    below = np.minimum(before, after) - rise <= bottom[variant][:, None]
+    return rows._replace(worth=(above | below) & varies[:, None])
 
 
-def everywhere(grid: Grid) -> Worth:
-    """Return that every interval is worth a search."""
-    return Worth(np.arange(len(grid.low)), True)
+def everywhere(grid: Grid, samples: Sequence[Sampled]) -> Rows:
+    """Return every piece, with every interval worth a search."""
+    return Rows.of(samples, np.ones((len(samples), len(grid.low)), dtype=bool))
 
 
-def may_be_zero(grid: Grid, sampled: Sampled) -> Worth:
-    """Return where a quantity may reach zero, and turn back or not."""
-    reach = _reach(grid, sampled)
-    rows = np.flatnonzero((sampled.value.min(axis=1) <= reach) & (sampled.value.max(axis=1) >= -reach))
-    before, after, rise = _between_nodes(grid, sampled, rows)
-    return Worth(rows, np.minimum(np.abs(before), np.abs(after)) <= rise)
+def may_be_zero(grid: Grid, samples: Sequence[Sampled]) -> Rows:
+    """Return where quantities may reach zero, and turn back or not."""
+    high, low, reach = Ranges.of(grid, samples)
+    rows = Rows.of(samples, (low <= reach) & (high >= -reach))
+    before, after, rise = rows.between_nodes(grid)
+    return rows._replace(worth=np.minimum(np.abs(before), np.abs(after)) <= rise)
 
 
-def slope_brackets(grid: Grid, asked: list[Slopes], evaluate: Evaluate) -> Brackets:
+def slope_brackets(grid: Grid, rows: Rows, evaluate: Evaluate) -> Brackets:
     """Return where slopes pass zero between two nodes, once or to and fro."""
-    plain = Brackets.joined(_crossing(grid, k, one) for k, one in enumerate(asked))
-    over, share = zip(*(_dips(grid, k, one) for k, one in enumerate(asked)), strict=True)
-    twice = Brackets.joined(over)
-    if not len(twice.low):
+    plain = _crossing(grid, rows)
+    twice, share = _dips(grid, rows)
+    if not len(share):
         return plain
-    middle = twice.low + np.concatenate(share) * (twice.high - twice.low)
-    f_middle = at_brackets(grid, twice, evaluate)(middle).slope
+    middle = twice.low + share * (twice.high - twice.low)
+    f_middle = at_brackets(grid, rows, twice, evaluate)(middle).slope
     crossed = f_middle * twice.f_low < 0
     halves = twice._replace(high=middle, f_high=f_middle), twice._replace(low=middle, f_low=f_middle)
     return Brackets.joined((plain, *(half.at(crossed) for half in halves)))
 
 
-def _crossing(grid: Grid, owner: int, asked: Slopes) -> Brackets:
-    before, after = asked.slope[:, :-1], asked.slope[:, 1:]
+def _crossing(grid: Grid, rows: Rows) -> Brackets:
+    before, after = rows.slope[:, :-1], rows.slope[:, 1:]
     # a zero at a node counts for the interval that it ends, so that it is found once
-    once = (((before < 0) & (after >= 0)) | ((before > 0) & (after <= 0))) & asked.worth
-    return _between(grid, owner, asked, *np.nonzero(once))
+    once = (((before < 0) & (after >= 0)) | ((before > 0) & (after <= 0))) & rows.worth
+    return _between(grid, rows, *np.nonzero(once))
 
 
-def _dips(grid: Grid, owner: int, asked: Slopes) -> tuple[Brackets, Array]:
+def _dips(grid: Grid, rows: Rows) -> tuple[Brackets, Array]:
     """Return the intervals in which the tangents to a slope of one sign at both ends meet beyond zero.
 
     Also where between the ends a line through its derivatives there is zero, (n,) as a share of the way.
     """
-    ends = (part[:, side] for part in (asked.slope, asked.bends) for side in (slice(-1), slice(1, None)))
+    bends = grid.slopes(rows.slope, rows.piece)
+    ends = (part[:, side] for part in (rows.slope, bends) for side in (slice(-1), slice(1, None)))
     low, high, bend, next_bend = ends
-    toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0) & asked.worth
-    rows, nodes = np.nonzero(toward)
-    low, high, bend, next_bend = (part[rows, nodes] for part in (low, high, bend, next_bend))
-    width = grid.half_widths[asked.rows[rows]] * grid.gaps[nodes]
+    toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0) & rows.worth
+    places, nodes = np.nonzero(toward)
+    low, high, bend, next_bend = (part[places, nodes] for part in (low, high, bend, next_bend))
+    width = grid.half_widths[rows.piece[places]] * grid.gaps[nodes]
     lowest = low + bend * (high - low - next_bend * width) / (bend - next_bend)
     beyond = lowest * low <= 0
     share = bend / (bend - next_bend)
-    return _between(grid, owner, asked, rows[beyond], nodes[beyond]), share[beyond]
+    return _between(grid, rows, places[beyond], nodes[beyond]), share[beyond]
 
 
-def _between(grid: Grid, owner: int, asked: Slopes, places: Indices, nodes: Indices) -> Brackets:
-    rows = asked.rows[places]
-    f_low, f_high = asked.slope[places, nodes], asked.slope[places, nodes + 1]
-    owners = np.full(len(rows), owner)
-    return Brackets(owners, grid.degrees[rows, nodes], grid.degrees[rows, nodes + 1], rows, nodes, f_low, f_high)
+def _between(grid: Grid, rows: Rows, places: Indices, nodes: Indices) -> Brackets:
+    f_low, f_high = rows.slope[places, nodes], rows.slope[places, nodes + 1]
+    pieces = rows.piece[places]
+    return Brackets(places, nodes, grid.degrees[pieces, nodes], grid.degrees[pieces, nodes + 1], f_low, f_high)
 
 
-def at_brackets(grid: Grid, brackets: Brackets, evaluate: Evaluate) -> Callable[[Array], Sampled]:
+def at_brackets(grid: Grid, rows: Rows, brackets: Brackets, evaluate: Evaluate) -> Callable[[Array], Sampled]:
     """Return what gives values and slopes of the quantities of brackets (n,) at angles (n,) in degrees inside them."""
-    asked: Any = evaluate if grid.variant is None else evaluate.of(grid.variant[brackets.row])  # type: ignore[attr-defined]
-    within: Any = grid.within[brackets.row, 0]
+    owner, piece = rows.owner[brackets.place], rows.piece[brackets.place]
+    asked: Any = evaluate if grid.variant is None else evaluate.of(grid.variant[piece])  # type: ignore[attr-defined]
+    within: Any = grid.within[piece, 0]
     if hasattr(asked, "inside"):
         within = asked.inside(within)
 
     def at(degrees: Array) -> Sampled:
-        value, slope = np.empty_like(degrees), np.empty_like(degrees)
-        for owner, sampled in enumerate(asked(degrees, within).values()):
-            own = brackets.owner == owner
-            value[own], slope[own] = sampled.value[own], sampled.slope[own]
-        return Sampled(value, slope)
+        every = zip(*asked(degrees, within).values())
+        return Sampled(*(np.stack(parts)[owner, np.arange(len(owner))] for parts in every))
 
     return at
 
@@ -196,62 +204,55 @@ def at_brackets(grid: Grid, brackets: Brackets, evaluate: Evaluate) -> Callable[
 _SETTLED = 1e-9
 """Of half a piece, where a polynomial through its nodes is as steep as high: a step so short leaves its square."""
 _STEPS = 3
+_POLYNOMIAL_STEPS = 6
 
 
-def roots(grid: Grid, brackets: Brackets, evaluate: Evaluate, part: str, nodal: list[Array]) -> tuple[Array, Array]:
+def roots(grid: Grid, rows: Rows, brackets: Brackets, evaluate: Evaluate, part: str) -> tuple[Array, Array]:
     """Return the roots in degrees of values or slopes in their brackets, and the values there.
 
-    nodal: those values or slopes at the nodes of the grid, (pieces, nodes), of every quantity. The polynomial through
-    them has a root beside each, from which Newton's method needs a step or two; where it needs more, the bracket tells.
+    part: "value" or "slope". The polynomial through those at the nodes has a root beside each, from which Newton's
+    method needs a step or two; where it needs more, the bracket tells.
     """
-    degrees, rise, size = _roots_of_polynomials(grid, brackets, nodal)
+    if not len(brackets.place):
+        return brackets.low, brackets.low
+    degrees, rise, size = _roots_of_polynomials(grid, rows, brackets, part)
     values, left = np.empty_like(degrees), np.arange(len(degrees))
-    half = (grid.high - grid.low)[brackets.row] / 2
+    half = grid.half_degrees[rows.piece[brackets.place]]
     short = _SETTLED * half * np.minimum(np.abs(rise) * half / size, 1.0)
     for _ in range(_STEPS):
         if not len(left):
             return degrees, values
         own = brackets.at(left)
-        found = at_brackets(grid, own, evaluate)(degrees[left])
+        found = at_brackets(grid, rows, own, evaluate)(degrees[left])
         step = getattr(found, part) / rise[left]
         values[left] = found.value
         moved = np.clip(degrees[left] - step, own.low, own.high)
         degrees[left] = np.where(np.isnan(moved), degrees[left], moved)  # no polynomial tells where a slope is none
         left = left[~(np.abs(step) <= short[left])]
     own = brackets.at(left)
-    at = at_brackets(grid, own, evaluate)
+    at = at_brackets(grid, rows, own, evaluate)
     ends = own.low, own.high, own.f_low, own.f_high
     degrees[left] = bracketed_roots(lambda angles: getattr(at(angles), part), *ends)
     values[left] = at(degrees[left]).value
     return degrees, values
 
 
-def _roots_of_polynomials(grid: Grid, brackets: Brackets, nodal: list[Array]) -> tuple[Array, Array, Array]:
+def _roots_of_polynomials(grid: Grid, rows: Rows, brackets: Brackets, part: str) -> tuple[Array, Array, Array]:
     """Return where the polynomials through the nodes of pieces are zero in brackets, and their slopes by degree there.
 
     Also the largest size that they have at a node.
     """
-    along = np.empty((len(grid.nodes), len(brackets.low)))
-    for owner, one in enumerate(nodal):
-        own = brackets.owner == owner
-        along[:, own] = one.T[:, brackets.row[own]]
+    along = getattr(rows, part).T.take(brackets.place, axis=1)
     coefficients = grid.coefficients @ along
-    middle, half = (grid.low + grid.high)[brackets.row] / 2, (grid.high - grid.low)[brackets.row] / 2
+
+    def polynomials(place: Array) -> tuple[Array, Array]:
+        value, slope = coefficients[0], np.zeros_like(place)
+        for one in coefficients[1:]:  # the rule of Horner
+            value, slope = value * place + one, slope * place + value
+        return value, slope
+
+    pieces = rows.piece[brackets.place]
+    middle, half = grid.within[pieces, 0], grid.half_degrees[pieces]
     low, high = (brackets.low - middle) / half, (brackets.high - middle) / half
-    place = low + (high - low) * brackets.f_low / (brackets.f_low - brackets.f_high)
-    for _ in range(6):
-        value, slope = _of_polynomials(coefficients, place)
-        before = value * brackets.f_low > 0
-        low, high = np.where(before, place, low), np.where(before, high, place)
-        place = place - value / slope
-        place = np.where((low <= place) & (place <= high), place, (low + high) / 2)
-    rise = _of_polynomials(coefficients, place)[1] / half
-    return middle + half * place, rise, np.abs(along).max(axis=0, initial=0.0)
-
-
-def _of_polynomials(coefficients: Array, place: Array) -> tuple[Array, Array]:
-    """Return values and slopes (n,) of polynomials, from the highest power on, (powers, n), by the rule of Horner."""
-    value, slope = coefficients[0], np.zeros_like(place)
-    for one in coefficients[1:]:
-        value, slope = value * place + one, slope * place + value
-    return value, slope
+    place = roots_by_slope(polynomials, low, high, brackets.f_low, brackets.f_high, _POLYNOMIAL_STEPS)
+    return middle + half * place, polynomials(place)[1] / half, np.abs(along).max(axis=0, initial=0.0)

@@ -11,7 +11,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Flags
 from kurbel.numerics.cyclic import around
-from kurbel.numerics.elements import STAGES, Elements, Prepared, legendre, rule
+from kurbel.numerics.elements import STAGES, Elements, legendre, rule
 
 _TOLERANCE = 1e-13
 """What the last two Legendre coefficients of an element may be, over the swing of the unknown."""
@@ -19,13 +19,17 @@ _ROUNDS = 60
 _MOST_ELEMENTS = 20_000
 
 
-class Equation(Prepared, Protocol):
+class Equation(Protocol):
     """y′ = f(φ, y) with m unknowns y of about one size, smooth between its breaks.
 
     y may not fall to `floor(φ)`; `noise` in y is not looked into.
     """
 
     noise: float
+
+    def prepared(self, degrees: Array, within: Array) -> Array:
+        """Return what hangs on the angle alone at angles (k, n), as (…, k, n)."""
+        ...
 
     def rate(self, prepared: Array, y: Array) -> tuple[Array, Array]:
         """Return f and ∂f/∂y, per radian, at y (k, n, m): (k, n, m) and (k, n, m, m)."""
@@ -100,7 +104,7 @@ _STANDING = 0.05
 
 def _followed(equation: Equation, elements: Elements, y: Array) -> Periodic:
     """Follow the solution from a deep floor up to that of the equation."""
-    own = -float(equation.floor(elements.prepared(equation)).max())
+    own = -float(equation.floor(_prepared(equation, elements)).max())
     if not math.isfinite(own):
         raise Unsettled
     found, depth = _tame(equation, elements, y, own)
@@ -131,7 +135,7 @@ def _tame(equation: Equation, elements: Elements, y: Array, own: float) -> tuple
 
 def _end_of(equation: Equation, found: Periodic, enough: float) -> Unsettled:
     """Return why the way back ends at this solution: because z is all but at its floor, or not."""
-    floor = equation.floor(found.elements.prepared(equation))
+    floor = equation.floor(_prepared(equation, found.elements))
     share = 1 - found.y[:, 1:] / floor
     if share.min() > _STANDING:
         return Unsettled(enough)
@@ -140,7 +144,7 @@ def _end_of(equation: Equation, found: Periodic, enough: float) -> Unsettled:
 
 def _settled(equation: Equation, elements: Elements, y: Array) -> Periodic:
     """Solve and refine until every element is smooth; raises Unsettled."""
-    prepared = elements.prepared(equation)
+    prepared = _prepared(equation, elements)
     for _ in range(_ROUNDS):
         y = _newton(_Equations(equation, elements, prepared), y)
         coefficients = np.asarray(np.einsum("ns,ksm->kmn", rule().to_legendre, y))
@@ -154,6 +158,12 @@ def _settled(equation: Equation, elements: Elements, y: Array) -> Periodic:
         if len(elements.width) > _MOST_ELEMENTS:
             break
     raise Unsettled
+
+
+def _prepared(equation: Equation, elements: Elements) -> Array:
+    """Return what the equation prepares at the nodes, (…, k, s)."""
+    degrees = elements.degrees
+    return equation.prepared(degrees, np.broadcast_to(elements.within[:, None], degrees.shape))
 
 
 def _tolerance(values: Array) -> Array:
@@ -289,6 +299,6 @@ def _refined(
     finer, old, places = elements.cut(rough)
     y = np.einsum("kin,kmn->kim", legendre(places, STAGES), coefficients[old])
     new, prepared = rough[old], prepared[:, old]
-    prepared[:, new] = Elements(*(of[new] for of in finer)).prepared(equation)
+    prepared[:, new] = _prepared(equation, Elements(*(of[new] for of in finer)))
     y[new, 1:] = np.maximum(y[new, 1:], 0.99 * equation.floor(prepared[:, new]))
     return finer, y, prepared

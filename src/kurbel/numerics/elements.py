@@ -1,21 +1,13 @@
 """Elements for collocation over a cycle: parts of its smooth pieces, each with the nodes of Radau IIA of 11 stages."""
 
 from functools import cache
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices
 
 STAGES = 11
-
-
-class Prepared(Protocol):
-    """An equation of which a part hangs on the angle alone."""
-
-    def prepared(self, degrees: Array, within: Array) -> Array:
-        """Return what it needs at angles (k, n) and does not change with the unknowns, as (m, k, n)."""
-        ...
 
 
 def legendre(x: Array, degree: int) -> Array:
@@ -78,11 +70,6 @@ class Elements(NamedTuple):
     def degrees(self) -> Array:
         """Angles (k, s) of the nodes."""
         return self.piece[:, None] + (self.offset[:, None] + self.width[:, None] * rule().nodes)
-
-    def prepared(self, equation: Prepared) -> Array:
-        """Return what the equation prepares at the nodes, (m, k, s)."""
-        degrees = self.degrees
-        return equation.prepared(degrees, np.broadcast_to(self.within[:, None], degrees.shape))
 
     def at(self, coefficients: Array, degrees: Array, within: Array) -> Array:
         """Return Σ c_n P_n at angles (n,), of the elements that hold `within`; coefficients: (k, …, s + 1)."""

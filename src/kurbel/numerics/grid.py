@@ -66,9 +66,14 @@ class Pieces:
         return part
 
     @cached_property
+    def half_degrees(self) -> Array:
+        """Half the width of each piece in degrees, (pieces,)."""
+        return np.asarray((self.high - self.low) / 2)
+
+    @cached_property
     def half_widths(self) -> Array:
         """Half the width of each piece in radians, (pieces,)."""
-        return np.asarray(np.radians(self.high - self.low) / 2)
+        return np.radians(self.half_degrees)
 
     def integral(self, value: Array) -> float:
         """Return ∫ value dφ (φ in radians) over all pieces by the rule, of every variant; value (pieces, nodes)."""
@@ -104,9 +109,14 @@ class Grid(Pieces):
         """How many pieces every variant has, (v,)."""
         return np.diff(np.append(self.first, len(self.low)))
 
+    @cached_property
+    def number(self) -> Indices:
+        """Of which variant each piece is, counted from 0 on, (pieces,)."""
+        return np.repeat(np.arange(len(self.first)), self.counts)
+
     def of_each(self, found: Array) -> Array:
-        """Return what was found of every variant, (v,), spread over its pieces, (pieces,)."""
-        return np.repeat(found, self.counts)
+        """Return what was found of every variant, (…, v), spread over its pieces, (…, pieces)."""
+        return found.take(self.number, axis=-1)
 
     def told(self, values: Array) -> Any:
         """Return what was found of every variant (v,), or of the only machine as a number."""

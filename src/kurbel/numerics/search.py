@@ -1,5 +1,6 @@
 """Searches over a cycle: the exact extremes between the nodes of a grid, and the exact zeros between the extremes."""
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -7,14 +8,14 @@ import numpy as np
 from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.arithmetic import where
 from kurbel.numerics.brackets import (
+    REPEATED,
     Brackets,
-    Worth,
+    Rows,
     everywhere,
     may_be_extreme,
     may_be_zero,
     roots,
     slope_brackets,
-    slopes_worth,
 )
 from kurbel.numerics.brackets import Evaluate as Evaluate
 from kurbel.numerics.brackets import Sampled as Sampled
@@ -25,8 +26,6 @@ _ROUNDING = 8 * np.finfo(float).eps
 """What is no larger than this beside the largest value of its quantity is rounding and has no sign."""
 _ALIKE = 4 * np.finfo(float).eps
 """By which values beside each other differ that are one but for rounding."""
-_REPEATED = 64 * np.finfo(float).eps
-"""By which, beside the largest value, equal summits of a curve differ that is summed over cylinders and the cycle."""
 
 
 class Curve(NamedTuple):
@@ -81,7 +80,7 @@ class Extremes(NamedTuple):
     def peak(self) -> Extreme:
         """The largest magnitude, whichever sign it has; of two that are alike but for rounding the first."""
         high, low = self.largest, Extreme(-self.smallest.value, self.smallest.degrees)
-        alike = abs(low.value - high.value) <= _REPEATED * abs(high.value)
+        alike = abs(low.value - high.value) <= REPEATED * abs(high.value)
         return chosen(where(alike, low.degrees < high.degrees, low.value > high.value), low, high)
 
 
@@ -90,18 +89,17 @@ def extremes(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dic
 
     samples: the quantities on the grid, (pieces, nodes).
     """
-    worth = [may_be_extreme(grid, sampled) for sampled in samples.values()]
-    turns = _turning_points(grid, samples, evaluate, worth)
-    return {
-        name: extremes_of(_extreme_pieces(grid, sampled.value, turns.of(k)))
-        for k, (name, sampled) in enumerate(samples.items())
-    }
+    rows = may_be_extreme(grid, list(samples.values()))
+    found = _ends(_extreme_pieces(grid, rows, _turning_points(grid, rows, evaluate)))
+    count = len(grid.first)
+    parts = (slice(number * count, (number + 1) * count) for number in range(len(samples)))
+    return {name: _told(grid, found, part) for name, part in zip(samples, parts)}
 
 
 def zeros(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
     """Return the angles of `sign_changes` of quantities of which no extremes are wanted."""
-    worth = [may_be_zero(grid, sampled) for sampled in samples.values()]
-    return sign_changes(grid, _curves(grid, samples, evaluate, worth), evaluate, size)
+    rows = may_be_zero(grid, list(samples.values()))
+    return sign_changes(grid, _curves(grid, samples, evaluate, rows), evaluate, size)
 
 
 def curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dict[str, Curve]:
@@ -109,27 +107,34 @@ def curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dict[
 
     samples: the quantities on the grid, (pieces, nodes).
     """
-    return _curves(grid, samples, evaluate, [everywhere(grid)] * len(samples))
+    return _curves(grid, samples, evaluate, everywhere(grid, list(samples.values())))
 
 
-def _curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, worth: list[Worth]) -> dict[str, Curve]:
-    """Return several quantities as curves; of pieces that are not worth a search only their ends."""
-    turns = _turning_points(grid, samples, evaluate, worth)
+def _curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, rows: Rows) -> dict[str, Curve]:
+    """Return several quantities as curves; of intervals that are not worth a search only the ends of their piece."""
+    turns = _turning_points(grid, rows, evaluate)
+    owner, piece = rows.owner[turns.place], rows.piece[turns.place]
     found = {}
-    for k, (name, sampled) in enumerate(samples.items()):
+    for number, (name, sampled) in enumerate(samples.items()):
         kept = np.zeros(sampled.value.shape, dtype=bool)
         kept[:, 0] = kept[:, -1] = True
-        kept[worth[k].rows] = True
+        mine = rows.owner == number
+        beside = np.broadcast_to(rows.worth, (len(mine), len(grid.gaps)))[mine]
+        kept[rows.piece[mine], :-1] |= beside
+        kept[rows.piece[mine], 1:] |= beside
         row, node = np.nonzero(kept)
-        found[name] = _curve(grid, sampled.value, row, node, turns.of(k))
+        nodes, own = len(grid.nodes), owner == number
+        into = np.searchsorted(row * nodes + node, piece[own] * nodes + turns.node[own]) + 1
+        at_nodes = grid.degrees[row, node], row, sampled.value[row, node]
+        degrees, row, value, turning = _inserted(at_nodes, into, (turns.degrees[own], piece[own], turns.value[own]))
+        found[name] = Curve(degrees, row, value, np.searchsorted(row, grid.first), grid, turning, sampled.value)
     return found
 
 
 class _Turns(NamedTuple):
-    """Where quantities turn round between two nodes: which one, row of the piece, node before, angle, value, (n,)."""
+    """Where quantities turn round between two nodes: place of the row, node before, angle, value, (n,)."""
 
-    owner: Indices
-    row: Indices
+    place: Indices
     node: Indices
     degrees: Array
     value: Array
@@ -139,55 +144,59 @@ class _Turns(NamedTuple):
         parts: list[Any] = [part[which] for part in self]
         return _Turns(*parts)
 
-    def of(self, owner: int) -> "_Turns":
-        """Return those of one quantity."""
-        return self.at(self.owner == owner)
+
+def _turning_points(grid: Grid, rows: Rows, evaluate: Evaluate) -> _Turns:
+    brackets = slope_brackets(grid, rows, evaluate)
+    turns = _Turns(brackets.place, brackets.node, *roots(grid, rows, brackets, evaluate, "slope"))
+    return turns.at(_apart_from_ends(rows, turns))
 
 
-def _turning_points(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, worth: list[Worth]) -> _Turns:
-    asked = [slopes_worth(grid, sampled, one) for sampled, one in zip(samples.values(), worth)]
-    brackets = slope_brackets(grid, asked, evaluate)
-    found = roots(grid, brackets, evaluate, "slope", [sampled.slope for sampled in samples.values()])
-    turns = _Turns(brackets.owner, brackets.row, brackets.node, *found)
-    return turns.at(_apart_from_ends(samples, turns))
-
-
-def _apart_from_ends(samples: dict[str, Sampled], turns: _Turns) -> Flags:
+def _apart_from_ends(rows: Rows, turns: _Turns) -> Flags:
     """Return which do not, but for rounding, turn at the end of a piece: a dead centre is told as the angle it is."""
-    apart = np.ones(len(turns.row), dtype=bool)
-    for owner, sampled in enumerate(samples.values()):
-        own = np.flatnonzero(turns.owner == owner)
-        for end, node in ((0, 0), (-1, sampled.value.shape[1] - 2)):
-            value = sampled.value[turns.row[own], end]
-            alike = np.abs(turns.value[own] - value) <= _ALIKE * np.abs(value)
-            apart[own[alike & (turns.node[own] == node)]] = False
+    apart = np.ones(len(turns.place), dtype=bool)
+    for end, node in ((0, 0), (-1, rows.value.shape[1] - 2)):
+        value = rows.value[turns.place, end]
+        apart &= (turns.node != node) | ~(np.abs(turns.value - value) <= _ALIKE * np.abs(value))
     return apart
 
 
-def _extreme_pieces(grid: Grid, value: Array, turns: _Turns) -> Curve:
-    """Return the curve of the pieces that reach the largest or the smallest value but for rounding."""
-    high, low = value.max(axis=1), value.min(axis=1)
-    np.maximum.at(high, turns.row, turns.value)
-    np.minimum.at(low, turns.row, turns.value)
-    top, bottom = np.maximum.reduceat(high, grid.first), np.minimum.reduceat(low, grid.first)
-    slack = _REPEATED * np.maximum(np.abs(top), np.abs(bottom))
-    reached = ~((high < grid.of_each(top - slack)) & (low > grid.of_each(bottom + slack)))
-    rows, nodes = np.flatnonzero(reached), value.shape[1]
-    row, node = np.repeat(rows, nodes), np.tile(np.arange(nodes), len(rows))
-    return _curve(grid, value, row, node, turns.at(reached[turns.row]))
+def _extreme_pieces(grid: Grid, rows: Rows, turns: _Turns) -> Curve:
+    """Return the curve of the pieces that reach the largest or the smallest value but for rounding.
+
+    Every quantity of every variant is one of its variants.
+    """
+    variants = len(grid.first)
+    whose = rows.owner * variants + grid.number[rows.piece]
+    first = np.flatnonzero(np.append(True, whose[1:] != whose[:-1]))
+    high, low = rows.value.max(axis=1), rows.value.min(axis=1)
+    np.maximum.at(high, turns.place, turns.value)
+    np.minimum.at(low, turns.place, turns.value)
+    top, bottom = np.maximum.reduceat(high, first), np.minimum.reduceat(low, first)
+    slack = REPEATED * np.maximum(np.abs(top), np.abs(bottom))
+    reached = ~((high < (top - slack)[whose]) & (low > (bottom + slack)[whose]))
+    kept, nodes = np.flatnonzero(reached), rows.value.shape[1]
+    pieces = rows.piece[kept]
+    own = reached[turns.place]
+    into = (np.cumsum(reached) - 1)[turns.place[own]] * nodes + turns.node[own] + 1
+    at_nodes = grid.degrees.T.take(pieces, axis=1).T.ravel(), np.repeat(pieces, nodes), rows.value[kept].ravel()
+    turned = turns.degrees[own], rows.piece[turns.place[own]], turns.value[own]
+    degrees, row, value, turning = _inserted(at_nodes, into, turned)
+    begins = np.searchsorted(whose[kept], np.arange(len(first))) * nodes
+    return Curve(degrees, row, value, begins + np.searchsorted(np.sort(into), begins), grid, turning, rows.value)
 
 
-def _curve(grid: Grid, value: Array, row: Indices, node: Indices, turns: _Turns) -> Curve:
-    """Return the values (pieces, nodes) at some nodes (n,), in order, as a curve with the turns, each in its place."""
-    nodes = value.shape[1]
-    place = np.searchsorted(row * nodes + node, turns.row * nodes + turns.node) + 1
-    order = np.lexsort((turns.degrees, place))
-    into = place[order]
-    pieces = np.insert(row, into, turns.row[order])
-    degrees = np.insert(grid.degrees[row, node], into, turns.degrees[order])
-    values = np.insert(value[row, node], into, turns.value[order])
-    turning = into + np.arange(len(into))
-    return Curve(degrees, pieces, values, np.searchsorted(pieces, grid.first), grid, turning, value)
+def _inserted(points: Sequence[Any], into: Indices, turns: Sequence[Any]) -> tuple[Any, ...]:
+    """Return angles and more (n,) of points in order, with those of turns before these places, and where these are."""
+    order = np.lexsort((turns[0], into))
+    turning = into[order] + np.arange(len(into))
+    nodal = np.ones(len(points[0]) + len(into), dtype=bool)
+    nodal[turning] = False
+    found = []
+    for own, turned in zip(points, turns):
+        both = np.empty(len(nodal), own.dtype)
+        both[nodal], both[turning] = own, turned[order]
+        found.append(both)
+    return *found, turning
 
 
 def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
@@ -196,19 +205,23 @@ def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: 
     What is zero but for rounding, beside `size` or its own largest value, has no sign: +, 0, − is one change, where the
     piece begins in which the new sign is met; +, 0, + is none. At a jump it is the angle of the jump.
     """
-    parts = [_turns(k, curve, size) for k, curve in enumerate(found.values())]
+    parts = [_turns(curve, size) for curve in found.values()]
     brackets = Brackets.joined(part for part, _ in parts)
-    zeros_inside, _ = roots(grid, brackets, evaluate, "value", [curve.at_nodes for curve in found.values()])
+    owner = np.repeat(np.arange(len(parts)), [len(part.place) for part, _ in parts])
+    curved = [curve.at_nodes.T.take(part.place, axis=1) for curve, (part, _) in zip(found.values(), parts)]
+    values = np.concatenate(curved, axis=1).T
+    rows = Rows(owner, brackets.place, values, values)  # whose slopes nobody asks for
+    inside, _ = roots(grid, rows, brackets._replace(place=np.arange(len(owner))), evaluate, "value")
     changes = {}
-    for k, name in enumerate(found):
-        own, jumped = brackets.owner == k, parts[k][1]
-        angles = np.mod(np.concatenate((zeros_inside[own], grid.low[jumped])), grid.cycle)
-        changes[name] = grid.in_order(angles, np.concatenate((brackets.row[own], jumped)))
+    for number, (name, (_, jumped)) in enumerate(zip(found, parts)):
+        own = owner == number
+        angles = np.mod(np.concatenate((inside[own], grid.low[jumped])), grid.cycle)
+        changes[name] = grid.in_order(angles, np.concatenate((brackets.place[own], jumped)))
     return changes
 
 
-def _turns(owner: int, curve: Curve, size: float | None) -> tuple[Brackets, Indices]:
-    """Return the brackets of the changes of sign inside pieces, and the rows of the pieces that begin with one."""
+def _turns(curve: Curve, size: float | None) -> tuple[Brackets, Indices]:
+    """Return the changes of sign inside pieces, with these as places, and the pieces that begin with one."""
     magnitude = np.abs(curve.value)
     noise = _ROUNDING * (
         np.maximum.reduceat(magnitude, curve.first) if size is None else np.full(len(curve.first), size)
@@ -222,8 +235,8 @@ def _turns(owner: int, curve: Curve, size: float | None) -> tuple[Brackets, Indi
     first = following[last]
     inside = (row[last] == row[first]) & (first > last)
     low, high = last[inside], first[inside]
-    ends = signed.degrees[low], signed.degrees[high], row[low], np.zeros_like(low), value[low], value[high]
-    return Brackets(np.full(len(low), owner), *ends), row[first[~inside]]
+    ends = signed.degrees[low], signed.degrees[high], value[low], value[high]
+    return Brackets(row[low], np.zeros_like(low), *ends), row[first[~inside]]
 
 
 def lasting(curve: Curve, changes: Array, noise: float) -> Array:
@@ -247,21 +260,33 @@ def lasting(curve: Curve, changes: Array, noise: float) -> Array:
 
 def extremes_of(curve: Curve) -> Extremes:
     """Return the largest and smallest value of a curve, of every variant."""
-    ends = np.maximum.reduceat(curve.value, curve.first), np.minimum.reduceat(curve.value, curve.first)
-    size = np.maximum(np.abs(ends[0]), np.abs(ends[1]))
-    return Extremes(_first_at(curve, ends[0], size, 1.0), _first_at(curve, ends[1], size, -1.0))
+    return _told(curve.grid, _ends(curve), slice(None))
 
 
-def _first_at(curve: Curve, best: Array, size: Array, sign: float) -> Extreme:
-    """Return the extreme and the first angle that reaches it but for rounding: plateaus answer alike everywhere."""
+_Ends = tuple[tuple[Array, Array], tuple[Array, Array]]
+"""Largest and smallest values of variants, each with their angles, (v,)."""
+
+
+def _told(grid: Grid, ends: _Ends, variants: slice) -> Extremes:
+    return Extremes(*(Extreme(*(grid.told(one[variants]) for one in end)) for end in ends))
+
+
+def _ends(curve: Curve) -> _Ends:
+    high, low = np.maximum.reduceat(curve.value, curve.first), np.minimum.reduceat(curve.value, curve.first)
+    size = np.maximum(np.abs(high), np.abs(low))
+    return _first_at(curve, high, size, 1.0), _first_at(curve, low, size, -1.0)
+
+
+def _first_at(curve: Curve, best: Array, size: Array, sign: float) -> tuple[Array, Array]:
+    """Return the extremes and the first angles that reach them but for rounding: plateaus answer alike everywhere."""
     # a summit that comes back in every part of the cycle differs by the rounding of the sums that make the curve, ...
-    level = curve.of_each(best * sign - _REPEATED * size)
+    level = curve.of_each(best * sign - REPEATED * size)
     high = np.flatnonzero(curve.value * sign >= level)
     # ... and what only lies beside a summit, as high but for that, is none
     owner = np.searchsorted(curve.first, high, side="right") - 1
     first, last = curve.first[owner], np.append(curve.first[1:], len(curve.value))[owner] - 1
     following, preceding = np.where(high == last, first, high + 1), np.where(high == first, last, high - 1)
-    round_it = curve.grid.counts[owner]
+    round_it = curve.grid.counts[owner % len(curve.grid.first)]  # of several quantities as of variants
     ahead = curve.row[following] - curve.row[high] + np.where(high == last, round_it, 0)
     behind = curve.row[high] - curve.row[preceding] + np.where(high == first, round_it, 0)
     value, slack = curve.value[high] * sign, _ALIKE * np.abs(best)[owner]
@@ -273,4 +298,4 @@ def _first_at(curve: Curve, best: Array, size: Array, sign: float) -> Extreme:
     np.minimum.at(degrees, owner[value >= beside - slack], curve.degrees[summit])
     # beside the values of the other sign this is the rounding of a dead centre, which is no float
     exact = np.abs(best) > _ROUNDING * size
-    return Extreme(curve.grid.told(np.where(exact, best + 0.0, 0.0)), curve.grid.told(degrees))
+    return np.where(exact, best + 0.0, 0.0), degrees

@@ -38,7 +38,7 @@ def table(sheet: Sheet, look: Look) -> Iterator[Line]:
     for size in sizes:
         if start:
             yield BLANK
-        yield from _block(sheet, grid, slice(start, start + size), look.charset.rule)
+        yield from _block(sheet, grid, slice(start, start + size), look.charset.text("─"))
         start += size
 
 

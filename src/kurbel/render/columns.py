@@ -29,7 +29,8 @@ def blocks(side: Sequence[Row], columns: Sequence[Row], look: Look, gap: int) ->
         wide = beside + sum(width + gap for width in widths[len(side) :][start : end + 1]) - gap
         if end == len(columns) or (look.width is not None and wide > look.width):
             across = [*range(len(side)), *range(len(side) + start, len(side) + end)]
-            yield _block([(*side, *columns)[k] for k in across], [widths[k] for k in across], look.charset.rule, gap)
+            rule = look.charset.text("─")
+            yield _block([(*side, *columns)[k] for k in across], [widths[k] for k in across], rule, gap)
             start = end
 
 

@@ -103,6 +103,6 @@ def _cells(one: KeyValue, look: Look) -> tuple[str, ...]:
         charset.symbol(one.symbol, one.ascii_symbol),
         number_text(one, look),
         charset.unit(one.unit),
-        "" if one.at_deg is None else angle(one.at_deg, look.comma) + charset.degree,
+        "" if one.at_deg is None else angle(one.at_deg, look.comma) + charset.text("°"),
         sentence_text(one.text, look),
     )

@@ -31,7 +31,7 @@ def text_of(table: PlaceTable, look: Look) -> tuple[list[Row], list[Row]]:
 
     def text(value: Value, column: Column) -> str:
         if value is None:
-            return look.charset.no_value
+            return look.charset.text("–")
         if column.decimals is not None:
             return cell(value, Scale(column.decimals), look.comma)
         if column.alone:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from kurbel.render import Look
 from kurbel.render.charset import width
-from kurbel.render.numbers import Scale, angle_scale, cell, scale_of, whole_if_integral
+from kurbel.render.numbers import Scale, angle_scale, cell, decimal, scale_of, whole_if_integral
 from kurbel.report.tables import Column, Part, Report, Value
 
 MARK = "*"
@@ -104,16 +104,9 @@ def part_name(report: Report, part: Part, look: Look) -> str:
     if part is report.whole:
         return look.charset.text(str(part.name)) if report.parts else ""
     if report.group == "ratios":
-        return f"L/R = {ratio_text(part, look)}"
+        ratio = str(whole_if_integral(float(part.name))).replace("inf", "∞")
+        return look.charset.text(f"L/R = {decimal(ratio, look.comma)}")
     return look.charset.text(str(part.name)) if len(report.all_parts) > 1 else ""
-
-
-def ratio_text(part: Part, look: Look) -> str:
-    """Return L/R as a person writes it."""
-    ratio = str(whole_if_integral(float(part.name)))
-    if ratio == "inf" and look.charset.has("∞"):
-        return "∞"
-    return ratio.replace(".", ",") if look.comma else ratio
 
 
 def _row(column: Column, look: Look, pad: str) -> Row:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from kurbel.numerics.roots import bracketed_roots
-from kurbel.report.given import LARGEST_PEAK
+from kurbel.report.notes import LARGEST_PEAK
 from kurbel.report.trace_readings import ENGINE, Reading, in_bar, zero_text
 from kurbel.solver.pressure.exponents import AS_GIVEN, COMPRESSION, Supposed, exponent
 

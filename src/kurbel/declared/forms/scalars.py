@@ -7,13 +7,20 @@ from functools import cache
 from operator import ge, gt, le, lt
 from typing import Any
 
-from kurbel.declared.bounds import out_of_size, range_of
 from kurbel.declared.keys import Form, Key, Schema
-from kurbel.declared.kinds import KINDS
+from kurbel.declared.kinds import KINDS, out_of_size, range_of
 from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio
 from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import example, parse_quantity, plain_quantities, unit_example, unit_factor, unit_names
+from kurbel.declared.units import (
+    example,
+    parse_quantity,
+    plain_quantities,
+    unit_example,
+    unit_factor,
+    unit_names,
+    written_unit,
+)
 from kurbel.errors import Path, UnitError, refused
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.arithmetic import is_number
@@ -172,9 +179,18 @@ def not_negative(kind: str, text: str, symbol: str = "", **more: Any) -> Key:
 
 
 class Number(_Bounded):
-    """A bare number, a quotient such as `1/80` or `75 %` (a ratio, a fraction, a coefficient); becomes a float."""
+    """A bare number, a quotient such as `1/80` or `75 %` (a ratio, a fraction, a coefficient); becomes a float.
+
+    share_of: what a value with a unit, which people try, must be divided by.
+    """
+
+    def __init__(self, share_of: str = "", **bounds: Any) -> None:
+        super().__init__(**bounds)
+        self.share_of = share_of
 
     def number(self, text: str) -> float:
+        if self.share_of and written_unit(text)[:1].isalpha():
+            refused(f"expected a number, got '{text}'; it is a share of {self.share_of}, such as 0.05 or 5 %")
         return parse_ratio(self.unquoted(text))
 
     def expected(self) -> str:

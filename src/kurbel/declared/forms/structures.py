@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms.records import Record, demands, no_mapping
 from kurbel.declared.forms.scalars import Choice
 from kurbel.declared.keys import ABSENT, Form, Key, Schema, none_of, required
+from kurbel.declared.kinds import MOST_ITEMS
 from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of
 from kurbel.errors import Fault, Path, refused
 from kurbel.near_words import near

@@ -3,9 +3,9 @@
 import os
 import re
 
-from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms.scalars import Scalar
 from kurbel.declared.keys import Schema
+from kurbel.declared.kinds import MOST_ITEMS
 from kurbel.declared.numerals import plain
 from kurbel.declared.reading import shown
 from kurbel.errors import refused

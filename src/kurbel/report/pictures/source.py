@@ -127,7 +127,7 @@ def words(quantity: Quantity) -> Words:
     return Words(quantity.symbol, quantity.ascii_symbol)
 
 
-def level(curves: Sequence[Curve], height: float = 0.0, name: Words = Words("", "")) -> Curve:  # noqa: B008 (immutable)
+def level(curves: Sequence[Curve], height: float = 0.0, name: Words = Words("")) -> Curve:  # noqa: B008 (immutable)
     """Return a faint level line, y = 0 if no other height is given, as far as the curves reach."""
     every = [piece.x for curve in curves for piece in curve.pieces if len(piece.x)]
     ends = min((x.min() for x in every), default=0.0), max((x.max() for x in every), default=0.0)

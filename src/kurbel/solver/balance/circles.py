@@ -37,8 +37,7 @@ class Circles:
 
     def at(self, degrees: Array) -> ComplexArray:
         """Return the vectors (m,) at angles (m,) in degrees."""
-        (vectors,) = self._derivatives(degrees, 1)
-        return np.asarray(vectors)
+        return np.asarray(self._derivatives(degrees, 1)[0])
 
     def _derivatives(self, degrees: Array, count: int) -> ComplexArray:
         """Return the vectors and their derivatives by φ, per radian, at angles (m,) in degrees, (count, m)."""

@@ -27,19 +27,16 @@ class Products(NamedTuple):
     backward: ComplexArray
     places: tuple[float | None, ...]
 
-    def summed(self, levers: Array | None = None) -> Circles:
+    def summed(self, levers: Array | float = 1.0) -> Circles:
         """Return the sum, each term times its lever; what cancels is exactly zero."""
-        factors = np.ones(len(self.places)) if levers is None else levers
-        return Circles(*(_sum(terms * factors[:, None]) for terms in (self.forward, self.backward)))
+        return Circles(*(_sum(terms * np.reshape(levers, (-1, 1))) for terms in (self.forward, self.backward)))
 
     def with_weights(self, weights: Iterable[Weight]) -> "Products":
         """Return them with further weights."""
         given = tuple(one for one in weights if one.product)
         orders = max((self.forward.shape[1], *(abs(one.order) for one in given)))
-        forward = np.zeros((len(self.places) + len(given), orders), complex)
-        backward = forward.copy()
-        for new, terms in ((forward, self.forward), (backward, self.backward)):
-            new[: terms.shape[0], : terms.shape[1]] = terms
+        more = (0, len(given)), (0, orders - self.forward.shape[1])
+        forward, backward = np.pad(self.forward, more), np.pad(self.backward, more)
         for row, one in enumerate(given, len(self.places)):
             (forward if one.order > 0 else backward)[row, abs(one.order) - 1] = one.product * one.order**2
         return Products(forward, backward, (*self.places, *(one.place for one in given)))

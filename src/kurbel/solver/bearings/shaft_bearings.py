@@ -30,9 +30,8 @@ class RodPin(Bearing):
     of_rod = True
 
     def __init__(self, name: str, followed: Following, size: Size, pin: str) -> None:
-        machine = followed.drive.machine
-        super().__init__(name, (followed,), size, machine.speed)
-        self._pin, self._turns = pin, machine.revolutions
+        super().__init__(name, (followed,), size)
+        self._pin, self._turns = pin, followed.drive.machine.revolutions
         self.journal = "throw" if pin == "crank_pin" else "engine"
 
     def loads(self, degrees: Array, within: Array) -> Loads:
@@ -69,7 +68,7 @@ class MainBearing(Bearing):
     def __init__(self, name: str, number: int, line: ShaftLine, followed: Sequence[Following], size: Size) -> None:
         self._throws = tuple(throw for throw in line.throws if number in (throw.A, throw.B))
         own = [followed[index] for throw in self._throws for index in throw.cylinders]
-        super().__init__(name, own, size, line.machine.speed)
+        super().__init__(name, own, size)
         self._number = number
         self._line = line
         self._of_cylinder = followed

@@ -45,10 +45,6 @@ class OwnThrow:
         product = mass * self.mechanism.crank * unit_vector(self.bank - self.late)
         return Weight(product, 1, self.place, self.number)
 
-    def against(self, share: float) -> Weight:
-        """Return the counterweight of what turns, and of a share of what goes to and fro."""
-        return self.weight(-(self.rotating + share * self.mass))
-
     def carrying(self, one: "Counterweight", beside: float | None) -> Weight:
         """Return a counterweight whose angle counts from this throw; beside: its place where none is given."""
         product = one.product * unit_vector(self.bank - self.late + one.angle)
@@ -90,7 +86,7 @@ def _given(
         return
     planes = given.planes or wheels
     for throw in throws:
-        weight = throw.against(given.share)
+        weight = throw.weight(-(throw.rotating + given.share * throw.mass))
         yield from levered(weight, planes, throw.name) if planes else (weight,)
 
 

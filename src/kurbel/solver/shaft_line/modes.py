@@ -7,6 +7,7 @@ k differ by rounding. A symmetric eigenproblem would lose the low modes of a cha
 """
 
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -110,14 +111,8 @@ class Modes:
 
     def nodes(self, mode: int) -> tuple[tuple[int, float], ...]:
         """Return where a mode stands still: the mass before, and the share of the way to the next one."""
-        angles = self.holzer(mode).angles
-        found = []
-        for index in range(len(angles) - 1):
-            if angles[index] * angles[index + 1] < 0:
-                found.append((index, float(angles[index] / (angles[index] - angles[index + 1]))))
-            elif angles[index] == 0:
-                found.append((index, 0.0))
-        return tuple(found)
+        beside = enumerate(pairwise(self.holzer(mode).angles.tolist()))
+        return tuple((mass, a / (a - b)) for mass, (a, b) in beside if a * b < 0 or a == 0 != b)
 
 
 def _behind(chain: Chain, omegas: Array) -> Array:

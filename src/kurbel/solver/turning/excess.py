@@ -103,29 +103,19 @@ class Excess:
         return tuple(high - low for low, high in pairwise([*heights, *heights[:1]]))
 
     @cached_property
-    def _summits(self) -> tuple[int, int]:
-        """Which crossings have the largest and the smallest E, the first ones where several are equal."""
+    def extremes(self) -> Extremes | None:
+        """Largest and smallest E in J with their crank angles, the first of equal ones; None where E is the same."""
+        if not self.crossings:
+            return None
         heights = self._heights
         level = 16 * np.finfo(float).eps * (np.abs(heights).max() + np.abs(self.lobes).max())
-        return int(np.argmax(heights >= heights.max() - level)), int(np.argmax(heights <= heights.min() + level))
-
-    @property
-    def largest(self) -> Extreme | None:
-        """Largest E in J and its crank angle in degrees; None where it is always the same."""
-        return self._height_at(self._summits[0]) if self.crossings else None
-
-    @property
-    def smallest(self) -> Extreme | None:
-        """Smallest E in J and its crank angle in degrees; None where it is always the same."""
-        return self._height_at(self._summits[1]) if self.crossings else None
-
-    def _height_at(self, crossing: int) -> Extreme:
-        return Extreme(float(self._heights[crossing]), self.crossings[crossing])
+        reached = np.argmax(heights >= heights.max() - level), np.argmax(heights <= heights.min() + level)
+        return Extremes(*(Extreme(float(heights[k]), self.crossings[k]) for k in reached))
 
     @cached_property
     def dE(self) -> float:
         """ΔE in J, the largest swing of the excess work."""
-        return self.largest.value - self.smallest.value if self.largest and self.smallest else 0.0
+        return self.extremes.largest.value - self.extremes.smallest.value if self.extremes else 0.0
 
 
 def torque_extremes(torque: Sum, grid: Grid, sampled: Jet) -> Extremes:

@@ -113,8 +113,9 @@ class MachineTurning(Results):
     phi_crossing = passed_on("excess", "crossings", "Crank angles in degrees at which T crosses W.")
     lobes = passed_on("excess", "lobes", "Work in J of the lobes between the crossings.")
     dE = passed_on("excess", "dE", "ΔE in J.")
-    E_max = passed_on("excess", "largest", "Largest excess work in J since angle 0; None where there is none.")
-    E_min = passed_on("excess", "smallest", "Smallest excess work in J since angle 0.")
+    _heights = passed_on("excess", "extremes", "Largest and smallest excess work in J; None where there is none.")
+    E_max = passed_on("_heights", "largest", "Largest excess work in J since angle 0; None where there is none.")
+    E_min = passed_on("_heights", "smallest", "Smallest excess work in J since angle 0.")
 
     @property
     def energy_fluctuation(self) -> float | None:

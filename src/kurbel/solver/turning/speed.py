@@ -27,31 +27,30 @@ from kurbel.solver.turning.machine_effort import MovingInertia
 class Place:
     """Crank angles (…,) on the sides of jumps that hold `within`, with what no flywheel changes there, each (…,)."""
 
-    def __init__(self, excess: Excess, moving: MovingInertia, degrees: Array, within: Array) -> None:
-        self._excess = excess
-        self._moving = moving
+    def __init__(self, course: "Course", degrees: Array, within: Array) -> None:
+        self._course = course
         self.degrees = degrees
         self.within = within
 
     @cached_property
     def torque(self) -> Jet:
         """The excess of the turning effort in N m with its slope."""
-        return self._excess.line.at(self.degrees, self.within)
+        return self._course.excess.line.at(self.degrees, self.within)
 
     @cached_property
     def work(self) -> Array:
         """The excess work E in J."""
-        return self._excess.at(self.degrees)
+        return self._course.excess.at(self.degrees)
 
     @cached_property
     def moving(self) -> Jet:
         """The moving inertia Σ m x′² + … in kg m² with its slope."""
-        return self._moving.line.at(self.degrees, self.within)
+        return self._course.moving.line.at(self.degrees, self.within)
 
     @cached_property
     def bending(self) -> Array:
         """The second derivative of that by φ."""
-        return np.asarray(self._moving.bending.at(self.degrees, self.within).slope)
+        return np.asarray(self._course.moving.bending.at(self.degrees, self.within).slope)
 
 
 class Course:
@@ -63,7 +62,7 @@ class Course:
 
     def at(self, degrees: Array, within: Array) -> Place:
         """Return what there is at crank angles (…,) in degrees within the cycle, on the sides that hold `within`."""
-        return Place(self.excess, self.moving, degrees, within)
+        return Place(self, degrees, within)
 
     def on(self, grid: Grid) -> Place:
         """Return what there is at the nodes of a grid."""
