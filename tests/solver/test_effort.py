@@ -378,7 +378,7 @@ def test_the_swing_agrees_with_forty_digits(name: str) -> None:
 def test_no_crossing_is_missed_in_random_machines() -> None:
     """The full run over 2,000 machines is benchmarks/random_machines.py."""
     random = np.random.default_rng(7)
-    for _ in range(10):
+    for _ in range(7):
         machine = random_machine(random)
         assert missed(machine) == 0
 
