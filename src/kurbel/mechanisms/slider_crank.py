@@ -12,7 +12,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
 from kurbel.frozen import frozen
 from kurbel.mechanisms import Mechanism, Offer, fan, on_request
-from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
+from kurbel.numerics.arithmetic import arsinh, bearing, every, sqrt, total, ulp, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -283,8 +283,10 @@ class SliderCrank(Mechanism):
         return bearing + sweep if outstroke else 360.0 + bearing - sweep
 
     def landmarks(self) -> tuple[float, ...]:
-        """Return a fan round 90° and 270° where the rod barely reaches."""
-        beyond, within = (sqrt(2 * gap) * (180 / math.pi) for gap in self._gaps)
+        """Return a fan round 90° and 270° where the rod barely reaches: there cos ψ is 0 beside the real axis."""
+        if self._endless:
+            return ()
+        beyond, within = (2 * arsinh(sqrt(gap / self.lam / 2)) * (180 / math.pi) for gap in self._gaps)
         return *fan(90.0, beyond), *fan(270.0, within)
 
     def velocity_extremes(self) -> tuple[Extreme, ...]:
