@@ -171,7 +171,7 @@ class MachineOrders:
     @property
     def M_mean(self) -> float:
         """Mean torque in N m."""
-        return self.machine.whole.mean
+        return self.turned.excess.mean
 
     @cached_property
     def swing(self) -> float:
