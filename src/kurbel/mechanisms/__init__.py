@@ -271,17 +271,17 @@ def check_lengths(**lengths: float | None) -> None:
 def fan(centre: Any, width: Any) -> tuple[Any, ...]:
     """Return angles in degrees that stand ever wider on both sides of a bend of this half width (degrees) at `centre`.
 
-    So far from the real axis is the pole that makes it; what twelve points between two of these angles integrate is
+    So far from the real axis is the pole that makes it; what ten points between two of these angles integrate is
     exact, and without any where the bend is wide. Of arrays, angles of which some have fewer are nan there.
 
     >>> fan(180.0, 20.0)
-    (180.0, 166.0, 194.0, 155.5, 204.5, 137.125, 222.875)
+    (180.0, 170.0, 190.0, 162.5, 197.5, 149.375, 210.625)
     >>> fan(180.0, 80.0)
     ()
     """
     angles: list[Any] = []
-    width = 0.7 * width
-    while some(narrow := (width > 0) & (width < 45)):
+    width = 0.5 * width
+    while some(narrow := (width > 0) & (width < 36)):
         apart = where(narrow, width, float("nan"))
         angles = angles or [centre + 0.0 * apart]
         angles += [centre - apart, centre + apart]

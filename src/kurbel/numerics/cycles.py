@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices
-from kurbel.numerics.gauss import LOBATTO_12
+from kurbel.numerics.gauss import LOBATTO_10
 from kurbel.numerics.grid import SAME, Grid, Pieces, narrow
 
 
@@ -75,7 +75,7 @@ class Cycles(Grid):
 
     def __init__(self, breaks: Flat, cycle: float) -> None:
         self.variant, low = breaks
-        Pieces.__init__(self, low, _ends(breaks, cycle), LOBATTO_12)
+        Pieces.__init__(self, low, _ends(breaks, cycle), LOBATTO_10)
         self.cycle = cycle
 
     @cached_property
@@ -113,7 +113,7 @@ class Cycles(Grid):
 
 
 def cycles_of_turns(landmarks: Iterable[Any], cycle: float, jumps: Iterable[Any], count: int) -> Cycles:
-    """Return the cycles (360 or 720 deg) of so many variants, cut at landmarks of every turn, in pieces up to 45°.
+    """Return the cycles (360 or 720 deg) of so many variants, cut at landmarks of every turn, in pieces up to 36°.
 
     landmarks: floats, or arrays (v,), nan where a variant has none; jumps: further angles in the cycle, (n,) or
     `Flat`.

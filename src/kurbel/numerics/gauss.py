@@ -15,13 +15,12 @@ HALF_RULE = (
 )
 """Nodes and weights on (−1, 1), the positive half; the rule is symmetric."""
 
-_HALF_LOBATTO_12 = (
-    (0.13655293285492756, 0.2714052409106962),
-    (0.3995309409653489, 0.2512756031992013),
-    (0.6328761530318607, 0.21250841776102114),
-    (0.8192793216440066, 0.15797470556437013),
-    (0.9448992722228822, 0.09168451741319614),
-    (1.0, 0.015151515151515152),
+_HALF_LOBATTO_10 = (
+    (0.16527895766638703, 0.32753976118389744),
+    (0.4779249498104445, 0.2920426836796838),
+    (0.738773865105505, 0.22488934206312644),
+    (0.9195339081664589, 0.13330599085107012),
+    (1.0, 0.022222222222222223),
 )
 
 _HALF_LOBATTO_16 = (
@@ -44,7 +43,7 @@ def _whole(half: tuple[tuple[float, float], ...]) -> Rule:
 GAUSS = _whole((*HALF_RULE, (1.0, 0.0)))
 """16 points of Gauss, and both ends with the weight 0."""
 LOBATTO_16 = _whole(_HALF_LOBATTO_16)
-LOBATTO_12 = _whole(_HALF_LOBATTO_12)
-"""Both ends included: exact for polynomials of degree 21."""
+LOBATTO_10 = _whole(_HALF_LOBATTO_10)
+"""Both ends included: exact for polynomials of degree 17."""
 LOBATTO_4 = (-1.0, -0.4472135954999579, 0.4472135954999579, 1.0), (1 / 6, 5 / 6, 5 / 6, 1 / 6)
 """Both ends included: exact for polynomials of degree 5."""

@@ -10,8 +10,8 @@ from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.gauss import GAUSS, LOBATTO_4, LOBATTO_16, Rule
 
 _MANY = 300  # jumps; where there are fewer, sixteen points a piece cost nothing
-_WIDEST = 45.0  # degrees of a smooth piece
-_PARTS = 23  # of a smooth piece, 2° of 45°; on each four points integrate as exactly as sixteen on the whole
+_WIDEST = 36.0  # degrees of a smooth piece
+_PARTS = 23  # of a smooth piece, 1.6° of 36°; on each four points integrate as exactly as sixteen on the whole
 SAME = 1e-10  # degrees; two angles that differ by rounding only would leave a piece without width
 _HALVES = np.array([0.0, 0.5, 1.0])
 _CUTS = np.linspace(0.0, 1.0, 9)
@@ -226,8 +226,8 @@ def _interpolation(nodes: Array, at: Array) -> Array:
 class Cuts(NamedTuple):
     """Where a cycle is cut into smooth pieces, both in degrees from 0 to its end.
 
-    smooth: ascending, so dense toward a pole beside the real axis that on every piece, none being wider than 45°, the
-    polynomial through sixteen points is exact, and the integral of that through twelve. jumps: further angles at which
+    smooth: ascending, so dense toward a pole beside the real axis that on every piece, none being wider than 36°, the
+    polynomial through sixteen points is exact, and the integral of that through ten. jumps: further angles at which
     something bends or jumps, be they thousands.
     """
 
@@ -268,7 +268,7 @@ class Cuts(NamedTuple):
 
 
 def narrow(low: Array, high: Array) -> tuple[Array, Indices]:
-    """Return where the equal parts of pieces (n,) begin, none of them wider than 45°, and of which piece each is."""
+    """Return where the equal parts of pieces (n,) begin, none of them wider than 36°, and of which piece each is."""
     counts = np.maximum(np.ceil((high - low) / _WIDEST - SAME), 1).astype(np.intp)
     whose = np.repeat(np.arange(len(low)), counts)
     number = np.arange(len(whose)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -284,6 +284,12 @@ def _cycle(*angles: Array) -> Array:
     kept = ascending(np.concatenate(angles), apart=SAME)
     end = angles[0][-1]
     return np.append(kept[kept < end - SAME], end)
+
+
+def cut_equally(breaks: Array, parts: Indices) -> Array:
+    """Return the breaks (n + 1,) of pieces of which each is cut into so many equal parts (n,)."""
+    ends = np.append(0, parts.cumsum())
+    return np.interp(np.arange(ends[-1] + 1), ends, breaks)
 
 
 def ascending(angles: Array, apart: float = 0.0) -> Array:
