@@ -41,7 +41,7 @@ def seconds(task: Callable[[], object]) -> float:
 
 def designs(count: int) -> list[Lot]:
     """Machines with rods and speeds of every length and size."""
-    binder = Binder(WATERWORKS, (), ("rod_ratio", "speed"), ("5", "50 rpm"))
+    binder = Binder(WATERWORKS, ("rod_ratio", "speed"), ("5", "50 rpm"))
     return binder.bound([(f"{ratio:.6f}", f"{40 + ratio:.6f} rpm") for ratio in np.linspace(3, 6, count)]).lots
 
 

@@ -12,11 +12,10 @@ import click
 
 from kurbel.cli import COMMANDS, kurbel
 from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
-from kurbel.declared.bounds import MOST_ITEMS, MOST_POINTS, range_of
 from kurbel.declared.factors import FACTORS
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Key, Keys, required
-from kurbel.declared.kinds import KINDS
+from kurbel.declared.kinds import KINDS, MOST_ITEMS, MOST_POINTS, range_of
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.shaft import STRESSES
 from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS

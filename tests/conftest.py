@@ -44,13 +44,24 @@ def pytest_collection_finish() -> None:
 def solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Commands share the results of a machine: where they tell them in many ways, to solve it anew tells nothing new.
 
-    Not for machines with traces, whose files may change.
+    Not where a file is written, which may be refused, nor for machines with traces, whose files may change.
     """
     from kurbel.cli.output_options import Asked
     from kurbel.machine_file import source
+    from kurbel.machine_file.reader import read_machine
+    from kurbel.solver.case import Case
     from representative import case_from
 
-    monkeypatch.setattr(Asked, "case", lambda asked: case_from(source.read(asked.file), asked.overrides))
+    alone = Asked.case
+
+    def shared(asked: Asked) -> Case:
+        if asked.output.file_name:
+            return alone(asked)
+        origin = source.read(asked.file).set_over(asked.overrides)
+        case = case_from(origin)
+        return Case(read_machine(origin)) if case.machine.trace_files else case
+
+    monkeypatch.setattr(Asked, "case", shared)
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from kurbel.machine_file import load
+from kurbel.machine.origin import Origin
 from kurbel.machine_file.reader import read_machine
-from kurbel.machine_file.source import Source
+from kurbel.machine_file.source import read
 from kurbel.solver.case import Case
 
 SHIPPED = sorted((Path(__file__).parent.parent / "configs").glob("*.yaml"))
@@ -19,15 +19,14 @@ CONFIGS = {path.stem: path for path in SHIPPED}
 
 
 @cache
+def case_from(origin: Origin) -> Case:
+    """The results of the machine in a text: computed once, since nothing can change them."""
+    return Case(read_machine(origin))
+
+
 def case_of(name: str) -> Case:
-    """The results of a machine that comes with kurbel: computed once, since nothing can change them."""
-    return Case(load(CONFIGS[name]))
-
-
-@cache
-def case_from(source: Source, overrides: tuple[str, ...]) -> Case:
-    """The results of the machine in a text: computed once, as those above."""
-    return Case(read_machine(source, overrides))
+    """The results of a machine that comes with kurbel, those of `solved_once`."""
+    return case_from(read(CONFIGS[name]))
 
 
 def shipped(*names: str) -> list[pytest.ParameterSet]:

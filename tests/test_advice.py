@@ -12,6 +12,8 @@ from kurbel.cli import kurbel
 from kurbel.machine_file import loads
 from schemas import whole_schema
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 CONFIGS = Path(__file__).parent.parent / "configs"
 ONE, TWO = str(CONFIGS / "waterworks.yaml"), str(CONFIGS / "waterworks-two-cranks.yaml")
 NAMED, FOUR = str(CONFIGS / "compressor-two-stage.yaml"), str(CONFIGS / "four-in-line.yaml")

@@ -13,6 +13,7 @@ import pytest
 
 import kurbel
 from kurbel.mechanisms.slider_crank import SliderCrank
+from representative import case_of
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 
@@ -115,9 +116,9 @@ def test_of_several_cylinders_each_has_its_own() -> None:
 
 
 def test_all_columns_as_a_dict_of_arrays() -> None:
-    case = kurbel.solve(kurbel.load(CONFIGS / "gas-engine.yaml"))
+    case = case_of("gas-engine")
     angles = np.arange(0.0, 720.0, 30.0)
-    for results in (case.cylinders[0], case.flywheel, case.strength):
+    for results in (case.cylinders[0], case.flywheel, case.stress):
         columns = results.columns(angles)
         assert {column.shape for column in columns.values()} == {(24,)}
         assert np.array_equal(columns["phi"], angles)
@@ -127,7 +128,7 @@ def test_all_columns_as_a_dict_of_arrays() -> None:
 
 @pytest.mark.parametrize("degrees", ["abc", "", [float("nan")], [0.0, math.inf], None, {"phi": 1}])
 def test_angles_that_are_none_are_refused_by_the_root_class(degrees: object) -> None:
-    case = kurbel.solve(kurbel.load(CONFIGS / "gas-engine.yaml"))
+    case = case_of("gas-engine")
     for results in (case.cylinders[0], case.flywheel, case.stress):
         for ask in (results.columns, results.at):
             with pytest.raises(kurbel.KurbelError, match="crank angles are"):
@@ -135,7 +136,7 @@ def test_angles_that_are_none_are_refused_by_the_root_class(degrees: object) -> 
 
 
 def test_some_columns_by_id_or_symbol() -> None:
-    case = kurbel.solve(kurbel.load(CONFIGS / "gas-engine.yaml"))
+    case = case_of("gas-engine")
     (cylinder,) = case.cylinders
     found, every = cylinder.columns([0, 30, 90], "T", "p_H"), cylinder.columns([0, 30, 90])
     assert list(found) == ["phi", "T", "p_head"]
@@ -147,7 +148,7 @@ def test_some_columns_by_id_or_symbol() -> None:
 
 
 def test_all_key_values_as_a_dict() -> None:
-    case = kurbel.solve(kurbel.load(CONFIGS / "gas-engine.yaml"))
+    case = case_of("gas-engine")
     for results in (case.cylinders[0], case.flywheel, case.stress):
         values = results.key_values()
         assert all(figure == results[id] for id, figure in values.items())
@@ -159,11 +160,10 @@ def test_all_key_values_as_a_dict() -> None:
 
 
 def test_a_case_says_what_it_is() -> None:
-    case = kurbel.solve(kurbel.load(CONFIGS / "gas-engine.yaml"))
+    case = case_of("gas-engine")
     assert repr(case) == "<kurbel case 'Lying gas engine': .cylinders (1), .flywheel, .stress>"
     assert repr(case.cylinders[0]) == "<kurbel forces of cylinder 1: ['id'], key_values(), columns(degrees)>"
     assert repr(case.flywheel).startswith("<kurbel flywheel of the whole machine: ")
-    assert case.stress is case.strength
 
 
 def test_notebooks_show_tables_that_are_escaped() -> None:

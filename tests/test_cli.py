@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from kurbel import __version__
 from kurbel.cli import COMMANDS, kurbel
-from representative import few
+from representative import few, law_of_each
 
 ESCAPE = b"\x1b"
 POSIX_ONLY = pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell or terminal")
@@ -77,7 +77,7 @@ def test_version_and_help() -> None:
     assert tuple(listed) == COMMANDS
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@law_of_each(COMMANDS)
 def test_every_command_has_help_that_any_encoding_can_show(command: str) -> None:
     result = CliRunner().invoke(kurbel, [command, "--help"])
     assert result.exit_code == 0

@@ -9,7 +9,7 @@ import doctest
 from importlib import import_module
 from pathlib import Path
 
-import pytest
+from representative import law_of_each
 
 SOURCE = Path(__file__).parent.parent / "src"
 MODULES = [
@@ -19,7 +19,7 @@ MODULES = [
 ]
 
 
-@pytest.mark.parametrize("module", MODULES)
+@law_of_each(MODULES)
 def test_examples_in_docstrings(module: str) -> None:
     found = doctest.testmod(import_module(module))
     assert found.attempted

@@ -21,7 +21,9 @@ from kurbel.report.check import checked
 from kurbel.report.compared import Unjudged, compared
 from kurbel.report.frame import Frame, report_of
 from kurbel.report.whole import COMMANDS
-from representative import few, shipped
+from representative import case_of, few, shipped
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 ENDLESS = "{constant: {expansion: 1e300 at, compression: 1e300 at}}"
 HUGE = f"crank: 1 m\nrod_ratio: 5\nbore: 1 m\nindicator: {{head_end: {ENDLESS}}}\n"
@@ -55,7 +57,7 @@ def test_what_overflows_is_neither_kept_nor_broken() -> None:
 @pytest.mark.parametrize("name", ["mean_pressure", "T_min", "energy_residual"])
 def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
     for figure, key in ((1.0, "limits"), (Expected(0.0, 1.0), "expect")):
-        found = compared((key, name), by_id(COMMON.all_key_values)[name], figure, "cylinder 1", value)
+        found = compared((key, name), by_id(*COMMON.all_key_values)[name], figure, "cylinder 1", value)
         assert isinstance(found, Unjudged)
         assert isinstance(found.error, UsageError)
         assert f"{key}.{name} (cylinder 1): {name} is too large to compute with" in str(found.error)
@@ -63,9 +65,10 @@ def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
 
 @pytest.mark.parametrize("path", shipped("marine-diesel", "gas-engine", "coupled-blower"))
 def test_check_shows_the_warnings_of_every_command(path: Path) -> None:
-    machine = load(path)
-    case = solve(machine)
-    shown = {one.text for section in checked(machine).sections for one in section.entries if one.severity == "warning"}
+    case = case_of(path.stem)
+    shown = {
+        one.text for section in checked(case.machine).sections for one in section.entries if one.severity == "warning"
+    }
     frames = [Frame(command.word, (0.0,), None, "metric") for command in COMMANDS]
     for frame in frames:
         with suppress(UsageError):

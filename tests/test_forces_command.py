@@ -6,17 +6,19 @@ import csv
 import io
 import json
 import math
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 
+from imported import modules_after
 from kurbel.cli import kurbel
 from kurbel.declared.quantity import by_id
 from kurbel.mechanisms import MECHANISMS, every_quantity
 from representative import shipped
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = str(CONFIGS / "waterworks.yaml")
@@ -79,10 +81,10 @@ def test_every_id_is_declared_and_every_number_finite(path: Path) -> None:
         pytest.skip("a machine for other commands, and tested there")
     for part in json.loads(result.stdout)["cylinders"]:
         for column in part["columns"]:
-            assert column["id"] in by_id(every_quantity().all_columns)
+            assert column["id"] in by_id(*every_quantity().all_columns)
             assert all(math.isfinite(value) for value in column["values"])
         for one in part["key_values"]:
-            assert one["id"] in by_id(every_quantity().all_key_values)
+            assert one["id"] in by_id(*every_quantity().all_key_values)
             values = one["value"] if isinstance(one["value"], list) else [one["value"]]
             assert all(math.isfinite(value) for value in values)
 
@@ -247,28 +249,16 @@ def test_a_limit_of_something_absent_is_a_fault() -> None:
     assert "limits.loss_crosshead" in result.stderr
 
 
-def modules_after(*arguments: str) -> set[str]:
-    """Return the modules that a fresh interpreter has imported after a command."""
-    code = (
-        "import sys, io, contextlib\nfrom kurbel.cli import kurbel\n"
-        "with contextlib.redirect_stdout(io.StringIO()):\n"
-        "    try: kurbel.main(sys.argv[1:])\n"
-        "    except SystemExit as e: assert not e.code, e.code\n"
-        "print('\\n'.join(sys.modules))"
-    )
-    done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True)
-    return set(done.stdout.split())
-
-
-def test_what_a_machine_does_not_need_is_not_imported(tmp_path: Path) -> None:
+def test_what_a_machine_does_not_need_is_not_imported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     plain = tmp_path / "plain.yaml"
     plain.write_text(DEMO, encoding="utf-8")
-    loaded = modules_after("forces", str(plain), "-f", "csv")
+    loaded = modules_after(["forces", str(plain), "-f", "csv"])
     assert {"numpy", "kurbel.mechanisms.slider_crank", "kurbel.solver.pressure"} <= loaded
     mechanisms = {record.target.partition(":")[0] for word, record in MECHANISMS.items() if word != "slider-crank"}
     assert loaded.isdisjoint({"rich", "kurbel.report.rows", "kurbel.report.warnings", *mechanisms})
     needless = ("turning", "crankshaft", "trace", "coupler", "strength", "ideal", "ideal_cards", "whole_cycle", "rod")
     assert [name for name in loaded if name.startswith("kurbel.") and name.rpartition(".")[2] in needless] == []
-    assert "kurbel.report.rows" in modules_after("forces", str(plain), "-f", "csv", "--over", "x")
+    assert "kurbel.report.rows" in modules_after(["forces", str(plain), "-f", "csv", "--over", "x"])
     plain.write_text("{speed: 60 rpm, crank: 400 mm, rod: 2 m}", encoding="utf-8")
-    assert modules_after("check", str(plain)).isdisjoint({"kurbel.solver.turning", "kurbel.solver.strength", "numpy"})
+    monkeypatch.setitem(sys.modules, "numpy", None)  # whoever imports it fails
+    assert modules_after(["check", str(plain)]).isdisjoint({"kurbel.solver.turning", "kurbel.solver.strength"})

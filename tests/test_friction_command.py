@@ -13,6 +13,8 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 
 def run(*words: str) -> Result:
     return CliRunner().invoke(kurbel, ["friction", *words])

@@ -19,6 +19,8 @@ from click.testing import CliRunner, Result
 from kurbel.cli import kurbel
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 FOLDER = Path(__file__).parent
 CONFIGS = FOLDER.parent / "configs"
 SLIDER = "crank: 400 mm\nrod: 2000 mm\n"
@@ -285,27 +287,27 @@ def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) ->
     machine = tmp_path / "cam.yaml"
     machine.write_text("speed: 60 rpm\nmechanism: harmonic-cam\ncrank: 20 mm\nsecond: 2 mm\nram_force: {work: 1 kN}\n")
     code = (
-        "from kurbel.declared.forms import Record\nfrom kurbel.mechanisms import MECHANISMS\n"
+        "import sys\nfrom kurbel.declared.forms import Record\nfrom kurbel.mechanisms import MECHANISMS\n"
         "MECHANISMS['harmonic-cam'] = Record('toy_mechanism:HarmonicCam')\n"
-        "from kurbel.__main__ import main\nmain()\n"
+        "from kurbel.cli import kurbel\n"
+        "for command in ('motion', 'forces'):\n"
+        "    try:\n        kurbel.main([command, *sys.argv[1:]])\n"
+        "    except SystemExit as end:\n        assert not end.code, end.code\n"
+        "    sys.stdout.write('\\0')\n"
     )
-
-    def called(command: str) -> dict[str, Any]:
-        arguments = [sys.executable, "-c", code, command, str(machine), "-f", "json", "--angles", "0,90"]
-        path = os.pathsep.join((str(tmp_path), os.environ.get("PYTHONPATH", "")))
-        environment = os.environ | {"PYTHONPATH": path, "PYTHONIOENCODING": "utf-8"}
-        done = subprocess.run(arguments, capture_output=True, env=environment, check=False, encoding="utf-8")
-        assert done.returncode == 0, done.stderr
-        parsed: dict[str, Any] = json.loads(done.stdout)
-        return parsed
-
-    columns, key_values = only_part(called("motion"))
+    path = os.pathsep.join((str(tmp_path), os.environ.get("PYTHONPATH", "")))
+    environment = os.environ | {"PYTHONPATH": path, "PYTHONIOENCODING": "utf-8"}
+    arguments = [sys.executable, "-c", code, str(machine), "-f", "json", "--angles", "0,90"]
+    done = subprocess.run(arguments, capture_output=True, env=environment, check=False, encoding="utf-8")
+    assert done.returncode == 0, done.stderr
+    motion, forces = (json.loads(printed) for printed in done.stdout.split("\0")[:2])
+    columns, key_values = only_part(motion)
     assert columns["x"] == pytest.approx([0, 0.022])
     assert set(key_values) == STROKES
     # c = ω sin φ (a + 2k cos φ) is largest where cos φ = (√(a² + 32k²) − a)/(8k)
     cos = (math.sqrt(20**2 + 32 * 2**2) - 20) / (8 * 2)
     peak = 2 * math.pi * math.sqrt(1 - cos * cos) * (0.02 + 0.004 * cos)
     assert key_values["c_max"]["value"] == pytest.approx(peak, rel=1e-14)
-    columns, key_values = only_part(called("forces"))
+    columns, key_values = only_part(forces)
     assert columns["M"] == pytest.approx([0, -1000 * 0.02])
     assert key_values["resistance_work"]["value"] == pytest.approx(-1000 * 0.04)

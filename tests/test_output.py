@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from imported import modules_after
 from kurbel import loads
 from kurbel.cli import COMMANDS, kurbel
 from kurbel.errors import UsageError
@@ -25,7 +26,7 @@ from kurbel.report.angles import MOST_ROWS, check_rows, stepped
 from kurbel.report.forces import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
-from representative import few
+from representative import few, law_of_each
 
 POSIX_ONLY = pytest.mark.skipif(os.name != "posix", reason="needs POSIX files and signals")
 MACHINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -199,19 +200,9 @@ def test_json_says_what_it_was_made_from(tmp_path: Path) -> None:
 
 def test_nothing_is_hashed_where_nobody_reads_it(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text(MACHINE)
-    code = (
-        # what old versions of numpy import themselves does not count
-        "import sys, numpy; sys.modules.pop('hashlib', None); from kurbel.cli import kurbel\n"
-        "for format in ('csv', 'json'):\n"
-        "    try: kurbel.main([*sys.argv[1:], '-f', format])\n"
-        "    except SystemExit: print('hashlib' in sys.modules, file=sys.stderr)"
-    )
-    arguments = [sys.executable, "-S", "-c", code, "motion", str(tmp_path / "m.yaml")]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-    assert subprocess.run(arguments, capture_output=True, check=False, env=environment).stderr.split() == [
-        b"False",
-        b"True",
-    ]
+    machine = str(tmp_path / "m.yaml")
+    found = ["hashlib" in modules_after(["motion", machine, "-f", format]) for format in ("csv", "json")]
+    assert found == [False, True]
 
 
 # statuses
@@ -236,7 +227,7 @@ def test_no_status_hangs_on_standard_error(arguments: str, status: int, stderr: 
     assert subprocess.run(["bash", "-c", command], cwd=tmp_path, check=False, stdout=-3).returncode == status
 
 
-@pytest.mark.parametrize("command", ["", *COMMANDS])
+@law_of_each(["", *COMMANDS])
 def test_help_names_the_statuses(command: str) -> None:
     text = " ".join(CliRunner().invoke(kurbel, [*command.split(), "--help"]).stdout.split())
     said = text.partition("Exit status: ")[2]
@@ -294,11 +285,11 @@ LOOKS = [(format, layout) for format in FORMATS for layout in ("book", "rows")]
 def test_rows_are_written_as_they_are_made(format: str, layout: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(json_text, "_AT_ONCE", 100)
     case, look = Case(loads(MACHINE + PRESSURE)), Look(format, layout)
-    short, long = (forces_report(case, Frame("forces", stepped(step, 360), ("P", "T"), "si")) for step in (90, 0.1))
+    short, long = (forces_report(case, Frame("forces", stepped(step, 360), ("P", "T"), "si")) for step in (90, 0.2))
     text = len(render(short, look))
     longer, needed = peak(lambda: sum(map(len, pieces(long, look))))
-    assert longer > text + 3600 * 12
-    assert needed < 200_000  # the cells alone would take three times as much
+    assert longer > text + 1800 * 12
+    assert needed < 100_000  # the cells alone would take three times as much
 
 
 def test_columns_do_not_hang_on_how_many_angles_are_computed_at_once() -> None:

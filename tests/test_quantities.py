@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from kurbel import load, loads
+from kurbel import loads
 from kurbel.cli import kurbel
 from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import Quantity, ambiguity, by_id, called, placed
@@ -35,7 +35,10 @@ from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
 from kurbel.solver.turning.coupling import ElasticCoupling
 from kurbel.solver.turning.flywheel import MachineTurning
+from representative import case_of
 from toy_mechanism import HarmonicCam
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
@@ -58,8 +61,8 @@ def test_every_key_value_has_a_definition(command: str) -> None:
 
 def test_every_common_column_has_a_definition() -> None:
     """Of one cylinder an attribute of its state; of the whole machine a formula, whatever of it the machine has."""
-    case = Case(load(CONFIGS / "gas-engine.yaml"))
-    whole = {"flywheel": case.flywheel, "stress": case.strength, "balance": case.balance}
+    case = case_of("gas-engine")
+    whole = {"flywheel": case.flywheel, "stress": case.stress, "balance": case.balance}
     formulas = {name: set(results.at([0.0]).formulas) for name, results in whole.items()}
     formulas["bearings"] = {id for part in case.bearings.parts for id in part.at([0.0]).formulas}
     known = {"motion": set(dir(State)), "forces": set(dir(State)), **formulas}
@@ -75,7 +78,7 @@ def test_every_quantity_stands_in_the_list_of_a_command() -> None:
 
 
 def test_extremes_derive_from_the_column() -> None:
-    found = by_id(COMMON.all_key_values)
+    found = by_id(*COMMON.all_key_values)
     assert found["S_max"][:4] == ("S_max", "S_max", "force", "Largest rod force")
     assert found["P_start_min"].symbol == "P_0,min"
     assert found["M_max"].commands == ("flywheel",)

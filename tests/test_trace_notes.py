@@ -13,14 +13,15 @@ from click.testing import CliRunner
 
 from indicated import Engine, absolute, columns_file, cycles, indicated
 from kurbel.cli import kurbel
+from kurbel.machine import Machine
 from kurbel.machine_file import loads
-from kurbel.report.notes import machine_notes
+from kurbel.report.notes import Note, machine_notes
 from kurbel.solver.case import Case
 from representative import few
 
 AMBIENT = 1.01325
 ENGINE = Engine()
-FINE = np.arange(0.0, 720.0, 0.2)
+FINE = np.arange(0.0, 720.0, 0.4)
 SHIFTED = "{file: p.csv, unit: bar%s}"
 
 
@@ -37,9 +38,13 @@ def machine_text(file: Path, keys: str = "", pressures: str = "absolute", cycle:
     )
 
 
+def noted(machine: Machine) -> tuple[Note, ...]:
+    return machine_notes(machine, lambda: Case(machine))
+
+
 def notes_of(text: str) -> list[str]:
     """All notes on a machine, but for that on the rod load, which every motored engine has."""
-    return [note.text for note in machine_notes(loads(text)) if not note.text.startswith("the rod load")]
+    return [note.text for note in noted(loads(text)) if not note.text.startswith("the rod load")]
 
 
 def test_good_noisy_cycles_are_not_accused(tmp_path: Path) -> None:
@@ -62,8 +67,10 @@ def test_other_good_engines_are_not_accused(tmp_path: Path, engine: Engine) -> N
     assert notes_of(machine_text(file, ", compression_ratio: 15", cycle=cycle)) == []
 
 
-@pytest.mark.parametrize("digit", [0.0, 0.1, 1.0])
-@pytest.mark.parametrize("begin", [0.0, -30.0, -360.0])
+DRIFTLESS = [(digit, begin) for digit in (0.0, 0.1, 1.0) for begin in (0.0, -30.0, -360.0)]
+
+
+@pytest.mark.parametrize(("digit", "begin"), few(DRIFTLESS, DRIFTLESS[::4]))
 def test_one_cycle_that_ends_as_another_is_no_drift(tmp_path: Path, digit: float, begin: float) -> None:
     """From cycle to cycle 1 % at the dead centre, 0.05 bar in the gas exchange; or read by a coarse converter."""
     angles = begin + np.arange(0.0, 720.0, 0.5)
@@ -102,7 +109,7 @@ WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
     "180 deg late": (FINE, late(180), "", "absolute", "in the gas exchange: write 'angle_zero: 180 deg'"),
     "90 deg early": (FINE, late(-90), "", "absolute", "the peak stands 76.4 deg before the firing dead centre"),
     "one turn late": (FINE, late(360), "", "absolute", "write 'angle_zero: 360 deg'; p_i stays"),
-    "by no quarter": (FINE, late(61), "", "absolute", "the peak stands 74.6 deg after the firing dead centre"),
+    "by no quarter": (FINE, late(61.2), "", "absolute", "the peak stands 74.8 deg after the firing dead centre"),
     "gauge as absolute": (FINE, late(0) - AMBIENT, "", "absolute", "these look like gauge pressures"),
     "absolute as gauge": (FINE, late(0), "", "gauge", "about the ambient: absolute?"),
     "with clearance": (FINE, late(0), ", clearance: 1/14", "gauge", "about the ambient: absolute?"),
@@ -120,7 +127,7 @@ WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
     "drift of 1 bar": (FINE - 360, late(360) + FINE / 720, "", "absolute", "the pressure jumps by -1"),
     "drift in noise": (
         FINE,
-        cycles(ENGINE, 1, 0.2, noise=0.1)[1][0] + 3 * FINE / 720,
+        cycles(ENGINE, 1, 0.4, noise=0.1)[1][0] + 3 * FINE / 720,
         ", clearance: 1/14",
         "absolute",
         "does the sensor drift?",
@@ -268,6 +275,6 @@ def test_a_measured_stirling_engine(tmp_path: Path) -> None:
     machine = loads(text % (tmp_path / "s.csv", 60 / period, zero))
     found = Case(machine).cylinders[0]
     assert found["mean_pressure"].value / 1e3 == pytest.approx(loop, rel=0.05)
-    assert [note.text for note in machine_notes(machine) if "left out" not in note.text] == []
-    notes = [note.text for note in machine_notes(loads(text % (STIRLING, 60 / period, zero)))]
+    assert [note.text for note in noted(machine) if "left out" not in note.text] == []
+    notes = [note.text for note in noted(loads(text % (STIRLING, 60 / period, zero)))]
     assert any("the cycles wander" in note for note in notes)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
@@ -13,9 +12,9 @@ from kurbel.declared.numerals import parse_number
 from kurbel.declared.unit_systems import SI, SYSTEMS, convert, show, shown_unit, told_in
 from kurbel.declared.units import kinds, parse_quantity, unit_names
 from kurbel.errors import UnitError
-from kurbel.machine_file import load
-from kurbel.solver.case import Case
-from representative import law_of_each
+from representative import CONFIGS, case_of, law_of_each
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
 
@@ -223,8 +222,8 @@ def test_kurbel_units_lists_every_unit_that_can_be_read() -> None:
 def test_messages_are_told_in_the_units_asked_for(
     words: tuple[str, ...], length: str, metres: float, force: str, newtons: float
 ) -> None:
-    machine = Path(__file__).parent.parent / "configs" / "waterworks.yaml"
-    largest = Case(load(machine)).cylinders[0]["P_max"].value
+    machine = CONFIGS["waterworks"]
+    largest = case_of("waterworks").cylinders[0]["P_max"].value
     for condition, expected, unit in (("x = 9 m", 0.8 / metres, length), ("P = 9 MN", largest / newtons, force)):
         result = CliRunner().invoke(kurbel, ["forces", str(machine), "--where", condition, *words])
         assert result.exit_code == 3

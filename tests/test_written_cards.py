@@ -12,6 +12,8 @@ from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError
 from kurbel.solver.cylinder.forces import CylinderForces
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
 AREA, STROKE, AT = math.pi / 4 * 0.45**2, 0.8, 98066.5
 LINES = "expansion: [[0, 57], [32.2, 57], [92, 13.2]], compression: [[92, 7.2], [0, 57]]"
@@ -31,6 +33,13 @@ def refused(text: str) -> str:
     with pytest.raises(MachineFileError) as caught:
         loads(ENGINE + text)
     return str(caught.value)
+
+
+def test_a_clearance_with_a_unit_is_not_to_be_written_without_it() -> None:
+    said = refused("indicator: {head_end: {compressor: {suction: 0 bar, delivery: 3 bar, clearance: 5 mm}}}\n")
+    assert "got '5 mm'; it is a share of the stroke, such as 0.05 or 5 %" in said
+    said = refused("indicator: {head_end: {compressor: {suction: 0 bar, delivery: 3 bar, clearance: '0,05'}}}\n")
+    assert "share" not in said
 
 
 @pytest.mark.parametrize("cycle", ["two-stroke", "four-stroke"])

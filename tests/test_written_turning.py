@@ -14,6 +14,8 @@ from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError
 from kurbel.solver.cylinder.forces import CylinderForces
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
 GAS = "indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}\n"
 OMEGA = 2 * math.pi

@@ -61,6 +61,16 @@ class CrankAngle(NamedTuple):
         return where(self.cos >= 0, 1 + abs(self.cos), self.sin * self.sin / (1 + abs(self.cos)))
 
 
+def unit_vector(degrees: Any) -> Any:
+    """Return e^{iφ}, complex, of an angle in degrees or an array of them, reduced exactly.
+
+    >>> unit_vector(180.0)
+    (-1+0j)
+    """
+    angle = CrankAngle.of(degrees)
+    return angle.cos + 1j * angle.sin
+
+
 def within_cycle(degrees: "Array", cycle: float) -> "Array":
     """Return angles (n,) in degrees as those of a cycle, from 0 on and less than its end."""
     import numpy as np

@@ -1,7 +1,7 @@
 """Every error kurbel raises on purpose: one root, raised where the rule lives, caught once at the top."""
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple, Union
+from typing import NamedTuple, NoReturn, Union
 
 Step = Union[str, int]
 Path = tuple[Step, ...]
@@ -66,6 +66,11 @@ def refuse(*faults: Fault) -> None:
     """Raise RuleError where there is any fault."""
     if faults:
         raise RuleError(*faults)
+
+
+def refused(message: str, *path: Step) -> NoReturn:
+    """Raise RuleError with what is wrong with the value at a path, or with the whole."""
+    raise RuleError(Fault(path, message))
 
 
 class UnitError(RuleError):

@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.case import Case as Case
@@ -57,8 +59,6 @@ def _key_values(results: Results, caption: str) -> str:
     """Return a table, or the reason why there is none."""
     from html import escape
 
-    import numpy as np
-
     from kurbel.render import Look
     from kurbel.render.html import key_values
     from kurbel.report.shown import shown_key_value
@@ -70,7 +70,7 @@ def _key_values(results: Results, caption: str) -> str:
             found = [shown_key_value(one.quantity, value, "metric") for one, value in zip(every, values)]
         except KurbelError as error:
             return f"<p>{escape(str(error))}</p>"
-    return key_values(found, caption, Look("html"))
+    return "".join(key_values(caption, found, Look("html")))
 
 
 Shown.as_html = as_html

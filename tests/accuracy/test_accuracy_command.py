@@ -7,7 +7,7 @@ import io
 import json
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -15,6 +15,7 @@ from click.testing import CliRunner, Result
 
 from kurbel import loads
 from kurbel.accuracy.inexact import data_errors, model_errors
+from kurbel.accuracy.timing import Patience
 from kurbel.cli import kurbel
 from kurbel.render import Look
 from kurbel.render.pictures.drawing import draw_file
@@ -33,6 +34,14 @@ ENGINE = """
 
 def run(*arguments: str, machine: str = MOTION) -> Result:
     return CliRunner().invoke(kurbel, ["accuracy", *arguments], input=machine)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def impatient() -> Iterator[None]:
+    """Every method is timed once: how long it takes is nothing to these tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Patience, "of", lambda quick: Patience(1, 0.0))
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -112,7 +112,7 @@ def test_work_is_the_area_of_the_polygon() -> None:
 def test_energy_balance_of_torque_and_friction() -> None:
     """∮ M dφ = work − friction work: inertia and weight do none."""
     machine = loads(ENGINE)
-    with precise(40):
+    with precise(30):
         cylinder = CylinderOracle(machine, machine.cylinders[0])
         mean = references.MachineOracle(machine).mean * 2 * pi()
         balance = references.work(cylinder) - references.friction_work(cylinder)

@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kurbel.designs.binding import Binder, tree_of
+from kurbel.designs.binding import Binder
 from kurbel.errors import MachineFileError, path_text
 from kurbel.machine import Machine
+from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
+from kurbel.machine_file.given import tree_of
 from kurbel.machine_file.reader import read_machine
-from kurbel.machine_file.source import Source
 from kurbel.numerics.varied import Parted, Varied
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
@@ -33,17 +34,17 @@ def described(value: Any) -> Any:
     return repr(value)
 
 
-def bound(file: Source, keys: Sequence[str], start: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[int, Any]:
+def bound(file: Origin, keys: Sequence[str], start: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[int, Any]:
     """What becomes of every row: a machine, or why there is none."""
-    found = Binder(file, (), keys, start).bound(rows)
+    found = Binder(file, keys, start).bound(rows)
     machines = {row: lot.one(place) for lot in found.lots for place, row in enumerate(lot.rows)}
     return machines | found.failures
 
 
-def read(file: Source, keys: Sequence[str], texts: Sequence[str]) -> Machine | str:
+def read(file: Origin, keys: Sequence[str], texts: Sequence[str]) -> Machine | str:
     """The machine of a file with these values, or what is wrong with it."""
     try:
-        return read_machine(file, [f"{key}={text}" for key, text in zip(keys, texts)])
+        return read_machine(file.set_over(f"{key}={text}" for key, text in zip(keys, texts)))
     except MachineFileError as error:
         faults = [f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in error.faults]
         return "; ".join(re.sub(r" \(with --set .*\)$", "", one) for one in faults)
@@ -100,10 +101,10 @@ def numbers_of(tree: Any, path: str = "") -> Iterator[tuple[str, float, str]]:
             yield inner, float(found[1]), found[2]
 
 
-def of_each_number(name: str) -> Iterator[tuple[str, list[tuple[str]], dict[int, Any], Source]]:
+def of_each_number(name: str) -> Iterator[tuple[str, list[tuple[str]], dict[int, Any], Origin]]:
     """What becomes of a file when one number of it after the other is small, large, 0, negative, infinite or a word."""
     file = source.read(CONFIGS / name)
-    for key, number, unit in numbers_of(tree_of(file, ())):
+    for key, number, unit in numbers_of(tree_of(file)):
         if re.search(r"\.\d+\.\d+$|^kurbel$|^name$|^expect|uncertainty", key):
             continue
         whole = number == int(number) and not unit
@@ -136,7 +137,7 @@ BORES = "{crank: 400 mm, rod: 2 m, speed: 50 rpm, bore: 450 mm, crank_end_rod: 1
 
 def test_machines_that_differ_in_numbers_are_one_lot_and_those_of_another_kind_another() -> None:
     file = source.decode("m.yaml", BORES.encode())
-    binder = Binder(file, (), ("bore", "rod", "crank_end_rod"), ("450 mm", "2 m", "100 mm"))
+    binder = Binder(file, ("bore", "rod", "crank_end_rod"), ("450 mm", "2 m", "100 mm"))
     rods = ("2 m", "infinite", "2.1 m", "2.2 m", "0.3 m")
     found = binder.bound([(f"{400 + row} mm", rods[row % 5], "0 mm" if row % 2 else "100 mm") for row in range(100)])
     assert sorted(len(lot.rows) for lot in found.lots) == [10, 10, 30, 30]
@@ -177,7 +178,7 @@ def test_a_cylinder_that_is_like_another_varies_with_it() -> None:
 
 def test_the_word_like_in_a_comment_makes_no_cylinder_like_another() -> None:
     file = source.decode("m.yaml", b"{crank: 1 m, rod: 5 m, name: like new} # like any other\n")
-    found = Binder(file, (), ("rod",), ("5 m",)).bound([("4 m",), ("5 m",), ("6 m",)])
+    found = Binder(file, ("rod",), ("5 m",)).bound([("4 m",), ("5 m",), ("6 m",)])
     assert [list(lot.rows) for lot in found.lots] == [[0, 1, 2]]
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kurbel.designs.inputs import read_input
-from kurbel.designs.plan import Plan, shard
+from kurbel.designs.plan import Plan, read_input, shard
 from kurbel.designs.sampling import _digits, latin_hypercube, sobol
 from kurbel.errors import UsageError
 

@@ -1,5 +1,6 @@
 """`kurbel sweep --resume`: it goes on in the file of the same sweep only."""
 
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -22,12 +23,20 @@ def run(machine: Path, *args: str) -> Result:
     return CliRunner().invoke(command, ["sweep", str(machine), *args])
 
 
+@cache
+def swept(text: str, args: tuple[str, ...]) -> list[str]:
+    """Return the lines of a sweep of the machine in a text: they do not hang on the file that they are written to."""
+    result = CliRunner().invoke(command, ["sweep", "-", *args], input=text)
+    assert result.exit_code == 0
+    return result.stdout.splitlines(keepends=True)
+
+
 def interrupted(machine: Path, *args: str, rows: int = 6) -> Path:
     """Return a file with the first rows of a sweep."""
     file = machine.with_name("rows.json" if "json" in args else "rows.csv")
-    assert run(machine, *args, "-o", str(file)).exit_code == 0
-    lines = file.read_text().splitlines(keepends=True)
-    file.write_text("".join(lines[: rows + (file.suffix == ".csv")]))
+    file.write_text(
+        "".join(swept(machine.read_text(), ("-f", file.suffix[1:], *args))[: rows + (file.suffix == ".csv")])
+    )
     return file
 
 

@@ -28,7 +28,7 @@ WATERWORKS = Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml"
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
     known = COMMON.key_values(command)
     asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
-    found = Uncertainty(source.read(WATERWORKS), (), spreads).of(asked)
+    found = Uncertainty(source.read(WATERWORKS), spreads).of(asked)
     return {one.answer.quantity.id: one for one in found}
 
 
@@ -133,7 +133,7 @@ def test_what_is_answered_alone_is_sampled_less_and_its_trace_read_once(
     known = COMMON.key_values("forces")
     asked = [Answer(known[id], "forces", "cylinder 1") for id in ("mean_pressure", "n_expansion", "T_max")]
     spreads = {"indicator.head_end.trace.angle_zero": "0.6 deg"}
-    found = Uncertainty(source.read(_rig(tmp_path)), (), spreads).of(asked, counted)
+    found = Uncertainty(source.read(_rig(tmp_path)), spreads).of(asked, counted)
     assert {one.answer.quantity.id: one.sample for one in found} == {"mean_pressure": 0, "n_expansion": 25, "T_max": 0}
     assert told == [10, 10, 5]
     assert len(read) == 1

@@ -19,6 +19,8 @@ from click.testing import CliRunner
 from kurbel.cli import kurbel
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 FOLDER = Path(__file__).parent
 TABLE: dict[str, list[dict[str, Any]]] = yaml.load(
     (FOLDER / "answers.yaml").read_text(encoding="utf-8"), getattr(yaml, "CSafeLoader", yaml.SafeLoader)

@@ -107,7 +107,7 @@ def test_a_terminal_gets_lines_that_fit(tmp_path: Path, monkeypatch: pytest.Monk
     assert told[-2][told[-1].index("^")] == "x"
 
 
-def test_columns_of_this_machine_are_told_first() -> None:
+def test_columns_of_this_machine_are_told_first(solved_once: None) -> None:
     from click.testing import CliRunner
 
     from kurbel.cli import kurbel

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine import Machine
 from kurbel.machine_file import reader, source
+from representative import few
 
 SETTINGS = settings(
     max_examples=3 * settings.default.max_examples, suppress_health_check=[HealthCheck.too_slow], derandomize=True
@@ -203,10 +204,14 @@ def test_any_tree(tree: Any) -> None:
     read(yaml.safe_dump(tree, allow_unicode=True).encode())
 
 
-@pytest.mark.parametrize("name", ALL)
-def test_every_prefix_of_a_machine(name: str) -> None:
+PREFIXES = [(name, step) for step in (13, 1) for name in ALL]
+
+
+@pytest.mark.parametrize(("name", "step"), few(PREFIXES, PREFIXES[: len(ALL)]))
+def test_every_prefix_of_a_machine(name: str, step: int) -> None:
+    """Every one with the slow tests, and every thirteenth by default."""
     text = ALL[name]
-    for end in range(0, len(text), 7):
+    for end in range(0, len(text), step):
         read(text[:end].encode())
 
 

@@ -11,12 +11,13 @@ from kurbel.declared.numerals import parse_number
 from kurbel.declared.units import parse_quantity
 from kurbel.errors import MachineFileError, UnitError
 from kurbel.machine_file import load, loads
+from representative import law_of_each
 
-# all of Unicode's white space but the line ends of YAML and the control characters that it refuses
-SPACES = [c for c in re.findall(r"\s", "".join(map(chr, range(0x80, 0x110000)))) if c not in "\x85\u2028\u2029"]
+# all of Unicode's white space, none beyond its first plane, but the line ends of YAML and the signs that it refuses
+SPACES = [c for c in re.findall(r"\s", "".join(map(chr, range(0x80, 0x10000)))) if c not in "\x85\u2028\u2029"]
 
 
-@pytest.mark.parametrize("space", SPACES, ids=ascii)
+@law_of_each(SPACES)
 def test_any_white_space_is_a_space(space: str) -> None:
     text = (
         "crank: 400 mm\nrod_ratio: 5\nspeed: 50 rpm\nbore: 300 mm\n"

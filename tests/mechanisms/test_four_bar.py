@@ -77,7 +77,7 @@ def linkages(draw):
 @given(linkages())
 def test_the_loop_stays_closed_on_one_side(machine):
     angle = CrankAngle.of(np.linspace(0, 360, 91))
-    sin, cos = machine.direction(angle)
+    sin, cos = machine.loop.at(angle).direction
     pin, joint = np.array([machine.crank * angle.cos, machine.crank * angle.sin]), machine.rocker * np.array([cos, sin])
     joint[0] += machine.frame
     gap = joint - pin
@@ -118,7 +118,7 @@ def test_the_power_passes_the_coupler():
     """Coupler force times the coupler's share of the crank's motion is rocker moment times θ′."""
     machine = LINKAGES["usual"]
     angle = CrankAngle.of(np.linspace(0, 360, 37))
-    sin, cos = machine.direction(angle)
+    sin, cos = machine.loop.at(angle).direction
     along = np.array([machine.frame + machine.rocker * cos, machine.rocker * sin])
     along -= machine.crank * np.array([angle.cos, angle.sin])
     along /= machine.coupler

@@ -97,7 +97,7 @@ def test_the_link_keeps_its_length(height, frame):
     if frame == 0.25 and height is not None:
         height -= 1.2
     machine = SlottedLever(0.3, frame, 1.3, link=2.0, ram_height=height)
-    sin, cos = machine.direction(TURN)
+    sin, cos = machine._lever_at(TURN)[:2]
     level = machine.ram_height if height is not None else 1.3 * (1 + math.sqrt(1 - (3 / 8) ** 2)) / 2
     level = level if height is not None or frame == 0.8 else 0.0
     pin = np.sqrt(4.0 - (level - 1.3 * cos) ** 2) + 1.3 * sin

@@ -38,7 +38,7 @@ def test_every_point_is_the_solvers(name: str, id: str) -> None:
     """Each point of a curve, bit by bit, is what the solver says at its crank angle, on its side of a jump."""
     case = case_of(name)
     command = next(one.command for one in PICTURES if one.id == id)
-    results = {"flywheel": lambda: case.flywheel, "stress": lambda: case.strength}.get(
+    results = {"flywheel": lambda: case.flywheel, "stress": lambda: case.stress}.get(
         command, lambda: case.cylinders[0]
     )()
     declared = {one.symbol: one for one in results.lists.all_columns}
@@ -58,7 +58,7 @@ def test_marks_stand_where_the_key_values_do(name: str) -> None:
     case = case_of(name)
     for id in LINES[name]:
         for picture in drawn(name, id):
-            results = case.flywheel if id == "effort" else case.strength if id == "throw-stress" else case.cylinders[0]
+            results = case.flywheel if id == "effort" else case.stress if id == "throw-stress" else case.cylinders[0]
             known = {one.quantity.symbol: one for one in results.key_values().values()}
             for panel in picture.panels:
                 for mark in panel.marks:

@@ -52,7 +52,7 @@ WIDTHS = [
 ]
 
 
-@pytest.mark.parametrize(("columns", "encoding"), few(WIDTHS, WIDTHS[::5]))
+@pytest.mark.parametrize(("columns", "encoding"), few(WIDTHS, WIDTHS[::9]))
 def test_pictures_fit_every_width(columns: int, encoding: str) -> None:
     for id in ("forces", "effort", "mechanism", "effort-polar"):
         text = text_of(drawn("waterworks", id, TERMINAL)[0], Look(width=columns, encoding=encoding))

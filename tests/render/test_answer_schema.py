@@ -12,6 +12,7 @@ from jsonschema import Draft7Validator
 
 from kurbel.cli import COMMANDS, kurbel
 
+pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parents[2] / "configs"
 BROKEN = """\
 name: Engine with five mistakes

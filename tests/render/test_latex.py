@@ -17,6 +17,8 @@ from kurbel.render.latex import symbol, text
 from render.sample_report import REPORT
 from representative import CONFIGS
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 
 @pytest.mark.parametrize(
     ("plain", "typeset"),

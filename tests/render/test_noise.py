@@ -16,7 +16,7 @@ from kurbel.report.shown import shown_key_value
 from kurbel.report.tables import Column, Part, Report
 
 CONFIGS = Path(__file__).parents[2] / "configs"
-KEY_VALUES = by_id(COMMON.all_key_values)
+KEY_VALUES = by_id(*COMMON.all_key_values)
 ROUNDING = (0.0, 5e-324, -8.568e-17, 9.99e-15)
 LOOKS = (Look(), Look(layout="rows"), Look(digits=17), Look(comma=True), Look(encoding="ascii"), Look("markdown"))
 

@@ -19,6 +19,8 @@ from kurbel.numerics.search import Curve, lasting
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 COMPRESSOR = """
 speed: 600 rpm
 crank: 50 mm
@@ -45,7 +47,7 @@ class TestPeaks:
         assert found is not None
         larger = max(found.largest, found.smallest, key=lambda one: abs(one.value))
         assert found.peak == (abs(larger.value), larger.degrees)
-        declared = by_id(COMMON.all_key_values)[f"{name}_peak"]
+        declared = by_id(*COMMON.all_key_values)[f"{name}_peak"]
         assert declared.asks == ("extremes_of", name, "peak")
 
     def test_the_largest_pressure_stands_at_either_end(self) -> None:

@@ -12,11 +12,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from kurbel import loads
+from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.numerics.enclosing import smallest_circle
 from kurbel.numerics.fourier import coefficients
 from kurbel.solver.balance.best import least
-from kurbel.solver.balance.circles import Circles, unit_vectors
+from kurbel.solver.balance.circles import Circles
 from kurbel.solver.balance.machine_balance import MachineBalance
 from kurbel.solver.case import Case
 from representative import few
@@ -519,7 +520,7 @@ def test_a_length_that_never_changes_but_for_rounding_has_one_summit(turns: int,
 
 def test_an_ellipse_is_longest_where_its_circles_meet() -> None:
     """e^{iφ} + ½ e^{i(40° − φ)} at 20° and 200°; what stands at 0° is told besides."""
-    found = Circles(np.array([1 + 0j]), np.array([0.5 * unit_vectors(40.0)])).summits
+    found = Circles(np.array([1 + 0j]), np.array([0.5 * unit_vector(40.0)])).summits
     assert [one.value for one in found[:2]] == pytest.approx([1.5, 1.5], rel=1e-15)
     assert sorted(one.degrees for one in found) == pytest.approx([0.0, 20.0, 200.0], abs=1e-12)
 
@@ -550,7 +551,7 @@ def test_no_weight_beside_the_best_one_leaves_less(name: str, monkeypatch: pytes
     assert np.abs(found.left.at(np.linspace(0, 360, 2001))).max() <= top * (1 + 1e-12)
     for degrees in np.linspace(3, 318, 8):
         for way in (1e-3, 1e-6):
-            aside = plainly(products, found.weight + way * top * complex(unit_vectors(degrees)))
+            aside = plainly(products, found.weight + way * top * complex(unit_vector(degrees)))
             assert aside.summits[0].value >= top * (1 - 1e-12)
 
 

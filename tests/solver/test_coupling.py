@@ -131,7 +131,10 @@ def test_a_wish_that_the_driven_inertia_outdoes_is_told_without_advice() -> None
         assert other.delta < 0.09
 
 
-@pytest.mark.parametrize(("delta", "stiffness"), [(0.01, 3e3), (0.02, 1e5), (0.005, 2e4), (0.05, 40.0)])
+ADVISED = [(0.01, 3e3), (0.02, 1e5), (0.005, 2e4), (0.05, 40.0)]
+
+
+@pytest.mark.parametrize(("delta", "stiffness"), few(ADVISED, [ADVISED[1], ADVISED[3]]))
 def test_the_advised_flywheel_meets_the_wish_on_the_coupling(delta: float, stiffness: float) -> None:
     coupling = Coupling(stiffness, 40.0, 20.0)
     machine = of_points(POINTS, RPM, delta=delta, coupling=coupling)
@@ -235,9 +238,11 @@ def under_a_law(machine: MachineTurning, torque: Points, law: Any, own: float) -
         return state, rows
 
     start = np.array([machine.M_mean / k, omega, omega])
-    for _ in range(8):
+    step = np.full(3, np.inf)
+    while np.abs(step).max() > 1e-12 * omega:
         state, _ = turn(start)
-        start = start - np.linalg.solve(state[3:].reshape(3, 3) - np.eye(3), state[:3] - start)
+        step = np.linalg.solve(state[3:].reshape(3, 3) - np.eye(3), state[:3] - start)
+        start = start - step
     state, rows = turn(start, dense=True)
     angles, twist, one, two = np.hstack(rows)
     return np.stack((angles, k * twist + d * (one - two), one)), state[3:].reshape(3, 3)

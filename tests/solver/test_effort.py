@@ -28,7 +28,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.turning.flywheel import MachineTurning
 from kurbel.solver.turning.machine_effort import dead_centre_force
 from machines import STEAM_CARD, constant_pressure
-from representative import few
+from representative import few, law_of_each
 from turning_machines import of_points
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
@@ -69,7 +69,7 @@ def test_masses_alone_do_no_work_and_fluctuate_beside_none() -> None:
     assert machine.energy_fluctuation is None
 
 
-@pytest.mark.parametrize("rod", np.linspace(1.0, 3.0, 21))
+@law_of_each(np.linspace(1.0, 3.0, 21))
 def test_of_two_peaks_that_are_alike_the_first_is_told(rod: float) -> None:
     """T of masses alone is the same backwards with the other sign: which rounding is larger says nothing."""
     alone = Case(Machine((replace(ENGINE, mechanism=SliderCrank(0.4, rod), pistons=()),), speed=1.0)).cylinders[0]

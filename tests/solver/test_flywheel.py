@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from functools import cache
 from pathlib import Path
 from random import Random
 
@@ -20,6 +21,8 @@ from kurbel.solver.case import Case
 from kurbel.solver.turning.machine_effort import dead_centre_force
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 CONFIGS = Path(__file__).parents[2] / "configs"
 ENGINE = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8")
 PUNCH = (CONFIGS / "punch.yaml").read_text(encoding="utf-8")
@@ -29,6 +32,7 @@ def run(text: str, *arguments: str) -> Result:
     return CliRunner().invoke(kurbel, ["flywheel", "-", *arguments], input=text)
 
 
+@cache
 def results(text: str, *arguments: str) -> dict[str, object]:
     answer = run(text, "-f", "json", *arguments)
     assert answer.exit_code == 0, answer.stderr

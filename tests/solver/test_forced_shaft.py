@@ -20,9 +20,8 @@ from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
 from kurbel.numerics.waves import crests
 from kurbel.solver.case import Case
-from kurbel.solver.shaft_line.chain import Chain
+from kurbel.solver.shaft_line.chain import Chain, responding, twisting
 from kurbel.solver.shaft_line.periodic import ChainEquation
-from kurbel.solver.shaft_line.response import responding, twisting
 from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.torsion.vibration import ShaftVibration
 from kurbel.solver.turning.flywheel import MachineTurning
@@ -251,7 +250,9 @@ def test_the_damping_takes_what_the_torques_give() -> None:
     for name in ("generator-coupling", "marine-diesel", "torsional-damper", "coupled-blower"):
         vibration = Case(load(CONFIGS / f"{name}.yaml")).torsion.vibration
         assert vibration.loss[0] > 0
-        assert vibration.power == pytest.approx(vibration.loss, rel=1e-12)
+        speeds = 1j * vibration.acting.orders * vibration.omegas[0] * vibration.angles[:, 0]
+        power = (vibration.driving[:, 0] * speeds.conj()).real.sum() / 2
+        assert power == pytest.approx(vibration.loss[0], rel=1e-12)
 
 
 def shaft(effort: Any, speed: float, *parts: Any, **more: Any) -> ShaftVibration:
@@ -312,7 +313,7 @@ def test_crests_against_many_samples() -> None:
     waves = [1, 2, 3, 7, 24]
     amplitudes = draw.normal(size=(40, 5)) + 1j * draw.normal(size=(40, 5))
     high, low = crests(waves, amplitudes)
-    angles = np.linspace(0, 2 * np.pi, 200_001)
+    angles = np.linspace(0, 2 * np.pi, 100_001)
     for row, largest, smallest in zip(amplitudes[:6], high, low):
         curve = (row * np.exp(1j * np.multiply.outer(angles, waves))).sum(axis=1).real
         assert largest == pytest.approx(curve.max(), rel=1e-6)

@@ -27,6 +27,7 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.turning.harmonics import MachineOrders
 from machines import STEAM_CARD
+from representative import few
 from turning_machines import of_points
 
 mp = mpmath.mp
@@ -136,7 +137,7 @@ def test_a_diagram_with_jumps_in_closed_form() -> None:
             assert complex(amplitude) == pytest.approx(complex(exact), abs=1e-12 * 900)
 
 
-@pytest.mark.parametrize("ratio", [1.02, 2.5, 5.0])
+@pytest.mark.parametrize("ratio", few([1.02, 2.5, 5.0], [1.02, 5.0]))
 def test_the_exact_rod_by_its_kinetic_energy(ratio: float) -> None:
     """T_b = −½ ω² dJ/dφ with J of piston and rod from the velocities of their centres of gravity, by mpmath."""
     crank, length, piston, mass, arm, own, omega = 0.1, 0.1 * ratio, 3.0, 2.0, 0.04, 0.011, 200.0
@@ -252,6 +253,6 @@ def test_the_efficiency_takes_its_share() -> None:
 def test_without_a_speed_there_is_no_inertia() -> None:
     found = orders_of(Machine((steam(),)))
     assert found.machine.inertia is None
-    assert found.machine.whole is found.machine.gas
+    assert (found.machine.whole.amplitudes == found.machine.gas.amplitudes).all()
     with pytest.raises(UsageError, match="no force acts"):
         orders_of(Machine((steam(pistons=(), masses=None),)))

@@ -28,6 +28,8 @@ from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from representative import few
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ENGINE = Engine()
 BAR = 1e5
 STROKE, BORE = 0.1, 0.09

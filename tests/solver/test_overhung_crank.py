@@ -149,7 +149,7 @@ def test_in_a_machine_file() -> None:
     """10 bar on 400 mm: A carries b/(b − a) = 1.5 times the force in the dead centre, B half of it, upward."""
     load = 1e6 * math.pi / 4 * 0.4**2
     for word, lever in (("true", 1.5), ("false", 0.75)):
-        at = Case(loads(FILE.replace("OVERHUNG", word))).strength.at([0.0])
+        at = Case(loads(FILE.replace("OVERHUNG", word))).stress.at([0.0])
         assert (at.A_D[0], at.B_D[0]) == pytest.approx((load * lever, load * (1 - lever)), rel=1e-12)
     with pytest.raises(KurbelError, match="unknown word 'yes'; write 'true' or 'false'"):
         loads(FILE.replace("OVERHUNG", "yes"))

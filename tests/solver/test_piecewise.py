@@ -35,6 +35,12 @@ def test_both_sides_of_a_jump() -> None:
     assert line.integral_to(np.array([120.0, 360.0])) == pytest.approx(np.radians([600.0, 120.0]), rel=1e-15)
 
 
+def test_an_integral_keeps_what_large_ones_before_it_leave_when_they_cancel() -> None:
+    grid = Grid(np.array([0.0, 90.0, 180.0, 270.0, 360.0]))
+    line = Piecewise(grid, np.repeat([[1e20], [1.0], [-1e20], [0.0]], len(grid.nodes), axis=1))
+    assert line.integral_to(np.array([270.0]))[0] == pytest.approx(np.pi / 2, rel=1e-15)
+
+
 def test_between_many_jumps_four_points_a_piece_integrate_as_exactly() -> None:
     """1/(1 + (φ/w)²) beside poles at ±iw, on smooth pieces that widen from φ = 0 on as 1, 3, 9 w."""
     half_width = 0.5

@@ -110,7 +110,7 @@ def test_energy_balance_closes(engine: str, rubs: str) -> None:
     forces = case.cylinders[0]
     assert abs(forces.energy_residual or 0.0) <= 1e-14
     assert pytest.approx(forces.W, rel=1e-13) == case.flywheel.W
-    assert case.strength.equilibrium_residual <= 1e-14
+    assert case.stress.equilibrium_residual <= 1e-14
 
 
 @pytest.mark.parametrize("name", ["crank_pin", "crosshead_pin", "journals"])

@@ -79,7 +79,7 @@ def bearing_load(strength: CrankshaftStrength, bearing: str) -> Function:
 
 def errors_of_bearings(forces: CylinderForces) -> list[float]:
     machine = forces.drive.machine
-    strength = Case(Machine((forces.drive.cylinder,), speed=machine.speed, crankshaft=shaft())).strength
+    strength = Case(Machine((forces.drive.cylinder,), speed=machine.speed, crankshaft=shaft())).stress
     turn = math.radians(forces.drive.cycle)
     breaks = forces.drive.cuts.grid().breaks
     if forces.drive.has_friction:  # where the guide changes sides, every force has a kink

@@ -71,7 +71,7 @@ def test_engines_turn_over_and_driven_machines_under() -> None:
 
 
 @pytest.mark.parametrize("command", ["check", "forces", "flywheel", "stress"])
-def test_every_command_warns_that_it_lifts(command: str) -> None:
+def test_every_command_warns_that_it_lifts(command: str, solved_once: None) -> None:
     shaft = "a: 300 mm, b: 300 mm, web_distance: 200 mm, web_thickness: 100 mm, web_width: 200 mm"
     pin = "pin_diameter: 150 mm, pin_length: 150 mm"
     text = ENGINE.replace("EXPANSION", "3 bar").replace("COMPRESSION", "0 bar")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from kurbel.machine_file import load, loads
 from kurbel.solver.case import Case
 from kurbel.solver.turning.flywheel import MachineTurning
+from representative import few
 from turning_machines import of_points, rectangles
 
 CONFIGS = Path(__file__).parents[2] / "configs"
@@ -36,6 +38,7 @@ def test_over_a_constant_inertia_it_is_the_excess_torque() -> None:
     assert (turning.alpha_max.value, turning.alpha_min.value) == pytest.approx((expected, -expected), rel=1e-11)
 
 
+@cache
 def _solved(name: str) -> MachineTurning:
     more = {"constant": "", "power law": "load: {power_law: 2}\n", "slip": "load: {slip: 2 %}\n"}
     return Case(loads(ENGINE + more[name])).flywheel if name in more else Case(load(str(CONFIGS / name))).flywheel
@@ -67,7 +70,10 @@ def test_it_is_the_slope_of_half_the_square_of_the_speed(name: str) -> None:
     assert alpha == pytest.approx(slope * speed, abs=1e-5 * np.abs(alpha).max())
 
 
-@pytest.mark.parametrize("name", ["constant", "power law", "slip", "coupled-blower.yaml", "waterworks-two-cranks.yaml"])
+SCANNED = ["constant", "power law", "slip", "coupled-blower.yaml", "waterworks-two-cranks.yaml"]
+
+
+@pytest.mark.parametrize("name", few(SCANNED, SCANNED[::2]))
 def test_its_extremes_are_those_of_a_fine_scan(name: str) -> None:
     turning = _solved(name)
     cycle = turning.turned.cycle

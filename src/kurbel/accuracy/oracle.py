@@ -144,13 +144,7 @@ def why_not(machine: Machine, cylinder: Cylinder) -> str:
 
     if why := why_no_motion(cylinder):
         return why
-    chambers = [
-        end
-        for piston in cylinder.pistons
-        if piston.indicator
-        for end in (piston.indicator.head_end, piston.indicator.crank_end)
-        if end is not None
-    ]
+    chambers = [chamber for piston in cylinder.pistons for chamber in piston.chambers.values()]
     if not all(isinstance(chamber, Card) for chamber in chambers):
         return "no independent calculation of traces and ideal cards"
     if cylinder.masses and cylinder.masses.connecting_rod and cylinder.masses.connecting_rod.exact:

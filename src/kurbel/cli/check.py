@@ -6,6 +6,8 @@ import click
 
 from kurbel.cli import BROKEN, DONE
 from kurbel.cli.output_options import format_of, loaded, machine_file, output_option, width_option
+from kurbel.errors import KurbelError
+from kurbel.render import Look
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
@@ -35,7 +37,6 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
         return _as_json(file, overrides, file_name)
     if written != "table":
         raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
-    from kurbel.render import Look
     from kurbel.render.listing import listing
     from kurbel.render.output import stdout_look, write_out
 
@@ -61,13 +62,10 @@ def _loaded(file: str, overrides: tuple[str, ...], file_name: str | None = None)
 
 def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> int:
     """Write all findings, those of a file that cannot be read, too, and return the status."""
-    from kurbel.errors import KurbelError
-    from kurbel.machine_file.positions import located_in
-    from kurbel.render import Look
+    from kurbel.machine_file.positions import located
     from kurbel.render.json_text import findings_json
     from kurbel.render.output import refuse_overwriting, stdout_look, write_out
-    from kurbel.report.check import checked
-    from kurbel.report.findings import faults_found, findings
+    from kurbel.report.check import checked, faults_found, findings
 
     refuse_overwriting(file_name, (file,))
     try:
@@ -77,7 +75,7 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
     else:
         refuse_overwriting(file_name, machine.trace_files)
         result = checked(machine)
-        found = findings(machine, result, located_in)
+        found = findings(machine, result, located)
         status = min((error.exit_status for error in result.errors), default=BROKEN if result.broken else DONE)
     write_out(findings_json(found, Look() if file_name else stdout_look()), file_name)
     return status

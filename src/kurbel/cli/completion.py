@@ -4,6 +4,8 @@ from collections.abc import Iterable
 
 import click
 
+from kurbel.errors import KurbelError
+
 
 def _beginning(words: Iterable[str], begun: str, before: str = "") -> list[str]:
     return [before + word for word in words if word.startswith(begun)]
@@ -46,7 +48,6 @@ def complete_example(ctx: click.Context, param: click.Parameter, incomplete: str
 
 def complete_cylinder(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
     """Return the cylinders of the machine file that stands on the line; none where it cannot be read."""
-    from kurbel.errors import KurbelError
     from kurbel.machine_file import load
 
     file = next(iter(ctx.args), "")  # a line that ends in an option is not read to its end

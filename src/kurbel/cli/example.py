@@ -5,6 +5,7 @@ import os
 import click
 
 from kurbel.cli.completion import complete_example
+from kurbel.errors import UsageError
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # a wheel carries the machines inside the package; in a checkout they lie beside src, where people look for them
@@ -41,7 +42,6 @@ def shipped_names() -> tuple[str, ...]:
 
 
 def _known(name: str) -> str:
-    from kurbel.errors import UsageError
     from kurbel.near_words import did_you_mean
 
     bare, names = name.removesuffix(_SUFFIX), shipped_names()

@@ -2,8 +2,8 @@
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import wraps
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from kurbel.solver.case import Case
 
 Command = TypeVar("Command", bound=Callable[..., Any])
+Item = TypeVar("Item")
 
 
 class Output(NamedTuple):
@@ -288,16 +289,17 @@ class Asked(NamedTuple):
         if case and (spreads or case.machine.uncertainty):
             from kurbel.designs.uncertainty import with_uncertainty
 
-            report = with_uncertainty(report, case, spreads, self.units, _drawn)
+            bar = partial(with_bar, label="drawn machines")
+            report = with_uncertainty(report, case, spreads, self.units, bar)
         self.output.write(report)
 
 
-def _drawn(parts: Sequence[Any]) -> Iterator[Any]:
-    """Yield the parts of a sample, with a bar on the terminal."""
+def with_bar(items: Iterable[Item], label: str, **how: Any) -> Iterator[Item]:
+    """Yield what is computed one by one, with a bar on the terminal; how: it looks, see `click.progressbar`."""
     if not sys.stderr.isatty():
-        yield from parts
+        yield from items
         return
-    with click.progressbar(parts, file=sys.stderr, label="drawn machines") as bar:
+    with click.progressbar(items, file=sys.stderr, label=label, **how) as bar:
         yield from bar
 
 

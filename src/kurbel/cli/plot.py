@@ -7,6 +7,7 @@ import click
 from kurbel.cli.completion import complete_cylinder, complete_picture
 from kurbel.cli.output_options import loaded, number_options, set_option, units_option
 from kurbel.cli.readings import numbers
+from kurbel.render import Look
 
 if TYPE_CHECKING:
     from kurbel.report.pictures import Declared
@@ -46,7 +47,6 @@ def plot(
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
     and pdf need matplotlib. FILE may be - for standard input.
     """
-    from kurbel.render import Look
     from kurbel.render.pictures.drawing import check_file, draw_file, draw_stdout
     from kurbel.report.pictures import FILE, PICTURES, TERMINAL, Wish, pictures, pictures_of
     from kurbel.solver.case import Case

@@ -5,14 +5,14 @@ from typing import TypeVar
 
 import click
 
+from kurbel.errors import UnitError
+
 Value = TypeVar("Value")
 _MOST_STEPS = 10_000
 
 
 def _told(read: Callable[[str], Value], text: str) -> Value:
     """Return what is read; what the units refuse is told as click tells it."""
-    from kurbel.errors import UnitError
-
     try:
         return read(text)
     except UnitError as error:

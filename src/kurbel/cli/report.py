@@ -9,6 +9,7 @@ import click
 
 from kurbel.cli.output_options import loaded, number_options, set_option, units_option
 from kurbel.cli.readings import number
+from kurbel.render import Look
 
 if TYPE_CHECKING:
     from threading import Timer
@@ -39,7 +40,6 @@ def report(
     with their differences. --set holds for each of them. FILE may be - for standard input.
     """
     from kurbel.machine_file.given import given
-    from kurbel.render import Look
     from kurbel.render.output import refuse_overwriting, write_out
     from kurbel.render.report_page import report_page
     from kurbel.report.side_by_side import side_by_side

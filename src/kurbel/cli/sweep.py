@@ -2,18 +2,19 @@
 
 import gc
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from kurbel.cli.completion import complete_override
-from kurbel.cli.output_options import format_of, machine_file, output_option, stacked, units_option
+from kurbel.cli.output_options import format_of, machine_file, output_option, stacked, units_option, with_bar
 from kurbel.cli.readings import words
+from kurbel.errors import UsageError
 from kurbel.render import Look
 
 if TYPE_CHECKING:
-    from kurbel.designs.chosen import Aim, Condition
+    from kurbel.designs.chosen import Condition
     from kurbel.designs.sweep import Row, Spec, Sweep
     from kurbel.render.sweep_output import SweepOutput
 
@@ -116,8 +117,6 @@ class _Asked(NamedTuple):
 
     @property
     def _look(self) -> Look:
-        from kurbel.render import Look
-
         return Look(self._written, comma=self.decimal == "comma", digits=self.digits)
 
     @property
@@ -152,11 +151,10 @@ class _Asked(NamedTuple):
         """Compute and write the rows."""
         gc.freeze()
         gc.enable()  # what thousands of machines leave behind in circles would fill the memory
-        from kurbel.designs.chosen import read_aim, read_condition, summary
+        from kurbel.designs.chosen import read_aim, read_condition, summary, unbettered
         from kurbel.designs.plan import MOST_ROWS, shard
         from kurbel.designs.sweep import Sweep
         from kurbel.designs.workers import likely_jobs, rows_of
-        from kurbel.errors import UsageError
 
         found = Sweep(self._spec())
         if found.rows > MOST_ROWS and not self.yes:
@@ -167,9 +165,16 @@ class _Asked(NamedTuple):
         order = read_aim(self.sort, found.heads, "--sort") if self.sort else None
         out, rows = self._out(found, rows, conditions)
         jobs = self.jobs or (1 if self.shard else likely_jobs(len(rows)))
-        told = _counted(rows_of(found, rows, jobs, self.dask or ""), len(rows), self.file_name)
-        kept: Iterable[Row] = (row for row in told if all(one.holds(row) for one in conditions))
-        out.write(summary(kept, found.heads) if self.summary else self._chosen(kept, aims, order))
+        told: Iterable[Row] = rows_of(found, rows, jobs, self.dask or "")
+        if self.file_name or not sys.stdout.isatty():  # else the rows themselves go to the terminal
+            told = with_bar(told, "designs", length=len(rows), update_min_steps=100)
+        kept: Iterable[Any] = (row for row in told if all(one.holds(row) for one in conditions))
+        if self.summary:
+            kept = summary(kept, found.heads)
+        else:
+            kept = unbettered(kept, aims) if aims else kept
+            kept = sorted(kept, key=order.of)[: self.top] if order else kept
+        out.write(kept)
 
     def _spec(self) -> "Spec":
         from kurbel.designs.sweep import Spec
@@ -179,7 +184,8 @@ class _Asked(NamedTuple):
         refuse_overwriting(self.file_name, (self.file,))
         system = self.units or ("si" if self._written in ("csv", "json", "parquet") else "metric")
         plan = self.vary, self.side_by_side, self.sample, self.seed, self.sobol
-        return Spec(source.read(self.file), self.overrides, *plan, self.columns or (), self.with_angles, system)
+        origin = source.read(self.file).set_over(self.overrides)
+        return Spec(origin, *plan, self.columns or (), self.with_angles, system)
 
     def _out(self, found: "Sweep", rows: range, conditions: "Sequence[Condition]") -> "tuple[SweepOutput, range]":
         """Return where the rows go, and those that are not there yet."""
@@ -197,21 +203,3 @@ class _Asked(NamedTuple):
         kept = KeptRows(self.file_name, titles, self._look, rows)
         headed = rows.start == 0 and not kept.size
         return SweepOutput(titles, self._look, self.file_name, headed, kept.size), kept.rest(found, conditions)
-
-    def _chosen(self, rows: "Iterable[Row]", aims: "Sequence[Aim]", order: "Aim | None") -> "Iterable[Row]":
-        from kurbel.designs.chosen import sorted_rows, unbettered
-
-        if aims:
-            rows = unbettered(rows, aims)
-        if order:
-            rows = sorted_rows(rows, order)[: self.top]
-        return rows
-
-
-def _counted(rows: "Iterable[Row]", count: int, file_name: str | None) -> "Iterator[Row]":
-    """Yield the rows, with a bar on the terminal where they do not go there themselves."""
-    if not sys.stderr.isatty() or (file_name is None and sys.stdout.isatty()):
-        yield from rows
-        return
-    with click.progressbar(rows, length=count, file=sys.stderr, label="designs", update_min_steps=100) as bar:
-        yield from bar

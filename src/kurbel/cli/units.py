@@ -3,6 +3,7 @@
 import click
 
 from kurbel.cli.completion import complete_kind
+from kurbel.errors import UsageError
 
 
 @click.command()
@@ -13,7 +14,6 @@ def units(kind: str | None) -> None:
     Products and powers are written as people write them: N m or N*m, kg m2 or kg m^2.
     """
     from kurbel.declared.units import kinds, unit_names
-    from kurbel.errors import UsageError
     from kurbel.near_words import did_you_mean
     from kurbel.render.listing import write_entries
 

@@ -50,19 +50,17 @@ BALANCE_VALUES = (
 )
 
 ORDERS = by_id(
-    (
-        Quantity("order", "n", "ratio", "Turns of the circles in one turn of the crank"),
-        Quantity("F_forward", "F_+", "force", "Free force: circle that turns with the crank"),
-        Quantity("F_backward", "F_−", "force", "Free force: circle that turns against it"),
-        Quantity("F_forward_book", "F_+,0", "force", "The same by the acceleration of first order (R 291)"),
-        Quantity("F_backward_book", "F_−,0", "force", "The same by the acceleration of first order (R 291)"),
-        Quantity("F_share", "F_n²/F²", "ratio", "Share of the order in the mean square of the free force", "F_n2/F2"),
-        Quantity("M_forward", "M_+", "torque", "Free moment: circle that turns with the crank"),
-        Quantity("M_backward", "M_−", "torque", "Free moment: circle that turns against it"),
-        Quantity("M_forward_book", "M_+,0", "torque", "The same by the acceleration of first order (R 291)"),
-        Quantity("M_backward_book", "M_−,0", "torque", "The same by the acceleration of first order (R 291)"),
-        Quantity("M_share", "M_n²/M²", "ratio", "Share of the order in the mean square of the free moment", "M_n2/M2"),
-    )
+    Quantity("order", "n", "ratio", "Turns of the circles in one turn of the crank"),
+    Quantity("F_forward", "F_+", "force", "Free force: circle that turns with the crank"),
+    Quantity("F_backward", "F_−", "force", "Free force: circle that turns against it"),
+    Quantity("F_forward_book", "F_+,0", "force", "The same by the acceleration of first order (R 291)"),
+    Quantity("F_backward_book", "F_−,0", "force", "The same by the acceleration of first order (R 291)"),
+    Quantity("F_share", "F_n²/F²", "ratio", "Share of the order in the mean square of the free force", "F_n2/F2"),
+    Quantity("M_forward", "M_+", "torque", "Free moment: circle that turns with the crank"),
+    Quantity("M_backward", "M_−", "torque", "Free moment: circle that turns against it"),
+    Quantity("M_forward_book", "M_+,0", "torque", "The same by the acceleration of first order (R 291)"),
+    Quantity("M_backward_book", "M_−,0", "torque", "The same by the acceleration of first order (R 291)"),
+    Quantity("M_share", "M_n²/M²", "ratio", "Share of the order in the mean square of the free moment", "M_n2/M2"),
 )
 """Columns of the table of orders; amplitudes."""
 
@@ -77,15 +75,13 @@ def _ellipse(name: str, kind: str, of: str) -> tuple[Quantity, ...]:
     )
 
 
-ELLIPSES = by_id((ORDERS["order"], *_ellipse("F", "force", "Free force"), *_ellipse("M", "torque", "Free moment")))
+ELLIPSES = by_id(ORDERS["order"], *_ellipse("F", "force", "Free force"), *_ellipse("M", "torque", "Free moment"))
 """Columns of the table of ellipses: what the two circles of an order make together."""
 
 WEIGHTS = by_id(
-    (
-        Quantity("axial_position", "z", "length", "Place along the shaft"),
-        Quantity("product", "u", "unbalance", "Mass times radius"),
-        Quantity("angle", "α", "angle", "Direction at φ = 0 from the stroke line of cylinder 1"),
-        Quantity("hammer_blow", "H", "force", "By how much it loads and lifts its wheel"),
-    )
+    Quantity("axial_position", "z", "length", "Place along the shaft"),
+    Quantity("product", "u", "unbalance", "Mass times radius"),
+    Quantity("angle", "α", "angle", "Direction at φ = 0 from the stroke line of cylinder 1"),
+    Quantity("hammer_blow", "H", "force", "By how much it loads and lifts its wheel"),
 )
 """Columns of the tables of weights."""

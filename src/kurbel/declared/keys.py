@@ -22,6 +22,8 @@ class Form(ABC):
     """Of the tree: str, list or dict."""
     shared: ClassVar[bool] = False
     """Whether keys of another record stand in the mapping in place of the key."""
+    kind: str = ""
+    """Kind of quantity of the number that stands under a key, or of each one of a list; '' where none does."""
 
     @abstractmethod
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
@@ -178,7 +180,9 @@ def check(keys: Keys, values: Mapping[str, Any]) -> None:
     What holds for a machine file holds for records that are made in Python. None is a value that is not given.
     """
     given = {name: value for name, value in values.items() if value is not None}
-    refuse(*contradictions(keys, given), *_beyond(keys, given))
+    wrong = {name: keys[name].form.out_of_bounds(value) for name, value in given.items() if name in keys}
+    beyond = (Fault((name,), f"{given[name]:g} {how}") for name, how in wrong.items() if how)
+    refuse(*contradictions(keys, given), *beyond)
 
 
 def contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
@@ -192,12 +196,6 @@ def contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
         if other and keys[other].required and not {name, other} & given.keys():
             shown = other if keys[other].example else name
             yield Fault((), f"'{other}' or '{name}' is missing; {keys[shown].write(shown)}")
-
-
-def _beyond(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
-    for name, value in given.items():
-        if name in keys and (wrong := keys[name].form.out_of_bounds(value)):
-            yield Fault((name,), f"{value:g} {wrong}")
 
 
 class Described:

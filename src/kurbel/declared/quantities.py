@@ -8,9 +8,8 @@ from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES, PIN_LOSSES
 from kurbel.declared.factors import PHI
 from kurbel.declared.flywheel import EFFORT_VALUES, FLYWHEEL_COLUMNS, FLYWHEEL_VALUES
-from kurbel.declared.indicated import INDICATED_COLUMNS, INDICATED_VALUES
+from kurbel.declared.forces import INDICATED_COLUMNS, INDICATED_VALUES, ROD_COLUMNS, ROD_VALUES
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
-from kurbel.declared.rod_load import ROD_COLUMNS, ROD_VALUES
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
 from kurbel.declared.torsion import HARMONIC_VALUES, TORSION_COLUMNS, TORSION_VALUES
 
@@ -231,11 +230,11 @@ class Lists(NamedTuple):
 
     def columns(self, command: str) -> dict[str, Quantity]:
         """Return the columns of a command, by id."""
-        return by_id(one for one in self.all_columns if command in one.commands)
+        return by_id(*(one for one in self.all_columns if command in one.commands))
 
     def key_values(self, command: str) -> dict[str, Quantity]:
         """Return the key values of a command, by id."""
-        return by_id(one for one in self.all_key_values if command in one.commands)
+        return by_id(*(one for one in self.all_key_values if command in one.commands))
 
     def commands_of(self, id: str) -> tuple[str, ...]:
         """Return the commands that have a key value, the one whose own it is first."""
@@ -244,4 +243,4 @@ class Lists(NamedTuple):
 
 COMMON = Lists.of()
 """What every machine may have; a mechanism adds its own (`kurbel.mechanisms.every_quantity`)."""
-COLUMNS = by_id(one for one in COMMON.all_columns if one.commands)
+COLUMNS = by_id(*(one for one in COMMON.all_columns if one.commands))

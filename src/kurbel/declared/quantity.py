@@ -121,7 +121,7 @@ def placed(declared: Iterable[Quantity]) -> tuple[Quantity, ...]:
     return tuple(ordered)
 
 
-def by_id(quantities: Iterable[Quantity]) -> dict[str, Quantity]:
+def by_id(*quantities: Quantity) -> dict[str, Quantity]:
     """Return the quantities by their ids."""
     return {quantity.id: quantity for quantity in quantities}
 

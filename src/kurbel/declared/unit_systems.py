@@ -39,8 +39,13 @@ def shown_unit(kind: str, system: str, largest: float = 0.0) -> str:
     units = SYSTEMS[system][kind]
     if isinstance(units, str):
         return units
-    fitting = [unit for unit in units[1:] if abs(largest) >= _TAKEN_FROM.get(unit, convert_back(1.0, kind, unit))]
+    fitting = [unit for unit in units[1:] if abs(largest) >= _taken_from(unit, kind)]
     return fitting[-1] if fitting else str(units[0])
+
+
+def _taken_from(unit: str, kind: str) -> float:
+    up, down = unit_factor(unit, kind)
+    return _TAKEN_FROM.get(unit, up / down)
 
 
 def convert(value: Any, kind: str, unit: str) -> Any:
@@ -49,12 +54,6 @@ def convert(value: Any, kind: str, unit: str) -> Any:
         return value
     up, down = unit_factor(unit, kind)
     return value if up == down else value / up * down
-
-
-def convert_back(value: float, kind: str, unit: str) -> float:
-    """Return a value in a unit of its kind in the base."""
-    up, down = unit_factor(unit, kind)
-    return value * up / down
 
 
 def show(value: float, kind: str, figures: int = 6) -> str:

@@ -10,12 +10,9 @@ import re
 from collections.abc import Callable, Iterable
 from functools import cache
 
-from kurbel.declared.kinds import KINDS
+from kurbel.declared.kinds import KINDS, Factor
 from kurbel.declared.numerals import NUMBER, parse_ratio, plain
 from kurbel.errors import UnitError
-
-Factor = tuple[float, float]
-"""A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""
 
 GRAVITY = 9.80665
 """m/s²; makes kgf and at exact."""
@@ -96,15 +93,8 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
     "angle": lambda: {"deg": (1, 1), "°": (1, 1), "rad": (180, math.pi)},
     "speed": lambda: {
         "1/s": (1, 1),
-        "rpm": (1, 60),
-        "1/min": (1, 60),
-        "U/min": (1, 60),
-        "rev/min": (1, 60),
-        "r/min": (1, 60),
-        "min-1": (1, 60),
-        "rps": (1, 1),
-        "s-1": (1, 1),
-        "Hz": (1, 1),
+        **dict.fromkeys(("rpm", "1/min", "U/min", "rev/min", "r/min", "min-1"), (1, 60)),
+        **dict.fromkeys(("rps", "s-1", "Hz"), (1, 1)),
         "rad/s": (1, 2 * math.pi),
     },
     "frequency": lambda: {"Hz": (1, 1), "1/s": (1, 1), "kHz": (1e3, 1), "1/min": (1, 60)},
@@ -220,13 +210,15 @@ def _known_text(kind: str) -> str:
 
 
 def parse_quantity(text: str, kind: str) -> float:
-    """Return the value of `text`, a number with a unit, in the base of `kind`.
+    """Return the value of `text`, a number with a unit, in the base of `kind`; a ratio has none.
 
-    >>> parse_quantity("450 mm", "length")
-    0.45
+    >>> parse_quantity("450 mm", "length"), parse_quantity("1/80", "ratio")
+    (0.45, 0.0125)
 
     Raises UnitError when there is no number, no unit, or a unit of another kind.
     """
+    if kind == "ratio":
+        return parse_ratio(text)
     stripped = plain(text)
     number = _number_of(stripped)
     if not number:

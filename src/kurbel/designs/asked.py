@@ -1,7 +1,6 @@
 """`kurbel.sweep`: what Python asks of many designs of a machine, as arrays."""
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,11 +8,12 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import SI
 from kurbel.designs.binding import Binder, written_texts
-from kurbel.designs.sweep import Row, Spec, Sweep, kind_of_form
+from kurbel.designs.plan import Input
+from kurbel.designs.sweep import Row, Spec, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.machine_file.source import Source, decode
+from kurbel.machine.origin import Origin
 
 
 def sweep(
@@ -33,37 +33,27 @@ def sweep(
 
     Raises UsageError for inputs of different lengths, keys without a value, and columns that the machine has not.
     """
-    source, overrides = _origin(machine)
-    keys = tuple(inputs)
-    texts = _texts(source, overrides, keys, inputs)
-    spec = Spec(source, overrides, given=(keys, texts), columns=tuple(columns), with_angles=with_angles)
-    found = Sweep(spec)
+    if machine.origin is None:
+        raise UsageError("only a machine that was read can vary by its keys: take it from kurbel.load or kurbel.loads")
+    given = tuple(_inputs(machine.origin, inputs))
+    found = Sweep(Spec(machine.origin, given=given, side_by_side=True, columns=tuple(columns), with_angles=with_angles))
     return _arrays(found, list(rows_of(found, range(found.rows))))
 
 
-def _origin(machine: Machine) -> tuple[Source, tuple[str, ...]]:
-    origin = machine.origin
-    if origin is None:
-        raise UsageError("only a machine that was read can vary by its keys: take it from kurbel.load or kurbel.loads")
-    return decode(origin.name, origin.content, os.path.dirname(origin.name)), origin.overrides
-
-
-def _texts(
-    source: Source, overrides: Sequence[str], keys: Sequence[str], inputs: Mapping[str, Any]
-) -> tuple[tuple[str, ...], ...]:
-    """Return the inputs as texts of the machine file, row by row."""
-    columns = [np.atleast_1d(np.asarray(values)) for values in inputs.values()]
-    lengths = {key: len(column) for key, column in zip(keys, columns)}
-    if len(set(lengths.values())) != 1 or any(column.ndim != 1 for column in columns):
+def _inputs(origin: Origin, inputs: Mapping[str, Any]) -> Iterator[Input]:
+    """Yield the inputs with their values as texts of the machine file."""
+    columns = {key: np.atleast_1d(np.asarray(values)) for key, values in inputs.items()}
+    lengths = {key: len(column) for key, column in columns.items()}
+    if len(set(lengths.values())) != 1 or any(column.ndim != 1 for column in columns.values()):
         each = ", ".join(f"{key} has {count}" for key, count in lengths.items())
         raise UsageError(f"give as many values of every key, one or more of them; {each or 'there is none'}")
-    binder = Binder(source, overrides, keys, written_texts(source, overrides, keys))
-    units = [SI.get(kind_of_form(binder.form(number)), "") for number in range(len(keys))]
-    texts = [_column(column, unit) for column, unit in zip(columns, units)]
-    return tuple(zip(*texts))
+    keys = tuple(columns)
+    binder = Binder(origin, keys, written_texts(origin, keys))
+    for (key, column), kind in zip(columns.items(), binder.kinds):
+        yield Input(key, tuple(_texts(column, SI.get(kind, ""))))
 
 
-def _column(values: Array, unit: str) -> list[str]:
+def _texts(values: Array, unit: str) -> list[str]:
     if values.dtype.kind not in "fiu":
         return [str(one) for one in values.tolist()]
     return [f"{one!r} {unit}".rstrip() for one in values.tolist()]

@@ -3,7 +3,7 @@
 Every record that is made anew keeps its rules as when it is read; what a row breaks is told as `--set` would tell it.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -13,11 +13,11 @@ from kurbel.declared.keys import Form
 from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
 from kurbel.machine import Machine
+from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot, joined, one_kind, sort_of
-from kurbel.machine_file.events import parse
-from kurbel.machine_file.overrides import by_numbers, overridden, read_override
+from kurbel.machine_file.given import leaves, tree_of
+from kurbel.machine_file.overrides import by_numbers, read_override
 from kurbel.machine_file.reader import read_machine, reading_of
-from kurbel.machine_file.source import Source
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.varied import Parted
 
@@ -34,14 +34,6 @@ class Bound(NamedTuple):
 
     lots: list[Lot]
     failures: dict[int, str]
-
-
-class _Link(NamedTuple):
-    """Where the record of an earlier step stands in the values of a later one: key, and place in a tuple, or None."""
-
-    key: str
-    place: int | None
-    step: int
 
 
 class _Slot(NamedTuple):
@@ -83,11 +75,11 @@ class _Slot(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """A record that is made anew: which slots are its own, each with its key, and which records of earlier steps."""
+    """A record that is made anew: which slots are its own, each with its key, and the keys of such records in it."""
 
     birth: Birth
     own: list[tuple[int, str]]
-    links: list[_Link]
+    inner: list[str]
 
 
 class Binder:
@@ -96,13 +88,14 @@ class Binder:
     start: texts that make a machine, from which the others differ. Raises UsageError for a key that is none.
     """
 
-    def __init__(self, source: Source, overrides: Sequence[str], keys: Sequence[str], start: Sequence[str]) -> None:
-        self._reading = reading_of(source)
+    def __init__(self, origin: Origin, keys: Sequence[str], start: Sequence[str]) -> None:
+        self._reading = reading_of(origin)
         births: list[Birth] = []
         self._reading.births = births
-        given = (*overrides, *(f"{key}={text}" for key, text in zip(keys, start)))
-        self.machine = read_machine(source, given, self._reading)
-        self._forms: list[Form] = []
+        begun = origin.set_over(f"{key}={text}" for key, text in zip(keys, start))
+        self.machine = read_machine(begun, self._reading)
+        self.kinds: list[str] = []
+        """Of the numbers that stand under the keys, '' of words."""
         self._slots: list[_Slot] = []
         for number, key in enumerate(keys):
             self._place(number, read_override(f"{key}=0").path, births)
@@ -111,7 +104,7 @@ class Binder:
     def _place(self, number: int, path: Path, births: list[Birth]) -> None:
         """Note in which slots a key stands: that of its record, and those of what is `like` that."""
         owner, name = _owner(path, births)
-        self._forms.append(owner.form.keys[name].form)
+        self.kinds.append(owner.form.keys[name].form.kind)
         for birth in births:
             if _reads(birth, name) and birth.mapping.get(name) is owner.mapping.get(name):
                 slot = next((one for one in self._slots if one.birth is birth and one.name == name), None)
@@ -120,19 +113,15 @@ class Binder:
                     self._slots.append(slot)
                 slot.varied.append((number, path[len(owner.path) + 1 :]))
 
-    def form(self, number: int) -> Form:
-        """Return what stands under a key."""
-        return self._forms[number]
-
     def _planned(self, births: list[Birth]) -> list[_Step]:
         steps: list[_Step] = []
-        made: dict[int, int] = {}
+        anew: set[int] = set()
         for birth in births:
             own = [(number, slot.name) for number, slot in enumerate(self._slots) if slot.birth is birth]
-            links = [link for key, value in birth.values.items() for link in _links(key, value, made)]
-            if own or links:
-                made[id(birth.born)] = len(steps)
-                steps.append(_Step(birth, own, links))
+            inner = [key for key, value in birth.values.items() if anew.intersection(map(id, _parts(value)))]
+            if own or inner:
+                anew.add(id(birth.born))
+                steps.append(_Step(birth, own, inner))
         return steps
 
     def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
@@ -175,27 +164,27 @@ class Binder:
 
     def _made(self, given: Sequence[Any]) -> Machine:
         """Return the machine with these values in the slots; raises Unbound with all that is wrong."""
-        found: list[Any] = []
+        anew: dict[int, Any] = {}
         reading = Reading()
         reading.alike = self._reading.alike
         with suppress(StopReading):
             for step in self._steps:
-                found.append(_born(step, given, found, reading))
+                anew[id(step.birth.born)] = _born(step, given, anew, reading)
         if reading.faults:
             raise Unbound(_told(reading.faults))
-        return found[-1] if found else self.machine
+        machine: Machine = anew[id(self._steps[-1].birth.born)] if self._steps else self.machine
+        return machine
 
 
-def _born(step: _Step, given: Sequence[Any], found: Sequence[Any], reading: Reading) -> Any:
-    """Return the record of a step, or REFUSED after noting its faults; found: the records of earlier steps."""
+def _born(step: _Step, given: Sequence[Any], anew: dict[int, Any], reading: Reading) -> Any:
+    """Return the record of a step, or REFUSED after noting its faults; anew: what came of records of earlier steps."""
     birth = step.birth
-    values = dict(birth.values)
-    for number, name in step.own:
-        values[name] = given[number]
-    for key, place, earlier in step.links:
-        if found[earlier] is REFUSED:
+    values = birth.values | {name: given[number] for number, name in step.own}
+    for key in step.inner:
+        parts = [anew.get(id(part), part) for part in _parts(values[key])]
+        if any(part is REFUSED for part in parts):
             return REFUSED
-        values[key] = _replaced(values[key], place, found[earlier])
+        values[key] = tuple(parts) if isinstance(values[key], tuple) else parts[0]
     try:
         return birth.form.born(values)
     except RuleError as error:
@@ -210,24 +199,15 @@ def _of_one_sort(read: _Part) -> list[_Part]:
     return list(parts.values())
 
 
-def written_texts(source: Source, overrides: Sequence[str], keys: Sequence[str]) -> list[str]:
+def written_texts(origin: Origin, keys: Sequence[str]) -> list[str]:
     """Return what a file has under these dotted keys; raises UsageError for a key under which no value stands."""
-    tree = tree_of(source, overrides)
-    return [_named(tree, key) for key in keys]
-
-
-def _named(tree: Tree, key: str) -> str:
-    try:
-        return written(tree, key)
-    except UsageError as error:
-        raise UsageError(f"{shown(key)}: {error}") from None
-
-
-def tree_of(source: Source, overrides: Sequence[str]) -> Tree:
-    """Return a file as mappings, lists and texts, with what is set over it."""
-    tree: Tree = parse(source.text, Reading(source.folder))
-    overridden(tree, [read_override(one) for one in overrides])
-    return tree
+    tree, texts = tree_of(origin), []
+    for key in keys:
+        try:
+            texts.append(written(tree, key))
+        except UsageError as error:
+            raise UsageError(f"{shown(key)}: {error}") from None
+    return texts
 
 
 def written(tree: Tree, key: str) -> str:
@@ -245,21 +225,10 @@ def written(tree: Tree, key: str) -> str:
 
 def _meant(tree: Tree, key: str) -> str:
     """Return which key with a value was probably meant by one without, or an empty text."""
-    known = tuple(one for one in _keys_with_value(tree) if not one.startswith("uncertainty."))
+    texts = (path for path, value in leaves(tree) if isinstance(value, str) and path[0] != "uncertainty")
+    known = tuple(".".join(map(str, path)) for path in texts)
     ending = next((f"; did you mean '{one}'?" for one in known if one.endswith(f".{key}")), "")
     return ending or did_you_mean(by_numbers(tree, key), known)
-
-
-def _keys_with_value(tree: Tree, below: str = "") -> Iterator[str]:
-    """Yield the dotted keys under which a value stands, but for those of points."""
-    for step, node in tree.items():
-        if isinstance(node, str):
-            yield f"{below}{step}"
-        elif isinstance(node, dict):
-            yield from _keys_with_value(node, f"{below}{step}.")
-        else:
-            records = {str(place): one for place, one in enumerate(node) if isinstance(one, dict)}
-            yield from _keys_with_value(records, f"{below}{step}.")
 
 
 def _owner(path: Path, births: list[Birth]) -> tuple[Birth, str]:
@@ -282,15 +251,9 @@ def _reads(birth: Birth, name: Step) -> bool:
     return name in birth.values and name in birth.form.keys
 
 
-def _links(key: str, value: Any, made: dict[int, int]) -> list[_Link]:
-    if id(value) in made:
-        return [_Link(key, None, made[id(value)])]
-    items = value if isinstance(value, tuple) else ()
-    return [_Link(key, place, made[id(item)]) for place, item in enumerate(items) if id(item) in made]
-
-
-def _replaced(value: Any, place: int | None, new: Any) -> Any:
-    return new if place is None else (*value[:place], new, *value[place + 1 :])
+def _parts(value: Any) -> tuple[Any, ...]:
+    """Return the items of a list, as what it was read into, or the value itself."""
+    return value if isinstance(value, tuple) else (value,)
 
 
 def _with(tree: Any, path: Path, value: Any) -> Any:

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.declared.numerals import NUMBER, parse_ratio, plain
+from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI, convert_back
+from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import example, parse_quantity
 from kurbel.designs.sweep import Head, Row
 from kurbel.errors import UnitError, UsageError
@@ -53,15 +53,11 @@ def read_condition(text: str, heads: Sequence[Head]) -> Condition:
     if not head.kind:
         return Condition(place, found[2], written)
     try:
-        value = parse_ratio(written) if head.kind == "ratio" else parse_quantity(written, head.kind)
+        value = parse_quantity(written, head.kind)
     except UnitError as error:
         hint = f"; write for instance {example(head.kind)}" if NUMBER.fullmatch(written) else ""
         raise UsageError(f"--where {shown(text)}: {error}{hint}") from None
-    return Condition(place, found[2], _in_unit(value, head))
-
-
-def _in_unit(value: float, head: Head) -> float:
-    return value / convert_back(1.0, head.kind, head.unit) if head.unit not in ("", SI[head.kind]) else value
+    return Condition(place, found[2], convert(value, head.kind, head.unit))
 
 
 def place_of(name: str, heads: Sequence[Head], option: str) -> int:
@@ -92,11 +88,6 @@ def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
     """Return what `T_max` or `-T_max` says, the largest value first; raises UsageError."""
     name = text.strip()
     return Aim(place_of(name.removeprefix("-"), heads, option), name.startswith("-"))
-
-
-def sorted_rows(rows: Iterable[Row], aim: Aim) -> list[Row]:
-    """Return the rows, the best one first; rows without a value come last, equal ones as they came."""
-    return sorted(rows, key=aim.of)
 
 
 def unbettered(rows: Iterable[Row], aims: Sequence[Aim]) -> Iterator[Row]:
@@ -155,11 +146,6 @@ def _rank_correlation(first: Any, second: Any) -> float | None:
 
 def _ranks(values: Any) -> Any:
     """Return the rank of every value, equal ones sharing the mean of theirs."""
-    order = np.argsort(values, kind="stable")
-    inverse = np.empty(len(values), dtype=np.intp)
-    inverse[order] = np.arange(len(values))
-    ordered = values[order]
-    begins = np.flatnonzero(np.append(True, ordered[1:] != ordered[:-1]))
-    group = np.searchsorted(begins, inverse, side="right") - 1
-    ends = np.append(begins[1:], len(values))
-    return (begins[group] + ends[group] - 1) / 2
+    _, group, counts = np.unique(values, return_inverse=True, return_counts=True)
+    ends = np.cumsum(counts)
+    return (ends - (counts + 1) / 2)[group]

@@ -1,11 +1,17 @@
-"""Which designs there are: a grid of all values, or values side by side, each with every point of the sample."""
+"""What varies, `KEY=…` as a list, a range or a distribution, and which designs there are.
+
+These are a grid of all values, or values side by side, each with every point of the sample.
+"""
 
 import math
+import re
 from collections.abc import Sequence
+from decimal import Decimal, InvalidOperation
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from kurbel.designs.inputs import Input
+from kurbel.declared.numerals import NUMBER, plain
+from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.errors import UsageError
 
 if TYPE_CHECKING:
@@ -13,6 +19,121 @@ if TYPE_CHECKING:
 
 MOST_ROWS = 10_000_000
 """Rows that are computed without being asked whether they are meant."""
+MOST_VALUES = 10_000_000
+"""Values of one key; a range of more is a slip of its step."""
+_CALL = re.compile(r"(normal|uniform)\s*\((.*)\)\s*")
+_UNKNOWN_CALL = re.compile(r"([a-z_]+)\s*\(.*\)\s*")
+
+
+class Distribution(NamedTuple):
+    """How a key is distributed: `normal` by mean and standard deviation, or `uniform` from its least to its most."""
+
+    name: str
+    first: float
+    second: float
+
+    def at(self, share: float) -> float:
+        """Return the value below which this share of all lies, 0 < share < 1."""
+        if self.name == "uniform":
+            return self.first + share * (self.second - self.first)
+        from statistics import NormalDist
+
+        return NormalDist(self.first, self.second).inv_cdf(share)
+
+
+class Input(NamedTuple):
+    """A key that varies: texts of its values as the machine file would have them, or a distribution in a unit."""
+
+    key: str
+    texts: tuple[str, ...] = ()
+    distribution: Distribution | None = None
+    unit: str = ""
+
+    def text(self, share: float) -> str:
+        """Return the value below which this share of all lies, as a text of the machine file."""
+        assert self.distribution is not None
+        return f"{self.distribution.at(share)!r} {self.unit}".rstrip()
+
+
+def read_input(text: str) -> Input:
+    """Return what `rod_ratio=3:6:0.25`, `speed=40,50,60 rpm` or `bore=normal(450 mm, 0.2 mm)` says; raises UsageError.
+
+    >>> read_input("speed=40,50,60 rpm").texts
+    ('40 rpm', '50 rpm', '60 rpm')
+    >>> read_input("rod_ratio=3:4:0.25").texts
+    ('3.00', '3.25', '3.50', '3.75', '4.00')
+    """
+    key, equals, values = plain(text).partition("=")
+    key, values = key.strip(), values.strip()
+    if not equals or not key or not values:
+        raise _refused(text, "write KEY=…, such as rod_ratio=3:6:0.25, speed=40,50,60 rpm, bore=normal(450 mm, 0.2 mm)")
+    if call := _CALL.fullmatch(values):
+        return Input(key, (), *_distribution(text, call[1], call[2]))
+    if call := _UNKNOWN_CALL.fullmatch(values):
+        raise _refused(
+            text, f"no distribution '{shown(call[1])}'; known are normal(mean, deviation), uniform(least, most)"
+        )
+    if ".." in values:
+        raise _refused(text, "a range is first:last:step, such as 140:160:5 mm")
+    if ":" in values and "," not in values and NUMBER.match(values):
+        return Input(key, _range(text, values))
+    return Input(key, _with_unit([part.strip() for part in values.split(",")], text))
+
+
+def _refused(text: str, why: str) -> UsageError:
+    return UsageError(f"--vary {shown(text)}: {why}")
+
+
+def _with_unit(parts: list[str], text: str) -> tuple[str, ...]:
+    """Return the values of a list; the unit of the last one is that of those before it that have none."""
+    if not all(parts) or any(len(part) > LONGEST_VALUE for part in parts):
+        raise _refused(text, "a value is missing between two commas; write decimal points, such as 1.5")
+    unit = _number_and_unit(parts[-1])[1] if NUMBER.match(parts[-1]) else ""
+    return tuple(f"{part} {unit}".rstrip() if unit and NUMBER.fullmatch(part) else part for part in parts)
+
+
+def _number_and_unit(part: str) -> tuple[str, str]:
+    found = NUMBER.match(part)
+    return (found.group(), part[found.end() :].strip()) if found else ("", part)
+
+
+def _range(text: str, values: str) -> tuple[str, ...]:
+    """Return first, first + step, … as decimal fractions, exactly, as far as they do not pass the last one."""
+    parts = values.split(":")
+    if len(parts) != 3:
+        raise _refused(text, "a range has three numbers, first:last:step, such as 3:6:0.25")
+    pairs = [_number_and_unit(part.strip()) for part in parts]
+    units = {unit for _, unit in pairs if unit}
+    if len(units) > 1:
+        raise _refused(text, f"a range has one unit, this one has {' and '.join(sorted(units))}")
+    try:
+        first, last, step = (Decimal(number) for number, _ in pairs)
+    except InvalidOperation:
+        raise _refused(text, "a range has three numbers, first:last:step, such as 3:6:0.25") from None
+    if not step or (last - first) / step < 0:
+        raise _refused(text, f"a range from {first} by steps of {step} never reaches {last}")
+    if (last - first) / step >= MOST_VALUES:
+        raise _refused(
+            text, f"this range has {int((last - first) / step) + 1} values; no key has more than {MOST_VALUES}"
+        )
+    unit = units.pop() if units else ""
+    return tuple(f"{first + step * i:f} {unit}".rstrip() for i in range(int((last - first) / step) + 1))
+
+
+def _distribution(text: str, name: str, inside: str) -> tuple[Distribution, str]:
+    words = {"normal": ("mean", "standard deviation"), "uniform": ("least", "most")}[name]
+    pairs = [_number_and_unit(part.strip()) for part in inside.split(",")]
+    if len(pairs) != 2 or not all(number for number, _ in pairs):
+        raise _refused(text, f"{name}({words[0]}, {words[1]}) has two numbers, such as normal(450 mm, 0.2 mm)")
+    units = {unit for _, unit in pairs if unit}
+    if len(units) > 1:
+        raise _refused(text, f"write {words[0]} and {words[1]} in one unit, not in {' and '.join(sorted(units))}")
+    first, second = (float(number) for number, _ in pairs)
+    if name == "normal" and second <= 0:
+        raise _refused(text, f"the standard deviation must be more than 0, got {pairs[1][0]}")
+    if name == "uniform" and second <= first:
+        raise _refused(text, f"the least value must be less than the most, got {pairs[0][0]} and {pairs[1][0]}")
+    return Distribution(name, first, second), units.pop() if units else ""
 
 
 class Plan:
@@ -71,19 +192,6 @@ class Plan:
         for column, one in enumerate(self._drawn):
             found[one.key] = one.text(float(self._points[point, column]))
         return tuple(found[one.key] for one in self.inputs)
-
-
-class Fixed:
-    """Rows whose texts are given one by one, (rows, keys)."""
-
-    def __init__(self, keys: Sequence[str], texts: Sequence[Sequence[str]]) -> None:
-        self.inputs = tuple(Input(key) for key in keys)
-        self._texts = texts
-        self.rows = len(texts)
-
-    def texts(self, row: int) -> tuple[str, ...]:
-        """Return the texts of the keys in a row."""
-        return tuple(self._texts[row])
 
 
 def shard(text: str, rows: int) -> range:

@@ -29,7 +29,9 @@ def latin_hypercube(count: int, width: int, seed: int) -> Array:
     """Return (count, width) numbers between 0 and 1: in every column one in each of `count` equal strips, at random."""
     random = np.random.default_rng(seed)
     strips = random.permuted(np.tile(np.arange(float(count))[:, None], width), axis=0)
-    return np.asarray((strips + _inner(random.random((count, width)))) / count)
+    # neither 0 nor 1, so that no distribution is asked for its end
+    within = np.clip(random.random((count, width)), 2.0**-40, 1 - 2.0**-40)
+    return np.asarray((strips + within) / count)
 
 
 def sobol(count: int, width: int, seed: int) -> Array:
@@ -66,8 +68,3 @@ def _direction_numbers(column: int) -> list[int]:
                 number ^= numbers[bit - k]
         numbers.append(number)
     return numbers
-
-
-def _inner(shares: Array) -> Array:
-    """Return numbers from 0 to 1 that are neither, so that no distribution is asked for its end."""
-    return np.clip(shares, 2.0**-40, 1 - 2.0**-40)

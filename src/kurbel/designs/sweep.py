@@ -5,20 +5,18 @@ from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, asked_answers, subjects
-from kurbel.designs.inputs import Input, read_input
-from kurbel.designs.plan import Fixed, Plan
+from kurbel.designs.plan import Input, Plan, read_input
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot
-from kurbel.machine_file.source import Source
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import Extreme, number_of
 
 CHUNK = 200
 """Rows that are computed together: what memory holds at once, and what a run computes anew that begins amid them."""
@@ -33,12 +31,11 @@ _STARTS = 100
 class Spec(NamedTuple):
     """All that a sweep is made of, in texts, so that any process can make it anew.
 
-    vary: `KEY=…` each; or keys and rows of texts in `given`. columns: ids or symbols; with_angles: beside extremes the
-    angle where each stands; system: of units; the others: see `Plan`.
+    vary: `KEY=…` each; given: inputs beside these. columns: ids or symbols; with_angles: beside extremes the angle
+    where each stands; system: of units; the others: see `Plan`.
     """
 
-    source: Source
-    overrides: tuple[str, ...] = ()
+    origin: Origin
     vary: tuple[str, ...] = ()
     side_by_side: bool = False
     sample: int | None = None
@@ -47,7 +44,7 @@ class Spec(NamedTuple):
     columns: tuple[str, ...] = ()
     with_angles: bool = False
     system: str = "si"
-    given: tuple[tuple[str, ...], tuple[tuple[str, ...], ...]] | None = None
+    given: tuple[Input, ...] = ()
 
 
 class Head(NamedTuple):
@@ -80,13 +77,9 @@ class Sweep:
 
     def __init__(self, spec: Spec) -> None:
         self.spec = spec
-        plan: Plan | Fixed
-        if spec.given is None:
-            plan = Plan(list(map(read_input, spec.vary)), spec.side_by_side, spec.sample, spec.seed, spec.sobol)
-        else:
-            plan = Fixed(*spec.given)
-        self.plan = plan
-        self.rows = plan.rows
+        inputs = [*map(read_input, spec.vary), *spec.given]
+        self.plan = Plan(inputs, spec.side_by_side, spec.sample, spec.seed, spec.sobol)
+        self.rows = self.plan.rows
         self._binder = self._started()
         machine = self._binder.machine
         self.asked = asked_answers(machine, spec.columns)
@@ -99,7 +92,7 @@ class Sweep:
         failed = ""
         for row in range(min(self.rows, _STARTS)):
             try:
-                return Binder(self.spec.source, self.spec.overrides, keys, self.plan.texts(row))
+                return Binder(self.spec.origin, keys, self.plan.texts(row))
             except MachineFileError as error:
                 failed = failed or _as_varied(str(error), zip(keys, self.plan.texts(row)))
             except UsageError as error:
@@ -120,7 +113,7 @@ class Sweep:
         return tuple(heads)
 
     def _input_head(self, number: int, one: Input) -> Head:
-        kind = kind_of_form(self._binder.form(number))
+        kind = self._binder.kinds[number]
         first = _in_base([self.plan.texts(0)[number]], kind)[0] or 0.0
         return Head(one.key, shown_unit(kind, self.spec.system, first) if kind else "", True, kind)
 
@@ -144,30 +137,27 @@ class Sweep:
         bound = self._binder.bound(texts)
         own = range(wanted.start - company.start, wanted.stop - company.start)
         found = bound.failures | answers_of(bound.lots, (*self.asked, *(answer for answer, _ in self._limits)), own)
-        inputs = list(zip(*(self._input_values(*one) for one in enumerate(zip(*texts)))))
+        inputs = list(self._inputs(texts))
         values = iter(self._values([found[row] for row in own if not isinstance(found[row], str)]))
         return [self._row(number + 1, inputs[row], found[row], values) for row, number in zip(own, wanted)]
 
     def _row(self, number: int, inputs: tuple[Any, ...], found: Values, values: Iterator[tuple[Any, ...]]) -> Row:
         if isinstance(found, str):
-            return Row(number, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=found)
+            return self._unanswered(number, inputs, found)
         broken = self._broken(found[len(self.asked) :])
         return Row(number, (*inputs, *next(values)), not broken if self.limited else None, broken)
 
     def unanswered(self, row: int) -> Row:
         """Return the row with this index from 0 on without its answers: what varies is known unsolved."""
-        inputs = [self._input_values(number, [text])[0] for number, text in enumerate(self.plan.texts(row))]
-        return Row(row + 1, (*inputs, *[None] * (len(self.heads) - len(inputs))))
+        (inputs,) = self._inputs([self.plan.texts(row)])
+        return self._unanswered(row + 1, inputs)
 
-    def _input_values(self, number: int, texts: Sequence[str]) -> list[Any]:
-        """Return what stands under the head of an input in these rows."""
-        head = self.heads[number]
-        different = list(dict.fromkeys(texts))
-        known = {
-            text: text if value is None else convert(value, head.kind, head.unit) + 0.0
-            for text, value in zip(different, _in_base(different, head.kind))
-        }
-        return [known[text] for text in texts]
+    def _unanswered(self, number: int, inputs: tuple[Any, ...], failure: str = "") -> Row:
+        return Row(number, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=failure)
+
+    def _inputs(self, rows: Sequence[Sequence[str]]) -> Iterable[tuple[Any, ...]]:
+        """Return what stands under the heads of the inputs, row by row, of the texts (rows, inputs)."""
+        return zip(*(_input_values(*one) for one in zip(self.heads, zip(*rows))))
 
     def _values(self, found: Sequence[Sequence[Any]]) -> Iterable[tuple[Any, ...]]:
         """Return what stands under the heads of the answers, row by row, of the answers (rows, asked) in SI."""
@@ -176,7 +166,7 @@ class Sweep:
 
     def _shown(self, one: Answer, unit: str, column: Sequence[Any]) -> Iterator[list[Any]]:
         kind = one.quantity.kind
-        yield [_in_unit(value.value if isinstance(value, Extreme) else value, kind, unit) for value in column]
+        yield [_in_unit(number_of(value), kind, unit) for value in column]
         if self._has_angle(one):
             yield [value.degrees if isinstance(value, Extreme) else None for value in column]
 
@@ -184,7 +174,7 @@ class Sweep:
         from kurbel.report.compared import breaks
 
         for (answer, bound), value in zip(self._limits, found, strict=True):
-            number = value.value if isinstance(value, Extreme) else value
+            number = number_of(value)
             if number is not None and breaks(answer.quantity, bound, number):
                 return answer.quantity.id
         return ""
@@ -218,26 +208,26 @@ def _as_varied(message: str, texts: Iterable[tuple[str, str]]) -> str:
     return message
 
 
+def _input_values(head: Head, texts: Sequence[str]) -> list[Any]:
+    """Return what stands under the head of an input in rows of these texts: numbers in its unit, or words."""
+    different = list(dict.fromkeys(texts))
+    values = zip(different, _in_base(different, head.kind))
+    known = {text: text if value is None else _in_unit(value, head.kind, head.unit) for text, value in values}
+    return [known[text] for text in texts]
+
+
 def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
     """Return the values of texts in the base of their kind; None for a word, or what a row fails for."""
-    plain = plain_quantities(texts, kind) if kind else None
-    return plain or [_one_in_base(text, kind) for text in texts]
+    if not kind:
+        return [None] * len(texts)
+    return plain_quantities(texts, kind) or [_one_in_base(text, kind) for text in texts]
 
 
 def _one_in_base(text: str, kind: str) -> float | None:
-    if not kind:
-        return None
     try:
-        return parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
+        return parse_quantity(text, kind)
     except KurbelError:
         return None
-
-
-def kind_of_form(form: Any) -> str:
-    """Return the kind of the number that stands under a key; '' where none does."""
-    if hasattr(form, "kind"):
-        return form.kind if hasattr(form, "parse") else ""
-    return next((kind for _, part in form.parts() if not part.parts() and (kind := kind_of_form(part))), "")
 
 
 def _in_unit(number: Any, kind: str, unit: str) -> Any:
@@ -247,7 +237,7 @@ def _in_unit(number: Any, kind: str, unit: str) -> Any:
 
 
 def _size(value: Any) -> float:
-    number = value.value if isinstance(value, Extreme) else value
+    number = number_of(value)
     return max(map(abs, number), default=0.0) if isinstance(number, tuple) else abs(number or 0.0)
 
 
@@ -264,9 +254,7 @@ def _limit_answers(machine: Machine) -> Iterable[tuple[Answer, float]]:
                     yield Answer(quantity, command, subject.name), bound
 
 
-@lru_cache(maxsize=4)
-def _sweep(spec: Spec) -> Sweep:
-    return Sweep(spec)
+_sweep = lru_cache(maxsize=4)(Sweep)
 
 
 def computed(spec: Spec, company: range, wanted: range) -> list[Row]:

@@ -17,15 +17,15 @@ from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import answers_of, stands_beside
-from kurbel.designs.binding import Binder, tree_of, written
+from kurbel.designs.binding import Binder, written
 from kurbel.designs.columns import Answer, subjects
 from kurbel.designs.sampling import latin_hypercube
-from kurbel.designs.sweep import kind_of_form
 from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine.origin import Origin
+from kurbel.machine_file.given import tree_of
 from kurbel.machine_file.positions import located
-from kurbel.machine_file.source import Source, decode
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import number_of
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
 
@@ -79,13 +79,12 @@ class Uncertainty:
     Raises WrongUncertainty for keys under which no number stands, and for units that do not fit: all of them.
     """
 
-    def __init__(self, source: Source, overrides: Sequence[str], spreads: Mapping[str, str]) -> None:
-        tree, wrong = tree_of(source, overrides), dict[str, str]()
+    def __init__(self, origin: Origin, spreads: Mapping[str, str]) -> None:
+        tree, wrong = tree_of(origin), dict[str, str]()
         texts = _of_each(spreads, lambda key: written(tree, key), wrong)
         self.keys = tuple(texts)
-        self._binder = Binder(source, overrides, self.keys, list(texts.values()))
-        self._kinds = [kind_of_form(self._binder.form(number)) for number in range(len(self.keys))]
-        kinds = dict(zip(self.keys, self._kinds))
+        self._binder = Binder(origin, self.keys, list(texts.values()))
+        kinds = dict(zip(self.keys, self._binder.kinds))
         values = _of_each(self.keys, lambda key: _number(texts[key], kinds[key]), wrong)
         self._values = list(values.values())
         widths = _of_each(values, lambda key: _spread(spreads[key], kinds[key], values[key]), wrong)
@@ -96,7 +95,7 @@ class Uncertainty:
     def _texts(self, shifts: Sequence[float]) -> list[str]:
         """Return the texts of the inputs where each is off by so many of its uncertainties."""
         values = (value + shift * spread for value, shift, spread in zip(self._values, shifts, self._spreads))
-        return [f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._kinds)]
+        return [f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._binder.kinds)]
 
     def _answers(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer]) -> Any:
         """Return the answers (machines, asked) as floats, nan where there are none."""
@@ -107,6 +106,16 @@ class Uncertainty:
 
     def of(self, asked: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
         """Return the uncertainties of those key values that are numbers; counted: goes through parts of a sample."""
+        linear, bends = self._of_first_order(asked)
+        beside = [place for place in bends if stands_beside(self._binder.machine, linear[place].answer)]
+        alone = [place for place in bends if place not in beside]
+        found = dict(enumerate(linear))
+        for places, count, at_once in ((beside, SAMPLE, _AT_ONCE), (alone, SLOW_SAMPLE, _SLOWLY)):
+            found |= zip(places, self._drawn([linear[place] for place in places], count, at_once, counted))
+        return list(found.values())
+
+    def _of_first_order(self, asked: Sequence[Answer]) -> tuple[list[Uncertain], list[int]]:
+        """Return the uncertainties of first order, and the places of those that bend too much for it."""
         steps = [sign * step for step in (_STEP, _STEP / 2, 1.0) for sign in (1, -1)]
         units = np.eye(len(self.keys))
         places = [0 * units[0], *(unit * step for unit in units for step in steps)]
@@ -119,17 +128,9 @@ class Uncertainty:
         bend = np.maximum(np.abs(whole.sum(axis=1) / 2 - found[0]), np.abs(slopes[1] - slopes[0]))
         size = np.sqrt((first**2).sum(axis=0))
         holds = (bend <= np.maximum(_BEND * size, _ROUNDING * np.abs(found[0]))).all(axis=0)
-        linear = [
-            Uncertain(one, float(found[0, k]), float(size[k]), _shares(first[:, k] ** 2)) for k, one in enumerate(kept)
-        ]
-        beside = [stands_beside(self._binder.machine, one.answer) for one in linear]
-        drawn = {
-            own: iter(
-                self._drawn([one for one, flat, kind in zip(linear, holds, beside) if not flat and kind is own], *size)
-            )
-            for own, size in ((True, (SAMPLE, _AT_ONCE, counted)), (False, (SLOW_SAMPLE, _SLOWLY, counted)))
-        }
-        return [one if flat else next(drawn[kind]) for one, flat, kind in zip(linear, holds, beside)]
+        shares = [_shares(squares) for squares in (first**2).T]
+        linear = map(Uncertain, kept, found[0].tolist(), size.tolist(), shares)
+        return list(linear), np.flatnonzero(~holds).tolist()
 
     def _drawn(self, bent: Sequence[Uncertain], count: int, at_once: int, counted: Counted) -> list[Uncertain]:
         """Return by a sample the uncertainties of what bends; shares are the squares of correlations."""
@@ -158,7 +159,7 @@ def _shares(squares: Any) -> tuple[float, ...]:
 
 
 def _float(value: Any) -> float:
-    number = value.value if isinstance(value, Extreme) else value
+    number = number_of(value)
     return number if isinstance(number, (int, float)) else math.nan
 
 
@@ -175,17 +176,14 @@ def _of_each(keys: Iterable[str], told: Callable[[str], Found], wrong: dict[str,
 
 def _number(text: str, kind: str) -> float:
     try:
-        return parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
+        return parse_quantity(text, kind)
     except (UnitError, KeyError):
         raise UsageError(f"{shown(text)!r} is no number that could be off") from None
 
 
 def _spread(text: str, kind: str, value: float) -> float:
     try:
-        if text.endswith("%"):
-            spread = abs(value) * parse_ratio(text)
-        else:
-            spread = parse_ratio(text) if kind == "ratio" else parse_quantity(text, kind)
+        spread = abs(value) * parse_ratio(text) if text.endswith("%") else parse_quantity(text, kind)
     except UnitError as error:
         raise UsageError(str(error)) from None
     if not spread > 0:
@@ -245,16 +243,13 @@ def given_uncertainty(machine: Machine, more: Sequence[tuple[str, str]] = ()) ->
     spreads = dict(machine.uncertainty) | outside
     if not spreads or origin is None:
         return None
-    import os
-
-    source = decode(origin.name, origin.content, os.path.dirname(origin.name))
     try:
-        return Uncertainty(source, origin.overrides, spreads)
+        return Uncertainty(origin, spreads)
     except WrongUncertainty as error:
         wrong = error.faults
     if told := [f"--uncertainty {key}: {wrong[key]}" for key in outside if key in wrong]:
         raise UsageError("; ".join(told))
-    raise source.error(*located(source.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
+    raise origin.error(*located(origin.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
 
 
 def _asked(case: Case, command: str) -> list[Answer]:
@@ -283,17 +278,12 @@ def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], sys
         Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2),
     ]
     for place, key in enumerate(keys):
-        columns.append(Column(key, key, key, "%", tuple(_percent(one.shares[place]) for one in own), alone=2))
+        columns.append(Column(key, key, key, "%", tuple(round(100 * one.shares[place], 1) for one in own), alone=2))
     columns.append(Column("sample", "sample", "sample", "", tuple(one.sample or None for one in own), alone=2))
     title = "Standard uncertainty, and the share of each input in its square"
     heads = ("key_value", "symbol", "unit")
     table = PlaceTable("uncertainty", title, heads, tuple(names), tuple(columns), headed=True)
     return part._replace(place_tables=(*part.place_tables, table))
-
-
-def _percent(share: float) -> float:
-    """Return a share in percent, to a tenth."""
-    return round(100 * share, 1)
 
 
 def _notes(found: Sequence[Uncertain]) -> Iterable[str]:

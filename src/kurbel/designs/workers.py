@@ -27,12 +27,6 @@ def rows_of(sweep: Sweep, rows: range, jobs: int = 1, dask: str = "") -> Iterato
 
     Raises UsageError for an address that does not answer.
     """
-    for chunk in _chunks(sweep, rows, jobs, dask):
-        yield from chunk
-
-
-def _chunks(sweep: Sweep, rows: range, jobs: int, dask: str) -> Iterator[list[Row]]:
-    """Yield the chunks of rows in which these stand, in order."""
     if dask:
         with _cluster(dask) as (submit, workers):
             yield from _gathered(sweep, rows, submit, workers)
@@ -40,7 +34,8 @@ def _chunks(sweep: Sweep, rows: range, jobs: int, dask: str) -> Iterator[list[Ro
         with _processes(jobs) as submit:
             yield from _gathered(sweep, rows, submit, jobs)
     else:
-        yield from (sweep.chunk(company, wanted) for company, wanted in sweep.chunks(rows))
+        for company, wanted in sweep.chunks(rows):
+            yield from sweep.chunk(company, wanted)
 
 
 def likely_jobs(rows: int) -> int:
@@ -50,15 +45,15 @@ def likely_jobs(rows: int) -> int:
     return max(min(cores, _MOST_JOBS, rows // _FOR_ONE), 1)
 
 
-def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: int) -> Iterator[list[Row]]:
-    """Yield the chunks that others compute, in order, with few of them ahead."""
+def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: int) -> Iterator[Row]:
+    """Yield the rows that others compute, in order, with few chunks of them ahead."""
     waiting: deque[Any] = deque()
     for company, wanted in sweep.chunks(rows):
         waiting.append(submit(computed, sweep.spec, company, wanted))
         if len(waiting) > _AHEAD * workers:
-            yield waiting.popleft().result()
+            yield from waiting.popleft().result()
     while waiting:
-        yield waiting.popleft().result()
+        yield from waiting.popleft().result()
 
 
 @contextmanager

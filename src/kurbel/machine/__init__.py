@@ -33,8 +33,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.reading import REFUSED
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.frozen import frozen
-from kurbel.machine.angle_points import CYCLES
-from kurbel.machine.cylinder import COUNTERWEIGHTS, Cylinder, crowded
+from kurbel.machine.cylinder import COUNTERWEIGHTS, CYCLES, Cylinder, crowded
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -58,7 +57,7 @@ def _key_values() -> tuple[dict[str, Quantity], tuple[str, ...]]:
     from kurbel.declared.quantity import by_id
     from kurbel.mechanisms import every_quantity
 
-    known = by_id(every_quantity().all_key_values)
+    known = by_id(*every_quantity().all_key_values)
     return known, tuple(id for id, quantity in known.items() if quantity.listed)
 
 
@@ -313,10 +312,8 @@ class Machine(Described):
     @property
     def trace_files(self) -> tuple[str, ...]:
         """The files that the traces of the machine, or its effort, were read from."""
-        indicators = [
-            piston.indicator for cylinder in self.cylinders for piston in cylinder.pistons if piston.indicator
-        ]
-        measured = (*(end for one in indicators for end in (one.head_end, one.crank_end)), self.effort)
+        pistons = [piston for cylinder in self.cylinders for piston in cylinder.pistons]
+        measured = (*(chamber for piston in pistons for chamber in piston.chambers.values()), self.effort)
         return tuple(dict.fromkeys(file for one in measured for file in getattr(one, "files", ())))
 
     def lean_of(self, cylinder: Cylinder) -> float | None:

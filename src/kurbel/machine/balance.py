@@ -4,7 +4,7 @@ from typing import Any, ClassVar
 
 from kurbel.declared.forms import Choice, Count, Listing, Number, Physical, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.errors import Fault, refuse
+from kurbel.errors import refused
 from kurbel.frozen import frozen
 
 _WEIGHT_KEYS: Keys = {
@@ -84,7 +84,7 @@ class SharedCounterweights(Described):
     def __post_init__(self) -> None:
         if self.planes and (len(self.planes) != 2 or self.planes[0] == self.planes[1]):
             message = "give two different places, such as '[-750 mm, 750 mm]', or leave it out"
-            refuse(Fault(("planes",), f"{len(self.planes)} of them, {len(set(self.planes))} different; {message}"))
+            refused(f"{len(self.planes)} of them, {len(set(self.planes))} different; {message}", "planes")
 
 
 @frozen

@@ -10,9 +10,8 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Choice, Inline, Listing, OneOf, Physical, Record, Text, Variant
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, refuse
+from kurbel.errors import Fault, refuse, refused
 from kurbel.frozen import frozen
-from kurbel.machine.angle_points import CYCLES
 from kurbel.mechanisms import MECHANISMS, Mechanism
 
 if TYPE_CHECKING:
@@ -22,6 +21,9 @@ if TYPE_CHECKING:
     from kurbel.machine.piston import Piston
     from kurbel.machine.resistance import Moment, RamForce
     from kurbel.machine.rod_point import RodPoint
+
+CYCLES = {"two-stroke": 1, "four-stroke": 2}
+"""Cycle -> revolutions of the shaft."""
 
 _SLIDING = ("inclination", "masses", "friction", "ram_force")
 """Keys of a cylinder that only something that slides can have, besides those of its pistons."""
@@ -133,9 +135,9 @@ class Cylinder(Described):
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
         if like:
-            refuse(Fault(("like",), "'like' stands in a list of 'cylinders', which has another one above"))
+            refused("'like' stands in a list of 'cylinders', which has another one above", "like")
         if tandem and piston is None:
-            refuse(Fault(("tandem",), "a tandem piston stands beside the cylinder's own one; give its 'bore'"))
+            refused("a tandem piston stands beside the cylinder's own one; give its 'bore'", "tandem")
         return cls(pistons=() if piston is None else (piston, *tandem), **{"name": "", **keys})
 
     def __post_init__(self) -> None:
@@ -173,18 +175,18 @@ def _of_output(cylinder: Cylinder) -> Iterator[Fault]:
         return
     own = ("bore",) if cylinder.pistons else ()
     for key in (*own, *(key for key in _SLIDING if getattr(cylinder, key) is not None)):
-        yield Fault((key,), f"nothing slides in a {kind}; leave '{key}' out{_instead(key)}")
+        yield Fault((key,), f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}")
     if cylinder.mechanism.turns and cylinder.moment and cylinder.moment.back:
         yield Fault(
             ("moment", "return"), f"the output of a {kind} turns on and has no return stroke; give 'work' alone"
         )
 
 
-def _instead(key: str) -> str:
-    return {
-        "bore": ", with the indicator, or choose a mechanism with a piston",
-        "ram_force": "; the resistance of what swings is a 'moment'",
-    }.get(key, "")
+_INSTEAD = {
+    "bore": ", with the indicator, or choose a mechanism with a piston",
+    "ram_force": "; the resistance of what swings is a 'moment'",
+}
+"""What else to do where nothing slides that could have this key."""
 
 
 def _of_rod(cylinder: Cylinder) -> Iterator[Fault]:

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Described, Keys
-from kurbel.declared.units import Factor
+from kurbel.declared.kinds import Factor
 from kurbel.frozen import frozen
 from kurbel.machine.rectangle import Rectangle
 

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record, positive
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.errors import Fault, Path, refuse
+from kurbel.declared.kinds import MOST_ITEMS
+from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.frozen import frozen
-from kurbel.machine.angle_points import CYCLES
-from kurbel.machine.cylinder import Cylinder
+from kurbel.machine.cylinder import CYCLES, Cylinder
 
 
 @frozen
@@ -57,7 +56,7 @@ class EqualCylinders(Described):
         """Return the cylinders that these keys of a machine file describe; raises RuleError."""
         if count % len(bank_angles):
             message = f"{len(bank_angles)} angles for {count} cylinders; give one for each bank or for each cylinder"
-            refuse(Fault(("bank_angles",), message))
+            refused(message, "bank_angles")
         angles = [bank_angles[index % len(bank_angles)] for index in range(count)]
         places = [None if spacing is None else spacing * angles[:index].count(one) for index, one in enumerate(angles)]
         cylinders = (_standing(each, angle - angles[0], place) for angle, place in zip(angles, places))
@@ -67,7 +66,7 @@ class EqualCylinders(Described):
     def standing(self, order: tuple[int, ...] | None, cycle: float) -> tuple[Cylinder, ...]:
         """Return the cylinders with their crank positions; order: of the machine, cycle: in degrees."""
         if order and self.firing_order:
-            refuse(Fault(("firing_order",), "a firing order also stands in 'cylinders'; leave one of them out"))
+            refused("a firing order also stands in 'cylinders'; leave one of them out", "firing_order")
         if order or self.firing_order:
             where: Path = ("cylinders", "firing_order") if self.firing_order else ("firing_order",)
             return fired(self.cylinders, self.firing_order or order or (), cycle, where)
@@ -76,7 +75,7 @@ class EqualCylinders(Described):
                 "'firing_order' is missing: where the cranks stand; write for instance 'firing_order: 1-3-4-2', or "
                 "list the cylinders with 'crank_position', each 'like' the first"
             )
-            refuse(Fault(("cylinders",), message))
+            refused(message, "cylinders")
         # on one pin each dead centre follows by the angle between the stroke lines
         return tuple(replace(one, crank_position=one.crank_position + one.bank_angle) for one in self.cylinders)
 
@@ -107,7 +106,7 @@ def fired(cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: float, w
     Raises RuleError, `where` the order stands, if it does not name each cylinder, and for positions given besides.
     """
     if len(order) != len(cylinders):
-        refuse(Fault(where, f"it names {len(order)} cylinders, the machine has {len(cylinders)}"))
+        refused(f"it names {len(order)} cylinders, the machine has {len(cylinders)}", *where)
     refuse(
         *(
             Fault(("cylinders", index, "crank_position"), "'firing_order' sets the crank positions; leave it out")

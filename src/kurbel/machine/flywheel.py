@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from kurbel.declared.forms import Number, Record, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, refuse
+from kurbel.errors import refused
 from kurbel.frozen import frozen
 
 CAST_IRON = 7250.0
@@ -67,16 +67,16 @@ class Rim(Described):
             return cls(depth=depth, **keys)
         if inner_diameter >= outer_diameter:
             outer, inner = show(outer_diameter, "length"), show(inner_diameter, "length")
-            refuse(Fault(("inner_diameter",), f"{inner} leaves no rim inside of the outer diameter ({outer})"))
+            refused(f"{inner} leaves no rim inside of the outer diameter ({outer})", "inner_diameter")
         return cls((outer_diameter + inner_diameter) / 2, depth=(outer_diameter - inner_diameter) / 2, **keys)
 
     def __post_init__(self) -> None:
         if self.depth > self.mean_diameter:
             depth, mean = show(self.depth, "length"), show(self.mean_diameter, "length")
-            refuse(Fault(("depth",), f"{depth} is more than the mean diameter ({mean}), that of a disc"))
+            refused(f"{depth} is more than the mean diameter ({mean}), that of a disc", "depth")
         if self.sized_by and not self.depth:
             message = "give 'outer_diameter' and 'inner_diameter', or 'depth' beside 'mean_diameter'"
-            refuse(Fault((self.sized_by,), f"tells no moment of inertia without the depth of the rim; {message}"))
+            refused(f"tells no moment of inertia without the depth of the rim; {message}", self.sized_by)
 
     @property
     def sized_by(self) -> str:
@@ -163,14 +163,10 @@ class Flywheel(Described):
                 message = (
                     "the sizes of the rim tell the moment of inertia, which is given besides; leave one of them out"
                 )
-                refuse(Fault(("rim", rim.sized_by), message))
+                refused(message, "rim", rim.sized_by)
             keys["inertia"] = rim.inertia
         return cls(**keys)
 
     def __post_init__(self) -> None:
         if self.inertia is None and self.fluctuation is None:
-            refuse(
-                Fault(
-                    (), "a flywheel needs 'inertia', 'gd2', 'mass', a 'rim' with its sizes, or the wanted 'fluctuation'"
-                )
-            )
+            refused("a flywheel needs 'inertia', 'gd2', 'mass', a 'rim' with its sizes, or the wanted 'fluctuation'")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from kurbel.declared.forms import Count, Number, Record, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys, check
-from kurbel.errors import Fault, refuse
+from kurbel.errors import Fault, refused
 from kurbel.frozen import frozen
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ class Friction(Described):
         check(self.KEYS, vars(self))
         if all(getattr(self, name) is None for name in ("crosshead", "rings", "constant", *_PINS)):
             given = "'crosshead', 'rings', 'constant', 'crank_pin', 'crosshead_pin' or 'journals'"
-            refuse(Fault((), f"no friction is given; leave 'friction' out or give {given}"))
+            refused(f"no friction is given; leave 'friction' out or give {given}")
 
     @property
     def of_pins(self) -> tuple[str, ...]:

@@ -3,21 +3,20 @@
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
-from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName, not_negative
 from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import Factor
-from kurbel.errors import Fault, Path, refuse
+from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.frozen import frozen
 from kurbel.machine.rectangle import Rectangle, Rectangular
 
 if TYPE_CHECKING:
     from kurbel.machine.drawn import Drawn
 
-CLEARANCE = Number(least=1e-6, most=1e5)
+CLEARANCE = Number("the stroke", least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
-CLEARANCE_OR_NONE = Number(least=1e-6, most=1e5, zero=True)
+CLEARANCE_OR_NONE = Number("the stroke", least=1e-6, most=1e5, zero=True)
 """The same where nothing need be compressed into it: then it may be left out of the theory."""
 
 
@@ -275,10 +274,10 @@ class Indicator(Described):
         """Return the indicator that these keys of a machine file describe; raises RuleError."""
         if head_end is None and crank_end in (None, "mirrored"):
             path: Path = () if crank_end is None else ("crank_end",)
-            refuse(Fault(path, "the indicator shows no pressure; give 'head_end'"))
+            refused("the indicator shows no pressure; give 'head_end'", *path)
         for end, chamber in (("head_end", head_end), ("crank_end", crank_end)):
             if pressures == "absolute" and getattr(chamber, "drawn", False):
-                refuse(Fault((end, "drawn"), "a drawn card counts from the atmospheric line; write 'pressures: gauge'"))
+                refused("a drawn card counts from the atmospheric line; write 'pressures: gauge'", end, "drawn")
         # a mirrored card is the same card: each chamber's fractions count from its own dead centre
         other = head_end if isinstance(crank_end, str) else crank_end
         return cls(head_end, other, pressures == "absolute")

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from kurbel.declared.forms import Listing, Number, OneOf, Physical, Record, not_negative
 from kurbel.declared.keys import Described, Form, Key, Keys, check
-from kurbel.errors import Fault, refuse
+from kurbel.errors import refused
 from kurbel.frozen import frozen
 from kurbel.numerics.arithmetic import total
 
@@ -116,9 +116,7 @@ class Masses(Described):
         """Return the masses that these keys of a machine file describe."""
         sums = {name: total(*part) if isinstance(part, tuple) else part for name, part in parts.items()}
         if not sums and connecting_rod is None and rotating is None:
-            refuse(
-                Fault((), "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …")
-            )
+            refused("no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …")
         if connecting_rod is not None and not isinstance(connecting_rod, ConnectingRod):
             connecting_rod = ConnectingRod(connecting_rod)
         crosshead, undivided = sums.get("crosshead"), "reciprocating" in sums

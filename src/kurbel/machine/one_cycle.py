@@ -1,12 +1,12 @@
 """A machine with one measured cycle of its traces in place of the mean of all."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.machine.angle_points import CYCLES
-from kurbel.machine.cylinder import Cylinder
+from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.piston import Piston
 from kurbel.machine.trace import Trace
 
@@ -16,28 +16,27 @@ def of_cycle(machine: Machine, number: int) -> Machine:
 
     Raises UsageError where no trace has so many.
     """
-    counts: list[int] = []
-    cylinders = tuple(
-        replace(one, pistons=tuple(_piston(machine, one, index, number, counts) for index in range(len(one.pistons))))
-        for one in machine.cylinders
-    )
+    counts = [len(trace.over(period).samples) for trace, period in _of_several(machine)]
     if not counts:
         raise UsageError("--cycle: no trace of this machine has several cycles; leave it out")
     if number > min(counts):
         raise UsageError(f"--cycle {number}: there are {min(counts)} cycles, counted from 1")
-    return replace(machine, cylinders=cylinders)
+    # a mirrored end stays the same trace
+    alone: dict[int, Any] = {id(trace): trace.of_cycle(number, period) for trace, period in _of_several(machine)}
+
+    def changed(piston: Piston) -> Piston:
+        ends = {end: alone[id(chamber)] for end, chamber in piston.chambers.items() if id(chamber) in alone}
+        return replace(piston, indicator=replace(piston.indicator, **ends)) if piston.indicator else piston
+
+    cylinders = (replace(one, pistons=tuple(map(changed, one.pistons))) for one in machine.cylinders)
+    return replace(machine, cylinders=tuple(cylinders))
 
 
-def _piston(machine: Machine, cylinder: Cylinder, index: int, number: int, counts: list[int]) -> Piston:
-    piston, period = cylinder.pistons[index], 360.0 * CYCLES[machine.cycle_of_piston(cylinder, index)]
-    if piston.indicator is None:
-        return piston
-    ends: dict[str, Any] = {"head_end": piston.indicator.head_end, "crank_end": piston.indicator.crank_end}
-    found: dict[int, Trace] = {}
-    for chamber in ends.values():
-        if isinstance(chamber, Trace) and len(whole := chamber.over(period).samples) > 1:
-            counts.append(len(whole))
-            if number <= len(whole):  # a mirrored end stays the same trace
-                found[id(chamber)] = chamber.of_cycle(number, period)
-    changed = {end: found.get(id(chamber), chamber) for end, chamber in ends.items()}
-    return replace(piston, indicator=replace(piston.indicator, **changed))
+def _of_several(machine: Machine) -> Iterator[tuple[Trace, float]]:
+    """Yield the traces of several cycles, each with the degrees of one."""
+    for cylinder in machine.cylinders:
+        for index, piston in enumerate(cylinder.pistons):
+            period = 360.0 * CYCLES[machine.cycle_of_piston(cylinder, index)]
+            for chamber in piston.chambers.values():
+                if isinstance(chamber, Trace) and len(chamber.over(period).samples) > 1:
+                    yield chamber, period

@@ -1,11 +1,55 @@
-"""What a machine was read from."""
+"""What a machine is read from."""
 
+import os
+import re
+from collections.abc import Iterable
 from typing import NamedTuple
+
+from kurbel.declared.reading import LONGEST_VALUE, shown
+from kurbel.errors import Fault, MachineFileError, Path
+
+_LINE_END = r"\r\n|[\n\r\x85\u2028\u2029]"  # what YAML takes for the end of a line, no more
 
 
 class Origin(NamedTuple):
-    """A machine file as it was read: the name that messages show, its bytes, and what was set over it (`KEY=VALUE`)."""
+    """A machine file: the name that messages show, its text, the folder that paths in it are relative to, its bytes.
+
+    overrides: what is set over it, `KEY=VALUE` each.
+    """
 
     name: str
-    content: bytes
+    text: str
+    folder: str = ""
+    content: bytes = b""
     overrides: tuple[str, ...] = ()
+
+    def set_over(self, overrides: Iterable[str]) -> "Origin":
+        """Return it with these values set over it, too."""
+        return self._replace(overrides=(*self.overrides, *overrides))
+
+    @property
+    def stem(self) -> str:
+        """The name a machine gets from its file."""
+        stem = os.path.splitext(os.path.basename(self.name))[0].strip()
+        named = stem.isprintable() and stem and not self.name.startswith("<")
+        return stem[:LONGEST_VALUE] if named else "machine"
+
+    def error(self, *faults: Fault) -> MachineFileError:
+        """Return these faults as an error, each once and in the order of the file."""
+        lines = [*lines_of(self.text), ""]  # the end of a file may be a place, too
+        return MachineFileError(
+            self.name,
+            [
+                fault._replace(path=_shown_path(fault.path), source_line=lines[fault.line - 1])
+                for fault in sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column))
+            ],
+        )
+
+
+def lines_of(text: str) -> list[str]:
+    """Return the lines of a text, split where YAML splits them."""
+    return re.split(_LINE_END, text)
+
+
+def _shown_path(path: Path) -> Path:
+    return tuple(shown(step) if isinstance(step, str) else step for step in path)

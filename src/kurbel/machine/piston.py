@@ -10,7 +10,7 @@ from kurbel.errors import Fault, Path, refuse
 from kurbel.frozen import frozen
 
 if TYPE_CHECKING:
-    from kurbel.machine.indicator import Indicator
+    from kurbel.machine.indicator import Chamber, Indicator
 
 
 @frozen
@@ -57,23 +57,26 @@ class Piston(Described):
         """Effective area at the crank end in m²."""
         return math.pi / 4 * (self.bore - self.crank_end_rod) * (self.bore + self.crank_end_rod)
 
+    @property
+    def chambers(self) -> "dict[str, Chamber]":
+        """What the indicator shows, by the key of the end."""
+        ends = ("head_end", "crank_end") if self.indicator else ()
+        return {end: chamber for end in ends if (chamber := getattr(self.indicator, end)) is not None}
+
     def cycle_beside(self, cycle: str) -> str:
         """Return the working cycle of a tandem piston: that of the cylinder, or the two-stroke one of its cards.
 
         A pump or a compressor works in two strokes, whatever drives it: its cards then run twice in 720°.
         """
-        chambers = (self.indicator.head_end, self.indicator.crank_end) if self.indicator else ()
-        given = [chamber.cycles for chamber in chambers if chamber is not None]
+        given = [chamber.cycles for chamber in self.chambers.values()]
         fits = all(cycle in each for each in given)
         return cycle if fits or not all("two-stroke" in each for each in given) else "two-stroke"
 
     def indicator_faults(self, cycle: str, ambient: float, path: Path) -> list[Fault]:
         """Return what of the indicator does not fit the cycle of the machine or the ambient pressure in Pa."""
-        if self.indicator is None:
-            return []
-        lift = 0.0 if self.indicator.absolute else ambient
+        lift = 0.0 if self.indicator and self.indicator.absolute else ambient
         return [
             Fault((*path, "indicator", end), message)
-            for end, chamber in (("head_end", self.indicator.head_end), ("crank_end", self.indicator.crank_end))
-            if chamber is not None and (message := chamber.fault_in(cycle, lift))
+            for end, chamber in self.chambers.items()
+            if (message := chamber.fault_in(cycle, lift))
         ]

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from kurbel.declared.forms import Physical
-from kurbel.declared.forms.scalars import refused
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import show
+from kurbel.errors import refused
 from kurbel.frozen import frozen
 
 

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from kurbel.declared.forms import not_negative
 from kurbel.declared.keys import Described, Keys, check
-from kurbel.errors import Fault, refuse
+from kurbel.errors import refused
 from kurbel.frozen import frozen
 
 
@@ -27,7 +27,7 @@ class RamForce(Described):
     def of_keys(cls, work: float | None = None, **others: float) -> "RamForce":
         """Return the resistance that these keys of a machine file describe; raises RuleError where it has none."""
         if work is None and not others:
-            refuse(Fault((), "give 'work', the force on the working stroke, or 'return', or both"))
+            refused("give 'work', the force on the working stroke, or 'return', or both")
         return cls(work or 0.0, others.get("return", 0.0))
 
 

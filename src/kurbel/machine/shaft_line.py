@@ -87,8 +87,7 @@ class ShaftPart(Described):
         found = [(kind, keys) for kind, keys in each if keys]
         if len(found) > 1:
             (one, first), (other, second), *_ = found
-            message = f"'{first[0]}' is of {one}, '{second[0]}' of {other}; make two items of them"
-            yield Fault((second[0],), message)
+            yield Fault((second[0],), f"'{first[0]}' is of {one}, '{second[0]}' of {other}; make two items of them")
         elif not found:
             piece = "'stiffness', or 'diameter' and 'length', of a piece of shaft"
             yield Fault((), f"give 'inertia' or 'cylinder' of a mass, {piece}, or 'gear'")

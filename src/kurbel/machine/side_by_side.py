@@ -4,7 +4,7 @@ Each machine has kept its own rules at birth, so that these records, made withou
 """
 
 import math
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
@@ -22,7 +22,8 @@ _MOST_LINES = 40
 """Points of a card with more of which a machine is answered alone: its pieces are many enough to fill an array."""
 
 
-_ALONE = object()
+class _Alone(Exception):
+    """A machine has what must be answered alone."""
 
 
 class Kinds:
@@ -37,8 +38,10 @@ class Kinds:
             return None
         cycles = tuple(machine.cycle_of_piston(cylinder, number) for number in range(len(cylinder.pistons)))
         kind = (_number(machine.speed), _number(machine.ambient), machine.rotation, machine.cycle_of(cylinder), cycles)
-        own = self._kind(cylinder)
-        return None if own is _ALONE else (*kind, own)
+        try:
+            return (*kind, self._kind(cylinder))
+        except _Alone:
+            return None
 
     def _kind(self, value: Any) -> Any:
         if value is None or isinstance(value, (str, bool)):
@@ -51,33 +54,27 @@ class Kinds:
 
     def _looked_at(self, value: Any) -> Any:
         if isinstance(value, tuple):
-            return self._together(value)
+            return tuple(map(self._kind, value))
         if isinstance(value, Indicator):
             mirrored = value.crank_end is value.head_end
-            ends = _chamber(value.head_end), _chamber(value.crank_end)
-            return _ALONE if _ALONE in ends else (Indicator, *ends, mirrored, value.absolute)
+            return Indicator, _chamber(value.head_end), _chamber(value.crank_end), mirrored, value.absolute
         if getattr(value, "of_pins", ()):  # whose loads bend where they all but vanish
-            return _ALONE
+            raise _Alone
         if is_dataclass(value):
-            own = self._together(one for name, one in vars(value).items() if name != "name")
-            return _ALONE if own is _ALONE else (type(value), own)
+            return (type(value), *(self._kind(one) for name, one in vars(value).items() if name != "name"))
         return value
-
-    def _together(self, values: Iterable[Any]) -> Any:
-        found = tuple([self._kind(one) for one in values])
-        return _ALONE if _ALONE in found else found
 
 
 def _number(value: Any) -> str | None:
     return None if value is None else "0" if value == 0 else "inf" if value == math.inf else "number"
 
 
-def _chamber(chamber: Any) -> Any:
-    if chamber is None:
-        return None
+def _chamber(chamber: Any) -> str | None:
     lines = getattr(chamber, "lines", ())
     measured = hasattr(chamber, "angles")  # over the crank angle, and no process over the stroke
-    return _ALONE if measured or sum(len(one.fractions) for one in lines) > _MOST_LINES else "process"
+    if measured or sum(len(one.fractions) for one in lines) > _MOST_LINES:
+        raise _Alone
+    return None if chamber is None else "process"
 
 
 def side_by_side(lots: Sequence[tuple[Lot, Indices]], name: str) -> tuple[Machine, Cylinder]:

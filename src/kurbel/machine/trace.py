@@ -9,9 +9,9 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.errors import Fault, refuse
+from kurbel.errors import refused
 from kurbel.frozen import frozen
-from kurbel.machine.angle_points import CYCLES
+from kurbel.machine.cylinder import CYCLES
 
 PERIODS = (360.0, 720.0)
 _EVEN = 1e-3  # of a step: what rounded angles may miss
@@ -67,10 +67,10 @@ class Trace:
 
     def __post_init__(self) -> None:
         if self.angles.ndim != 1 or len(self.angles) < 2 or self.samples.shape[1:] != self.angles.shape:
-            refuse(Fault((), "a trace needs as many pressures as angles, two or more"))
+            refused("a trace needs as many pressures as angles, two or more")
         finite = np.isfinite(self.angles).all() and np.isfinite(self.samples).all()
         if not finite or (np.diff(self.angles) < 0).any() or not self.period:
-            refuse(Fault((), "a trace has finite samples at angles that rise over one whole cycle, 360 or 720 deg"))
+            refused("a trace has finite samples at angles that rise over one whole cycle, 360 or 720 deg")
 
     @cached_property
     def pressures(self) -> Array:

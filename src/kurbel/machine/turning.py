@@ -2,13 +2,12 @@
 
 from typing import Any, ClassVar
 
-from kurbel.declared.bounds import Point, size_faults
 from kurbel.declared.forms import Number, Points, UnitName, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.units import Factor
-from kurbel.errors import Fault, refuse
+from kurbel.declared.kinds import Factor, Point, size_faults
+from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.frozen import frozen
-from kurbel.machine.angle_points import CYCLES, angle_faults, beyond_cycle
+from kurbel.machine.cylinder import CYCLES
 
 _TORQUE_KEYS: Keys = {
     "unit": Key(UnitName("torque"), "Unit of the torques", needs="points"),
@@ -33,13 +32,13 @@ class Effort:
     @classmethod
     def of_points(cls, unit: Factor, points: list[Point]) -> "Effort":
         """Return the diagram of the points that stand under `points` in a machine file; raises RuleError."""
-        refuse(*(angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))))
+        refuse(*(_angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))))
         up, down = unit
         return cls(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
 
     def cycle_fault(self, cycle: str) -> str:
         """Return what does not fit the cycle of the machine, or an empty text."""
-        return beyond_cycle(self.angles[-1], cycle)
+        return _beyond_cycle(self.angles[-1], cycle)
 
     @property
     def key(self) -> str:
@@ -94,10 +93,10 @@ class Load(Described):
         forms = {"power_law": self.power, "slip": self.slip, "points": self.diagram}
         given = [name for name, value in forms.items() if value is not None]
         if not given:
-            refuse(Fault((), "give one of 'power_law', 'slip' or 'points'; or write 'load: constant'"))
+            refused("give one of 'power_law', 'slip' or 'points'; or write 'load: constant'")
         if len(given) > 1:
             names = " and ".join(f"'{name}'" for name in given)
-            refuse(Fault((given[1],), f"{names} are different loads; keep one of them"))
+            refused(f"{names} are different loads; keep one of them", given[1])
 
     def cycle_fault(self, cycle: str) -> str:
         """Return what does not fit the cycle of the machine, or an empty text."""
@@ -117,3 +116,32 @@ class Coupling(Described):
         "damping": not_negative("damping", "Torque per speed of twist", "d", absent="0"),
         "inertia": positive("inertia", "Moment of inertia of what is driven", "J_2", required=True),
     }
+
+
+def _angle_faults(points: list[Point], path: Path) -> list[Fault]:
+    """Return what is wrong with the angles of a diagram over one cycle.
+
+    They run from 0 to 360 or 720 deg and do not turn back; two points at one angle are a jump, three are one too many.
+    """
+    for i, (angle, _) in enumerate(points):
+        if not 0 <= angle <= 720:
+            return [Fault((*path, i), f"{angle:g} deg is outside the cycle; angles run from 0 to 360 or 720 deg")]
+        if i and angle < points[i - 1][0]:
+            return [
+                Fault((*path, i), f"{angle:g} deg after {points[i - 1][0]:g} deg; put the points in order of the angle")
+            ]
+        if i >= 2 and angle == points[i - 2][0]:
+            return [Fault((*path, i), f"three points at {angle:g} deg; a jump has two")]
+    if not points or points[0][0] != 0 or points[-1][0] not in (360, 720):
+        runs = f"this one runs from {points[0][0]:g} to {points[-1][0]:g} deg" if points else "this one has no points"
+        whole = "a diagram runs from 0 to 360 deg, or to 720 deg in a four-stroke cycle"
+        return [Fault(path, f"{whole}, {runs}; give the values at both ends of the cycle, with angles in degrees")]
+    return []
+
+
+def _beyond_cycle(last: float, cycle: str) -> str:
+    """Return what to write when a diagram ends at an angle (in degrees) that the cycle does not have; else ''."""
+    whole = 360.0 * CYCLES[cycle]
+    if last <= whole:  # one of a single turn repeats in the second one of a four-stroke cycle
+        return ""
+    return f"the diagram runs to {last:g} deg, a {cycle} cycle has {whole:g} deg; write 'cycle: four-stroke' at the top"

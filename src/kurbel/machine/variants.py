@@ -57,24 +57,12 @@ def one_of(record: Any, place: int) -> Any:
 
 def one_kind(record: Any) -> None:
     """Raise Parted where a number is 0, or infinite, for some variants only: formulas tell these apart."""
-    for numbers in _numbers(record):
-        numbers.alike()
+    changed(record, Varied.alike, {})
 
 
 def varies(record: Any) -> bool:
     """Return whether anything differs among the variants of a record."""
-    return bool(_numbers(record))
-
-
-def _numbers(record: Any) -> list[Varied]:
-    found: list[Varied] = []
-
-    def kept(numbers: Varied) -> Varied:
-        found.append(numbers)
-        return numbers
-
-    changed(record, kept, {})
-    return found
+    return changed(record, lambda numbers: None, {}) is not record
 
 
 def changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]) -> Any:

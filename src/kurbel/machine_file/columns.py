@@ -13,7 +13,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.numerals import familiar
-from kurbel.errors import Fault, RuleError, refuse
+from kurbel.errors import Fault, RuleError, refused
 from kurbel.machine_file.text_file import text_of
 
 MOST_NUMBERS = 5_000_000
@@ -73,13 +73,12 @@ def read_columns(file: str, columns: Columns) -> Table:
     """Return the columns of a file; raises RuleError with the line of the first that cannot be read."""
     text = text_of(file)
     if columns.delimiter == columns.decimal and '"' not in text:
-        message = "a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'"
-        refuse(Fault(("decimal",), message))
+        refused("a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'", "decimal")
     table = _table(text, columns)
     if not table.size:
-        refuse(Fault(("file",), f"{os.path.basename(file)} has no figures{_below(columns)}"))
+        refused(f"{os.path.basename(file)} has no figures{_below(columns)}", "file")
     if table.size > MOST_NUMBERS:
-        refuse(Fault(("file",), f"has more than {MOST_NUMBERS} numbers; thin them out"))
+        refused(f"has more than {MOST_NUMBERS} numbers; thin them out", "file")
     angles = None if columns.angle is None else table[:, 0]
     values = table[:, -len(columns.values) :].T
     return Table(angles, values, lambda index: f"line {_line_number(text, columns, index)}")

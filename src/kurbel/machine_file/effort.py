@@ -2,12 +2,10 @@
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kurbel.declared.bounds import Point, size_faults
-from kurbel.declared.forms import Number, Points, UnitName
-from kurbel.declared.forms.file_path import FilePath
+from kurbel.declared.forms import FilePath, Number, Points, UnitName
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.units import Factor
-from kurbel.errors import Fault, refuse
+from kurbel.declared.kinds import Factor, Point, size_faults
+from kurbel.errors import refuse, refused
 from kurbel.machine.turning import Effort, Harmonics
 from kurbel.machine_file.samples import Layout, layout_keys, samples_of
 
@@ -52,7 +50,7 @@ class Known(Described):
     ) -> Effort | Harmonics:
         """Return the effort that these keys describe, its file read; raises RuleError."""
         if sum(one is not None for one in (points, file, harmonics)) != 1:
-            refuse(Fault((), "give one of 'points', 'file' or 'harmonics'"))
+            refused("give one of 'points', 'file' or 'harmonics'")
         if harmonics is not None:
             return _by_harmonics(unit, mean, harmonics)
         return Effort.of_points(unit, points or []) if file is None else _from_file(unit, file, **layout)
@@ -63,7 +61,7 @@ def _by_harmonics(unit: Factor, mean: float, harmonics: list[tuple[float, float,
     for index, (order, _, _) in enumerate(harmonics):
         if not 0 < order <= _HIGHEST:
             message = f"order {order:g} is no number of periods per turn; it must be more than 0, at most {_HIGHEST}"
-            refuse(Fault(("harmonics", index, 0), message))
+            refused(message, "harmonics", index, 0)
     sizes = [(0.0, mean), *((order, abs(c) + abs(s)) for order, c, s in harmonics)]
     refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque", ())))
     return Harmonics(mean * up / down, tuple((n, c * up / down, s * up / down) for n, c, s in harmonics))
@@ -74,7 +72,7 @@ def _from_file(unit: Factor, file: str, angle_zero: float = 0.0, **layout: Any) 
     samples = samples_of(file, Layout.of_keys("torque", **layout), "torque", lambda torques: torques * up / down)
     if len(samples.values) > 1:
         lap = samples.angles[-1] - samples.angles[0]
-        refuse(Fault(("file",), f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle"))
+        refused(f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle", "file")
     angles, torques = _from_zero(samples, angle_zero)
     closed = ("the closing sample is missing; the first one closes the cycle",) if samples.completed else ()
     return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed))

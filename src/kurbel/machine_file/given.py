@@ -3,35 +3,38 @@
 from collections.abc import Iterator
 from typing import Any
 
-from kurbel.declared.reading import Reading
+from kurbel.declared.reading import Reading, Tree
 from kurbel.errors import Path, path_text
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
-from kurbel.machine_file.source import decode
+from kurbel.machine_file.reader import set_over
 
 _MOST = 12
 _LONGEST = 160
 
 
 def given(origin: Origin) -> tuple[tuple[str, str], ...]:
-    """Return every key of a machine file that was read without a fault, by its dotted path, with its value."""
-    tree = parse(decode(origin.name, origin.content).text, Reading())
-    if origin.overrides:
-        from kurbel.machine_file.overrides import overridden, read_override
-
-        overridden(tree, [read_override(one) for one in origin.overrides])
-    return tuple((path_text(path), value) for path, value in _leaves(tree, ()))
+    """Return every key of a machine file, by its dotted path, with its value in one line."""
+    return tuple((path_text(path), _short(value)) for path, value in leaves(tree_of(origin)))
 
 
-def _leaves(node: Any, path: Path) -> Iterator[tuple[Path, str]]:
+def tree_of(origin: Origin) -> Tree:
+    """Return a file that was read without a fault as mappings, lists and texts, with what is set over it."""
+    tree: Tree = parse(origin.text, Reading())
+    set_over(tree, origin)
+    return tree
+
+
+def leaves(node: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
+    """Yield the keys of a tree below which no key stands, each by its path with its value: a text or a list."""
     if isinstance(node, dict):
         for name, below in node.items():
-            yield from _leaves(below, (*path, name))
+            yield from leaves(below, (*path, name))
     elif isinstance(node, list) and any(isinstance(one, dict) for one in node):
         for number, below in enumerate(node):
-            yield from _leaves(below, (*path, number))
+            yield from leaves(below, (*path, number))
     else:
-        yield path, _short(node)
+        yield path, node
 
 
 def _short(value: Any) -> str:

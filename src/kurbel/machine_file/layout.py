@@ -28,14 +28,18 @@ def advice(text: str, number: int, line: str, columns: Columns, cell: str = "") 
 
 def _layouts(lines: Sequence[str], columns: Columns) -> Iterator[Columns]:
     """Yield the layouts, the given one first, in which figures begin below lines that are no rows."""
-    signs = dict.fromkeys((columns.delimiter, *_SIGNS))
-    for delimiter, decimal in itertools.product(signs, dict.fromkeys((columns.decimal, ".", ","))):
-        if delimiter != decimal or any('"' in line for line in lines):
-            for wanted in _columns_tried(columns):
-                one = wanted._replace(delimiter=delimiter, decimal=decimal, skip_rows=0)
-                begin = _begin_of_figures(lines, one)
-                if begin is not None:
-                    yield one._replace(skip_rows=begin)
+    quoted = any('"' in line for line in lines)
+    for signs in _signs_tried(columns):
+        for one in _columns_tried(signs) if quoted or signs.delimiter != signs.decimal else ():
+            begin = _begin_of_figures(lines, one)
+            if begin is not None:
+                yield one._replace(skip_rows=begin)
+
+
+def _signs_tried(columns: Columns) -> Iterator[Columns]:
+    for delimiter in dict.fromkeys((columns.delimiter, *_SIGNS)):
+        for decimal in dict.fromkeys((columns.decimal, ".", ",")):
+            yield columns._replace(delimiter=delimiter, decimal=decimal)
 
 
 def _columns_tried(columns: Columns) -> Iterator[Columns]:
@@ -72,9 +76,8 @@ def _written(found: Columns, given: Columns) -> tuple[str, ...]:
 
 def _guess(lines: Sequence[str], number: int, line: str, columns: Columns, cell: str) -> str:
     """Return what the first bad line itself hints at: signs by which it is a row, or what stands in the way."""
-    signs, decimals = dict.fromkeys((columns.delimiter, *_SIGNS)), dict.fromkeys((columns.decimal, ".", ","))
-    tried = (columns._replace(delimiter=sign, decimal=decimal) for sign in signs for decimal in decimals)
-    found = next((one for one in tried if one.delimiter != one.decimal and _is_row(line, one)), None)
+    signs = _signs_tried(columns)
+    found = next((one for one in signs if one.delimiter != one.decimal and _is_row(line, one)), None)
     if found:
         return f"; write {' and '.join(_written(found, columns))}"
     rows = [index for index, text in enumerate(lines, 1) if index > columns.skip_rows and _is_row(text, columns)]

@@ -8,10 +8,9 @@ from typing import ClassVar
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms import not_negative
-from kurbel.declared.forms.file_path import FilePath
+from kurbel.declared.forms import FilePath, not_negative
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.errors import Fault, RuleError, refuse
+from kurbel.errors import RuleError, refused
 from kurbel.frozen import frozen
 from kurbel.machine_file.samples import Layout, samples_of
 from kurbel.numerics.vertex import Vertex, vertex
@@ -52,7 +51,7 @@ def dead_centre(given: Motored, layout: Layout, base: Callable[[Array], Array], 
         samples = samples_of(given.motored, layout, "pressure", base, against)
         angles, pressures = _one_cycle(samples.angles, samples.values)
         if len(angles) < _FEWEST:
-            refuse(Fault((), f"has {len(angles)} samples only; measure it finer"))
+            refused(f"has {len(angles)} samples only; measure it finer")
         whole = _vertex(angles, pressures, _HALF)
         _refuse_fired(angles, pressures, whole.place)
     except RuleError as error:
@@ -94,15 +93,15 @@ def _refuse_fired(angles: Array, pressures: Array, top: float) -> None:
             message = (
                 f"is no motored trace: {near:g} to {far:g} deg after its peak the pressure rises to {times} before"
             )
-            refuse(Fault((), f"{message}; name one without combustion"))
+            refused(f"{message}; name one without combustion")
 
 
 def _vertex(angles: Array, pressures: Array, width: float) -> Vertex:
     """Return the peak of the parabola through the samples so near to the top one; raises RuleError."""
     top = float(angles[len(angles) // 2])
     if np.count_nonzero(np.abs(angles - top) <= width / 2) < _NEAR:
-        refuse(Fault((), f"has fewer than five samples within {width / 2:g} deg of its peak; measure it finer"))
+        refused(f"has fewer than five samples within {width / 2:g} deg of its peak; measure it finer")
     found = vertex(angles, pressures, top, width)
     if found is None:
-        raise RuleError(Fault((), "is no motored trace: it has no peak that a parabola could be laid through"))
+        refused("is no motored trace: it has no peak that a parabola could be laid through")
     return found

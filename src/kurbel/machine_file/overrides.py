@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
 from kurbel.errors import Fault, MachineFileError, Path, UsageError
@@ -27,18 +27,22 @@ def read_override(text: str) -> Override:
     key, equals, value = text.partition("=")
     steps = [step.strip() for step in key.replace("[", ".").replace("]", "").split(".")]
     if not equals or not all(steps):
-        raise UsageError(f"--set {shown(text)}: write KEY=VALUE, such as --set cylinders.0.bore='450 mm'")
+        _refused(text, "write KEY=VALUE, such as --set cylinders.0.bore='450 mm'")
     if any(step.endswith(":") for step in steps):
-        raise UsageError(f"--set {shown(text)}: write KEY=VALUE, without the colon")
+        _refused(text, "write KEY=VALUE, without the colon")
     reading = Reading()
     try:
         # an argument that is no UTF-8 has its bytes as surrogates
         tree = parse(decode("--set", value.encode("utf-8", "surrogatepass")).text, reading)
     except MachineFileError as error:
-        raise UsageError(f"--set {shown(text)}: {error.faults[0].message}") from None
+        reading.faults += error.faults
     if reading.faults:
-        raise UsageError(f"--set {shown(text)}: {reading.faults[0].message}")
+        _refused(text, reading.faults[0].message)
     return Override(text, tuple(int(step) if step.isdecimal() else step for step in steps), tree)
+
+
+def _refused(text: str, why: str) -> NoReturn:
+    raise UsageError(f"--set {shown(text)}: {why}")
 
 
 def overridden(tree: Tree, overrides: Iterable[Override]) -> None:
@@ -57,23 +61,19 @@ def _set(node: Any, one: Override, place: int, step: str | int) -> Any:
     if isinstance(node, list):
         if not isinstance(step, int) or step >= len(node):
             where, instead = _dotted(one.path[:place]), (*one.path[:place], _near(step, node), *one.path[place + 1 :])
-            raise UsageError(
-                f"--set {shown(one.text)}: '{where}' is a list; its items are 0 to {len(node) - 1}: write "
-                f"{_dotted(instead)}=…"
-            )
+            items = f"its items are 0 to {len(node) - 1}: write {_dotted(instead)}=…"
+            _refused(one.text, f"'{where}' is a list; {items}")
         if last:
             node[step] = one.value
         return node[step]
     if not isinstance(node, dict):
         where = _dotted(one.path[:place])
-        raise UsageError(f"--set {shown(one.text)}: nothing stands below '{where}', which is {kind_of(node)}")
+        _refused(one.text, f"nothing stands below '{where}', which is {kind_of(node)}")
     if last:
         node[str(step)] = one.value
     elif is_nothing(node.get(str(step), Plain())):
         if isinstance(one.path[place + 1], int):
-            raise UsageError(
-                f"--set {shown(one.text)}: there is no list '{_dotted(one.path[: place + 1])}' in the file"
-            )
+            _refused(one.text, f"there is no list '{_dotted(one.path[: place + 1])}' in the file")
         node[str(step)] = {}
     return node[str(step)]
 

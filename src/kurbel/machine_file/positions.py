@@ -4,9 +4,7 @@ from typing import Any
 
 from kurbel.declared.reading import Reading, StopReading
 from kurbel.errors import Fault, Path
-from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import Builder, run
-from kurbel.machine_file.source import decode
 
 _Place = tuple[int, int]
 
@@ -20,11 +18,6 @@ def located(text: str, faults: list[Fault]) -> list[Fault]:
     locator = _Locator({fault.path[:length] for fault in faults for length in range(len(fault.path) + 1)})
     run(text, locator)
     return [fault.at(*locator.place_of(fault)) for fault in faults]
-
-
-def located_in(origin: Origin, faults: list[Fault]) -> list[Fault]:
-    """Return faults that have a path each with its place in a machine file that has been read."""
-    return located(decode(origin.name, origin.content).text, faults)
 
 
 class _Locator(Builder):

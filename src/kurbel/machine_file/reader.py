@@ -1,7 +1,7 @@
 """From a machine file to a `Machine`: text, tree, records; or one error with all faults."""
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,6 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import parse
-from kurbel.machine_file.source import Source
 
 if TYPE_CHECKING:
     from kurbel.machine_file.overrides import Override
@@ -27,7 +26,7 @@ def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Machine
     overrides: values in place of those of the file, such as `cylinders.0.bore=450 mm`. Raises UsageError for one that
     cannot be set, MachineFileError with every fault of the file, UnreadableFileError where there is none to read.
     """
-    return read_machine(source.read(path), overrides)
+    return read_machine(source.read(path).set_over(overrides))
 
 
 def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Machine:
@@ -39,35 +38,34 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
     0.8
     """
     # half of a surrogate pair is no text: let the decoder say so
-    return read_machine(source.decode(name, text.encode("utf-8", "surrogatepass")), overrides)
+    return read_machine(source.decode(name, text.encode("utf-8", "surrogatepass")).set_over(overrides))
 
 
-def reading_of(origin: Source) -> Reading:
-    """Return a pass over a source that has not begun."""
+def reading_of(origin: Origin) -> Reading:
+    """Return a pass over a file that has not begun."""
     return Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
 
 
-def read_machine(origin: Source, overrides: Iterable[str] = (), reading: Reading | None = None) -> Machine:
-    """Return the machine that a source describes; overrides and errors: see `load`; reading: see `reading_of`."""
+def read_machine(origin: Origin, reading: Reading | None = None) -> Machine:
+    """Return the machine that a file describes; errors: see `load`; reading: see `reading_of`."""
     reading = reading or reading_of(origin)
     tree = parse(origin.text, reading)
     known = len(reading.faults)  # YAML has told their places
-    given = tuple(overrides)
-    set_over = _set_over(tree, given)
+    overrides = set_over(tree, origin)
     machine = REFUSED if tree is REFUSED else _machine(reading, tree, origin.stem)
     if reading.faults:
-        raise origin.error(*reading.faults[:known], *_located(origin.text, reading.faults[known:], set_over))
+        raise origin.error(*reading.faults[:known], *_located(origin.text, reading.faults[known:], overrides))
     assert isinstance(machine, Machine)
-    return replace(machine, origin=Origin(origin.name, origin.content, given))
+    return replace(machine, origin=origin)
 
 
-def _set_over(tree: Any, overrides: Sequence[str]) -> "list[Override]":
-    """Put the overrides into the tree, and return them."""
-    if not overrides or not isinstance(tree, dict):
+def set_over(tree: Any, origin: Origin) -> "list[Override]":
+    """Put the overrides of a file into its tree, and return them."""
+    if not origin.overrides or not isinstance(tree, dict):
         return []
     from kurbel.machine_file.overrides import overridden, read_override
 
-    read = [read_override(one) for one in overrides]
+    read = [read_override(one) for one in origin.overrides]
     overridden(tree, read)
     return read
 
@@ -83,14 +81,14 @@ def _machine(reading: Reading, tree: Any, stem: str) -> Any:
         return REFUSED
 
 
-def _located(text: str, faults: list[Fault], set_over: "Sequence[Override]") -> list[Fault]:
+def _located(text: str, faults: list[Fault], overrides: "list[Override]") -> list[Fault]:
     """Return the faults with their places in the text, or with the override that they are of."""
     if not faults:
         return []
     from kurbel.machine_file.positions import located
 
-    if set_over:
+    if overrides:
         from kurbel.machine_file.overrides import named
 
-        faults = named(faults, set_over)
+        faults = named(faults, overrides)
     return [*(one for one in faults if one.override), *located(text, [one for one in faults if not one.override])]

@@ -93,38 +93,23 @@ def samples_of(
 
     base: turns figures of the file into the base of their unit; against: angles count against the rotation.
     """
+    import numpy as np
+
     from kurbel.machine_file.columns import Columns, read_columns
+    from kurbel.machine_file.recording import Recording
     from kurbel.machine_file.whole_cycle import whole_cycle
 
     between = DELIMITERS.get(layout.delimiter, layout.delimiter)
     angle = None if layout.angle_step else layout.angle_column
-    import numpy as np
-
     table = read_columns(file, Columns(angle, layout.columns, layout.skip_rows, between, _DECIMALS[layout.decimal]))
     with np.errstate(over="ignore"):  # what is beyond all numbers is told with its line
         angles, values = layout.degrees(table.angles, table.values.shape[1]), base(table.values)
 
-    def named(index: int) -> Fault:
-        return Fault(("file",), table.line(index))
-
     try:
-        return whole_cycle(*turned(angles, values, named, against), what)
+        return whole_cycle(Recording.of(angles, values, lambda row: Fault(("file",), table.line(row)), against), what)
     except RuleError as error:
         if layout.recorded_speed is None:
             raise
         (fault,) = error.faults
         asked = "" if "angle_unit" in fault.message else _BY_TIME
         raise RuleError(fault._replace(message=fault.message + asked)) from None
-
-
-def turned(
-    angles: "Array", values: "Array", named: Callable[[int], Fault], against: bool
-) -> "tuple[Array, Array, Callable[[int], Fault]]":
-    """Return samples as they are, or those that were counted `against` the rotation in the order of time."""
-    if not against:
-        return angles, values, named
-    steps = angles[1:] - angles[:-1]
-    if (steps > 0).sum() > (steps < 0).sum():  # they stand in the order of the angle, not of time
-        last = len(angles) - 1
-        return -angles[::-1], values[:, ::-1], lambda index: named(last - index)
-    return -angles, values, named

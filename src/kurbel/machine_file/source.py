@@ -1,16 +1,13 @@
 """The bytes of a machine file and the text they make, before any YAML is looked at."""
 
 import os
-import re
-from typing import NamedTuple
 
 from kurbel.declared.numerals import SPACES
-from kurbel.declared.reading import LONGEST_VALUE, shown
-from kurbel.errors import Fault, MachineFileError, Path, UnreadableFileError
+from kurbel.errors import Fault, MachineFileError, UnreadableFileError
+from kurbel.machine.origin import Origin, lines_of
 
 SIZE_LIMIT = 16 * 1024 * 1024
 """Largest machine file in bytes; a longer measurement belongs into a file of its own."""
-_LINE_END = r"\r\n|[\n\r\x85\u2028\u2029]"  # what YAML takes for the end of a line, no more
 _SPACE = dict.fromkeys(map(ord, SPACES), " ")  # YAML takes them for letters
 _UNPRINTABLE = frozenset(
     map(chr, (*range(9), 11, 12, *range(14, 32), *range(127, 133), *range(134, 160), 0xFFFE, 0xFFFF))
@@ -18,38 +15,7 @@ _UNPRINTABLE = frozenset(
 """As YAML has it, without the surrogates, which no UTF-8 holds."""
 
 
-class Source(NamedTuple):
-    """A machine file as text: the name that messages show, the folder that paths in it are relative to, its bytes."""
-
-    name: str
-    text: str
-    folder: str = ""
-    content: bytes = b""
-
-    @property
-    def stem(self) -> str:
-        """The name a machine gets from its file."""
-        stem = os.path.splitext(os.path.basename(self.name))[0].strip()
-        named = stem.isprintable() and stem and not self.name.startswith("<")
-        return stem[:LONGEST_VALUE] if named else "machine"
-
-    def lines(self) -> list[str]:
-        """Return the lines, split where YAML splits them."""
-        return re.split(_LINE_END, self.text)
-
-    def error(self, *faults: Fault) -> MachineFileError:
-        """Return these faults as an error, each once and in the order of the file."""
-        lines = [*self.lines(), ""]  # the end of a file may be a place, too
-        return MachineFileError(
-            self.name,
-            [
-                fault._replace(path=_shown_path(fault.path), source_line=lines[fault.line - 1])
-                for fault in sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column))
-            ],
-        )
-
-
-def read(path: str | os.PathLike[str]) -> Source:
+def read(path: str | os.PathLike[str]) -> Origin:
     """Return the machine file at a path, or standard input for "-".
 
     Raises UnreadableFileError when there is no such file, and MachineFileError when it is no UTF-8 text.
@@ -79,7 +45,7 @@ def _why_unreadable(name: str, error: OSError | ValueError) -> str:
     return f"{name} cannot be read: {error.strerror if isinstance(error, OSError) else error}"
 
 
-def decode(name: str, content: bytes, folder: str = "") -> Source:
+def decode(name: str, content: bytes, folder: str = "") -> Origin:
     """Return the text of a machine file, which is UTF-8 with or without a byte-order mark.
 
     Raises UnreadableFileError when it is too long, and MachineFileError at the first byte that is no UTF-8.
@@ -90,16 +56,16 @@ def decode(name: str, content: bytes, folder: str = "") -> Source:
             "put measured pressures into a csv file and name it under 'trace'"
         )
     if content[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in content[:2]:
-        raise Source(name, "").error(Fault((), "the file is UTF-16; save it as UTF-8").at(0, 0))
+        raise Origin(name, "").error(Fault((), "the file is UTF-16; save it as UTF-8").at(0, 0))
     try:
-        source = Source(name, content.decode("utf-8-sig").translate(_SPACE), folder, content)
+        origin = Origin(name, content.decode("utf-8-sig").translate(_SPACE), folder, content)
     except UnicodeDecodeError as error:
         raise _encoding_error(name, content, error.start) from None
-    if found := _UNPRINTABLE.intersection(source.text):
-        place = min(map(source.text.index, found))
-        message = f"the character U+{ord(source.text[place]):04X} cannot be printed; remove it"
-        raise source.error(Fault((), message).at(*_place_of(source.text, place)))
-    return source
+    if found := _UNPRINTABLE.intersection(origin.text):
+        place = min(map(origin.text.index, found))
+        message = f"the character U+{ord(origin.text[place]):04X} cannot be printed; remove it"
+        raise origin.error(Fault((), message).at(*_place_of(origin.text, place)))
+    return origin
 
 
 def _encoding_error(name: str, content: bytes, start: int) -> MachineFileError:
@@ -107,15 +73,11 @@ def _encoding_error(name: str, content: bytes, start: int) -> MachineFileError:
     read_as = content[start : start + 1].decode("latin-1")
     hint = f", in Latin-1 the letter '{read_as}'" if read_as.isalpha() else ""
     message = f"byte 0x{content[start]:02X} is no UTF-8{hint}; save the file as UTF-8"
-    readable = Source(name, before + content[start:].decode("latin-1"))
+    readable = Origin(name, before + content[start:].decode("latin-1"))
     return readable.error(Fault((), message).at(*_place_of(before, len(before))))
 
 
 def _place_of(text: str, index: int) -> tuple[int, int]:
     """Return line and column, from 0, of the character at an index."""
-    lines = re.split(_LINE_END, text[:index])
+    lines = lines_of(text[:index])
     return len(lines) - 1, len(lines[-1])
-
-
-def _shown_path(path: Path) -> Path:
-    return tuple(shown(step) if isinstance(step, str) else step for step in path)

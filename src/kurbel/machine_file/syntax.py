@@ -5,14 +5,14 @@ from typing import Any
 
 from kurbel.declared.reading import shown
 from kurbel.errors import Fault
-from kurbel.machine_file.source import Source
+from kurbel.machine.origin import lines_of
 
 _GLUED = re.compile(r"^[\s-]*([A-Za-z_]\w*):(?=[^\s/:])(.*)$")
 
 
 def explain(error: Any, text: str) -> Fault:
     """Return the fault that an error of the YAML scanner or parser stands for."""
-    lines = Source("", text).lines()
+    lines = lines_of(text)
     mark = error.problem_mark or error.context_mark
     begin = error.context_mark or mark
     # the end of the text lies below the last line when that one is complete

@@ -2,7 +2,7 @@
 
 import os
 
-from kurbel.errors import Fault, RuleError, refuse
+from kurbel.errors import Fault, RuleError, refused
 
 LARGEST_FILE = 64 * 2**20
 """Bytes; a million samples have about twenty million."""
@@ -29,23 +29,23 @@ def text_of(file: str) -> str:
     """
     text = _decoded(_bytes_of(file)).replace("\r\n", "\n").replace("\r", "\n")
     if "\0" in text:
-        refuse(Fault(("file",), "is no text: it has zero bytes; export the samples as CSV"))
+        refused("is no text: it has zero bytes; export the samples as CSV", "file")
     if _has_long_line(text):
-        refuse(Fault(("file",), f"has a line of more than {_LONGEST_LINE} characters"))
+        refused(f"has a line of more than {_LONGEST_LINE} characters", "file")
     return text
 
 
 def _bytes_of(file: str) -> bytes:
     try:
         if os.path.getsize(file) > LARGEST_FILE:
-            refuse(Fault(("file",), f"is larger than {LARGEST_FILE // 2**20} MiB; thin out the samples"))
+            refused(f"is larger than {LARGEST_FILE // 2**20} MiB; thin out the samples", "file")
         with open(file, "rb") as stream:
             raw = stream.read()
     except OSError as error:
         raise RuleError(Fault(("file",), f"cannot be read: {error.strerror or error}")) from None
     for begin, (what, advice) in _FOREIGN.items():
         if raw.startswith(begin):
-            refuse(Fault(("file",), f"{os.path.basename(file)} is {what}, no text; {advice}"))
+            refused(f"{os.path.basename(file)} is {what}, no text; {advice}", "file")
     return raw
 
 

@@ -2,14 +2,12 @@
 
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from kurbel.declared.bounds import Point
-from kurbel.declared.forms import Choice, ColumnRange, Number, OneOf, Physical, Points, Record, UnitName
-from kurbel.declared.forms.file_path import FilePath
+from kurbel.declared.forms import Choice, ColumnRange, FilePath, Number, OneOf, Physical, Points, Record, UnitName
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.units import Factor
-from kurbel.errors import Fault, refuse
+from kurbel.declared.kinds import Factor, Point
+from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.indicator import CLEARANCE
-from kurbel.machine_file.samples import Layout, layout_keys, samples_of, turned
+from kurbel.machine_file.samples import Layout, layout_keys, samples_of
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -70,8 +68,8 @@ class Measured(Described):
         points: list[Point] | None = None,
         angle_zero: "float | Motored" = 0.0,
         angle_sense: str = "with",
-        scale: float | None = None,
-        offset: float | None = None,
+        scale: float = 1.0,
+        offset: float = 0.0,
         pegging: "Pegging | str | None" = None,
         drift: str | None = None,
         clearance: float | None = None,
@@ -101,8 +99,8 @@ class Measured(Described):
             level=drift == "linear",
             pegging=Pegging() if isinstance(pegging, str) else pegging,
             against=against,
-            scale=1.0 if scale is None else scale,
-            offset=offset or 0.0,
+            scale=scale,
+            offset=offset,
         )
 
 
@@ -110,26 +108,26 @@ class _Gauge(NamedTuple):
     """What turns figures of a file into pressures in Pa."""
 
     unit: Factor
-    scale: float | None
-    offset: float | None
+    scale: float
+    offset: float
 
     def pressures(self, figures: "Array") -> "Array":
         """Return pressures of the shape of the figures; raises RuleError for a scale of 0."""
         if self.scale == 0:
-            refuse(Fault(("scale",), "0 leaves no pressure; write the pressure for 1 of the file"))
+            refused("0 leaves no pressure; write the pressure for 1 of the file", "scale")
         up, down = self.unit
-        found = figures * up / down
-        return found * (1.0 if self.scale is None else self.scale) + (self.offset or 0.0)
+        return figures * up / down * self.scale + self.offset
 
 
 def _from_points(points: list[Point], gauge: _Gauge, against: bool) -> "Samples":
     import numpy as np
 
+    from kurbel.machine_file.recording import Recording
     from kurbel.machine_file.whole_cycle import whole_cycle
 
     angles, values = np.array(points, dtype=float).T
     pressures = gauge.pressures(values[np.newaxis])
-    return whole_cycle(*turned(angles, pressures, lambda index: Fault(("points", index), ""), against))
+    return whole_cycle(Recording.of(angles, pressures, lambda row: Fault(("points", row), ""), against))
 
 
 def _zero(

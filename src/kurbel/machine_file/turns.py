@@ -1,13 +1,10 @@
-"""Records of many turns or cycles, one below the other, cut into laps that lie over one another."""
-
-from typing import NamedTuple
+"""Recordings of many turns or cycles, one below the other, cut into laps that lie over one another."""
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
-from kurbel.errors import RuleError
+from kurbel.arrays import Array
 from kurbel.machine.trace import PERIODS
-from kurbel.machine_file.holes import Named, refuse_large_holes, said, usual_step
+from kurbel.machine_file.recording import Recording, refuse_large_holes, usual_step
 
 _ALIKE = 1e-3
 """Of a step: what the angles of two laps may differ by and still be the same, rounded."""
@@ -19,41 +16,33 @@ _REST = 0.05
 """Share of a lap from which on what follows the last whole one is told."""
 
 
-class Record(NamedTuple):
-    """Samples in the order of time: angles (n,) in degrees, values (k, n), and of which row each is (n,)."""
-
-    angles: Array
-    values: Array
-    rows: Indices
-
-
-def lapped(record: Record, named: Named) -> tuple[Record, tuple[str, ...]]:
-    """Return a record of one lap as it is, of several with all laps over the angles of the first; and what to say.
+def lapped(recording: Recording) -> tuple[Recording, tuple[str, ...]]:
+    """Return a recording of one lap as it is, of several with all laps over the angles of the first; and what to say.
 
     A lap is as long as the angle counts before it begins anew; of an angle that counts on and on, one turn, of which
     two make a four-stroke cycle. What follows the last whole lap is left out. Raises RuleError for laps with holes.
     """
-    lap = _lap_of(record.angles)
+    lap = _lap_of(recording.angles)
     if not lap:
-        _refuse_other_turns(record.angles, named)
-        return record, ()
-    unwrapped = _unwrapped(record, lap)
+        _refuse_other_turns(recording)
+        return recording, ()
+    unwrapped = _unwrapped(recording, lap)
     angles = unwrapped.angles
     step = usual_step(angles)
     laps = int((angles[-1] - angles[0] + 1.5 * min(step, lap / 20)) // lap)
     bounds = np.searchsorted(angles, angles[0] + lap * np.arange(laps + 1) - min(1e-6 * lap, step / 2))
     if laps < 2 or (np.diff(bounds) < 2).any():
         return unwrapped, ()
-    refuse_large_holes(angles, lambda index: named(int(unwrapped.rows[index])))
+    refuse_large_holes(unwrapped)
     left = len(angles) - int(bounds[-1])
     told = (f"the {left} samples after lap {laps} of {lap:g} deg are left out",) if left > _REST * bounds[1] else ()
     found = _laid_over(unwrapped, bounds.tolist(), lap)
-    if not (np.diff(record.angles) < 0).any():
-        _refuse_unlike(found, len(angles), named)
+    if not (np.diff(recording.angles) < 0).any():
+        _refuse_unlike(found, len(angles))
     return found, told
 
 
-def _refuse_unlike(laps: Record, samples: int, named: Named) -> None:
+def _refuse_unlike(laps: Recording, samples: int) -> None:
     """Raise RuleError for turns of an angle that counts on which are no turns of an engine: it may count samples."""
     if len(laps.values) > 2 and _likeness(laps.values) < _LEAST_ALIKE:
         whole = PERIODS[-1]
@@ -61,7 +50,7 @@ def _refuse_unlike(laps: Record, samples: int, named: Named) -> None:
             f"the angle counts on over {len(laps.values)} turns that are not alike; if it numbers samples, write how "
             f"far apart they are, such as 'angle_step: {whole / samples:.4g} deg' for one cycle of {whole:g} deg"
         )
-        raise RuleError(said(named(0), message))
+        laps.refuse(0, message)
 
 
 def _likeness(laps: Array) -> float:
@@ -71,45 +60,44 @@ def _likeness(laps: Array) -> float:
     return float((swing[2:] * swing[:-2]).mean()) / whole if whole else 1.0
 
 
-def _refuse_other_turns(angles: Array, named: Named) -> None:
+def _refuse_other_turns(recording: Recording) -> None:
     """Raise RuleError for an angle that begins anew after more than two turns."""
-    back = np.flatnonzero(np.diff(angles) < 0)
+    back = np.flatnonzero(np.diff(recording.angles) < 0)
     if len(back):
-        span = float(np.ptp(angles))
+        span = float(np.ptp(recording.angles))
         message = (
             f"the angle begins anew after {span:.10g} deg; a turn has 360, a four-stroke cycle 720 deg: other units?"
             f"{' Or is the first row a heading? Then skip it' if back[0] == 0 else ''}"
         )
-        raise RuleError(said(named(int(back[0]) + 1), message))
+        recording.refuse(int(back[0]) + 1, message)
 
 
 def _lap_of(angles: Array) -> float:
-    """Return after how many degrees the angle of a record begins anew, 0 where it holds one cycle only."""
+    """Return after how many degrees the angle of a recording begins anew, 0 where it holds one cycle only."""
     if (np.diff(angles) < 0).any():
         span = float(angles.max() - angles.min())
         return next((period for period in PERIODS if span <= period * (1 + 1e-9)), 0.0)
     return PERIODS[0] if angles[-1] - angles[0] > PERIODS[-1] * (1 + 1e-9) else 0.0
 
 
-def _unwrapped(record: Record, lap: float) -> Record:
-    """Return the record with angles that count on; a closing sample gives way to the first of the next lap."""
-    angles, values, rows = record
-    steps = np.diff(angles)
-    counted = angles + lap * np.concatenate(([0], np.cumsum(steps < 0)))
+def _unwrapped(recording: Recording, lap: float) -> Recording:
+    """Return the recording with angles that count on; a closing sample gives way to the first of the next lap."""
+    steps = np.diff(recording.angles)
+    counted = recording.angles + lap * np.concatenate(([0], np.cumsum(steps < 0)))
     closing = np.append((steps < 0) & (np.diff(counted) <= 1e-9 * lap), False)
-    return Record(counted[~closing], values[:, ~closing], rows[~closing])
+    return recording._replace(angles=counted).taken(~closing)
 
 
-def _laid_over(record: Record, bounds: list[int], lap: float) -> Record:
+def _laid_over(recording: Recording, bounds: list[int], lap: float) -> Recording:
     """Return all laps over the angles of the first, straight between samples where they have not the same."""
-    angles, values, rows = record
-    first, of_first = angles[: bounds[1]], rows[: bounds[1]]
-    count, laps = len(first), len(bounds) - 1
+    angles, values, *_ = recording
+    lap_1, laps = recording.taken(slice(bounds[1])), len(bounds) - 1
+    first, count = lap_1.angles, bounds[1]
     offsets = lap * np.arange(laps)
     if bounds == [count * number for number in range(laps + 1)]:
         each = angles[: bounds[-1]].reshape(laps, count) - offsets[:, np.newaxis]
         if np.abs(each - first).max() <= _ALIKE * lap / count:
-            return Record(first, values[:, : bounds[-1]].reshape(-1, count), of_first)
+            return lap_1._replace(values=values[:, : bounds[-1]].reshape(-1, count))
     wanted = (first + offsets[:, np.newaxis]).ravel()
     found = [np.interp(wanted, angles, column).reshape(laps, count) for column in values]
-    return Record(first, np.concatenate(found), of_first)
+    return lap_1._replace(values=np.concatenate(found))

@@ -5,7 +5,7 @@ the crank angle is made of. What a new mechanism must supply stands in `Mechanis
 """
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
@@ -45,20 +45,12 @@ class Offer(NamedTuple):
     times: tuple[str, ...] = ()
 
 
-def own_motion(id: str, symbol: str, kind: str, text: str) -> Quantity:
-    """Declare a column that a mechanism adds to `kurbel motion`."""
-    return Quantity(id, symbol, kind, text, commands=("motion",), after="b")
-
-
-def own_force(id: str, symbol: str, kind: str, text: str, called: str, after: str = "N") -> Quantity:
-    """Declare a column that a mechanism adds to `kurbel forces`, with its extremes, and what those are called."""
-    return Quantity(id, symbol, kind, text, "", ("forces",), ("forces",), called, after=after)
-
-
-def turning_column(id: str, symbol: str, kind: str, text: str, after: str, plain: str = "") -> Quantity:
-    """Declare a column that tells how the rod turns, on request."""
-    both = ("motion", "forces")
-    return Quantity(id, symbol, kind, text, plain, both, after=after, on_request=both)
+own_motion = partial(Quantity, commands=("motion",), after="b")
+"""Declares a column that a mechanism adds to `kurbel motion`."""
+own_force = partial(Quantity, commands=("forces",), extremes=("forces",), after="N")
+"""Declares a column that a mechanism adds to `kurbel forces`, with extremes, of which `called` says what they are."""
+on_request = partial(Quantity, commands=("motion", "forces"), on_request=("motion", "forces"))
+"""Declares a column that a mechanism adds to both, where it is asked for, behind the one that it names."""
 
 
 class KeyOffer(NamedTuple):

@@ -43,7 +43,7 @@ _FORCE = "force of the sliding block on the crank pin"
 BLOCK_OFFERS = (
     Offer(own_motion("c_block", "c_b", "velocity", _SPEED), lambda one, angle: one.block_slope(angle), ("omega",)),
     Offer(
-        own_force("F_pin", "F_z", "force", "Force of the sliding block on the crank pin, in the sense of P", _FORCE),
+        own_force("F_pin", "F_z", "force", f"{_FORCE.capitalize()}, in the sense of P", called=_FORCE),
         lambda one, angle: one.pin_force_factor(angle),
         ("along_rod",),
     ),

@@ -9,9 +9,9 @@ from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, RuleError
+from kurbel.errors import refused
 from kurbel.frozen import frozen
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, turning_column
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, on_request
 from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.four_bar_loop import Loop
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
@@ -28,8 +28,8 @@ def _transmission(id: str, end: str, text: str) -> KeyOffer:
 
 
 def _coupler_column(end: str, symbol: str, kind: str, text: str) -> Quantity:
-    plain = f"theta_K{end}"
-    return turning_column(f"theta_coupler{end}", symbol, kind, f"{text} of the coupler", "theta_ddot", plain)
+    id, plain = f"theta_coupler{end}", f"theta_K{end}"
+    return on_request(id, symbol, kind, f"{text} of the coupler", plain, after="theta_ddot")
 
 
 COUPLER_OFFERS = turning_offers(
@@ -80,7 +80,7 @@ class FourBar(Mechanism):
         # lengths that were written in decimals meet a change point only within their rounding
         rounding = 2 * math.ulp(links[longest])
         if gap <= rounding or shortest not in ("crank", "frame"):
-            raise RuleError(Fault(("crank",), self._locked(shortest, longest, gap, rounding)))
+            refused(self._locked(shortest, longest, gap, rounding), "crank")
 
     def _locked(self, shortest: str, longest: str, gap: float, rounding: float) -> str:
         def named(name: str) -> str:
@@ -116,10 +116,6 @@ class FourBar(Mechanism):
     def loop(self) -> Loop:
         """The four links over the frame."""
         return Loop.of(self.crank, self.coupler, self.rocker, self.frame)
-
-    def direction(self, angle: CrankAngle) -> tuple[Any, Any]:
-        """Return (sin θ, cos θ) of the rocker."""
-        return self.loop.at(angle).direction
 
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return θ in radians; where it turns fully, it runs on with φ."""

@@ -13,7 +13,7 @@ from kurbel.mechanisms.slider_crank import CRANK_KEYS
 from kurbel.numerics.extreme import Extreme
 
 _CALLED = "force on each of the two guides of a yoke"
-_N_PAIR = own_force("N_pair", "N_2", "force", f"{_CALLED.capitalize()}, opposite to one another", _CALLED)
+_N_PAIR = own_force("N_pair", "N_2", "force", f"{_CALLED.capitalize()}, opposite to one another", called=_CALLED)
 
 
 @frozen

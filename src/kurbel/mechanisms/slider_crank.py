@@ -10,9 +10,9 @@ from kurbel.declared.forms import Number, Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, RuleError
+from kurbel.errors import refused
 from kurbel.frozen import frozen
-from kurbel.mechanisms import Mechanism, Offer, fan, turning_column
+from kurbel.mechanisms import Mechanism, Offer, fan, on_request
 from kurbel.numerics.arithmetic import arsinh, bearing, every, sqrt, total, ulp, where
 from kurbel.numerics.extreme import Extreme
 
@@ -28,33 +28,32 @@ CRANK_KEYS: Keys = {
 """The size of the crank, shared by the mechanisms that can be given by their stroke."""
 
 
-def _book(id: str, symbol: str, kind: str, text: str, after: str) -> Quantity:
-    both = ("motion", "forces")
-    return Quantity(f"{id}_book", symbol, kind, f"{text}, first order in λ", "", both, after=after, on_request=both)
+def _book(id: str, symbol: str, kind: str, text: str) -> Quantity:
+    return on_request(f"{id}_book", symbol, kind, f"{text}, first order in λ", after=id)
 
 
 ROD_OFFERS = (
     Offer(
-        _book("x", "x_0", "length", "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)", "x"),
+        _book("x", "x_0", "length", "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)"),
         lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_displacement(a.sin, a.cos, lam)),
     ),
     Offer(
-        _book("c", "c_0", "velocity", "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)", "c"),
+        _book("c", "c_0", "velocity", "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)"),
         lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_velocity(a.sin, a.cos, lam)),
         ("omega",),
     ),
     Offer(
-        _book("b", "b_0", "acceleration", "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)", "b"),
+        _book("b", "b_0", "acceleration", "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)"),
         lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_acceleration(a.sin, a.cos, lam)),
         ("omega", "omega"),
     ),
     Offer(
-        turning_column("psi_dot", "ψ̇", "angular_velocity", "Angular velocity of the rod, dψ/dt", "b"),
+        on_request("psi_dot", "ψ̇", "angular_velocity", "Angular velocity of the rod, dψ/dt", after="b"),
         lambda one, angle: -one.coupler_at(angle).slope,
         ("omega",),
     ),
     Offer(
-        turning_column("psi_ddot", "ψ̈", "angular_acceleration", "Angular acceleration of the rod", "b"),
+        on_request("psi_ddot", "ψ̈", "angular_acceleration", "Angular acceleration of the rod", after="b"),
         lambda one, angle: -one.coupler_at(angle).curvature,
         ("omega", "omega"),
     ),
@@ -112,9 +111,9 @@ class SliderCrank(Mechanism):
 
     def __post_init__(self) -> None:
         if not (0 < self.crank < math.inf and self.rod > 0 and abs(self.offset) < math.inf):
-            raise RuleError(Fault(("crank",), "crank and rod must be positive, crank and offset finite"))
+            refused("crank and rod must be positive, crank and offset finite", "crank")
         if self.rod != math.inf and total(self.rod, -self.crank, -abs(self.offset)) <= self._rounding:
-            raise RuleError(Fault(("rod",), self._too_short()))
+            refused(self._too_short(), "rod")
 
     @property
     def _rounding(self) -> float:
@@ -332,12 +331,12 @@ def _crank_of_stroke(stroke: float, rod: float | None, rod_ratio: float | None, 
     if rod is not None:
         span = (rod - half) * (rod + half)
         if span <= offset * offset:
-            raise RuleError(Fault(("rod",), f"{show(rod, 'length')} is too short for this stroke and offset"))
+            refused(f"{show(rod, 'length')} is too short for this stroke and offset", "rod")
         return half * sqrt(1 - offset * offset / span)
     assert rod_ratio is not None
     # k² u² − (1 + k²) u + (ε² + 1) = 0 for u = (R/half)², ε = e/half; the root that is 1 for ε = 0
     square, eps2 = rod_ratio * rod_ratio, (offset / half) ** 2
     root = (square - 1) ** 2 - 4 * square * eps2
     if root < 0:
-        raise RuleError(Fault(("offset",), f"{show(offset, 'length')} is too large for this stroke and rod_ratio"))
+        refused(f"{show(offset, 'length')} is too large for this stroke and rod_ratio", "offset")
     return half * sqrt((1 + square + sqrt(root)) / (2 * square))

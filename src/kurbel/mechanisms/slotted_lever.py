@@ -7,7 +7,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, RuleError
+from kurbel.errors import refused
 from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
 from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area, sum_along
@@ -74,21 +74,20 @@ class SlottedLever(Mechanism):
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
         if not (self.slides or self._forked):
-            raise RuleError(Fault(("link",), "has no lever's end to hang on; give 'lever' with it"))
+            refused("has no lever's end to hang on; give 'lever' with it", "link")
         projected_area(self.pin_diameter, self.pin_length)
         if self.crank == self.frame:
             same = show(self.crank, "length")
-            message = f"{same} is also the crank: the pin would pass through the lever's pivot"
-            raise RuleError(Fault(("frame",), message))
+            refused(f"{same} is also the crank: the pin would pass through the lever's pivot", "frame")
         if math.isinf(self.link) and self.ram_height is not None:
-            raise RuleError(Fault(("ram_height",), "has no meaning for a fork head; give 'link' with it"))
+            refused("has no meaning for a fork head; give 'link' with it", "ram_height")
         if not math.isfinite(self._height):
-            raise RuleError(Fault(("ram_height",), "must be finite"))
+            refused("must be finite", "ram_height")
         if not self._forked:
             check_lengths(link=self.link)
             fault = self._full_turn_fault() if self.rotates else self._swing_fault()
             if fault:
-                raise RuleError(Fault(("link",), f"{show(self.link, 'length')} {fault}"))
+                refused(f"{show(self.link, 'length')} {fault}", "link")
 
     def _full_turn_fault(self) -> str:
         if math.fsum((self.link, -self._end, -abs(self._height))) > 0:
@@ -179,10 +178,6 @@ class SlottedLever(Mechanism):
         crank, frame, gap = self._shares
         reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
         return _Lever(crank * angle.sin / reach, sum_along(frame, crank, gap, angle) / reach, reach)
-
-    def direction(self, angle: CrankAngle) -> tuple[Any, Any]:
-        """Return (sin θ, cos θ) of the lever's tilt from the line of the pivots."""
-        return self._lever_at(angle)[:2]
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return the crank with its block on the lever, and the ram on its line, which is upright where φ = 0 lies."""

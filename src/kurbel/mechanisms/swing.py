@@ -63,8 +63,9 @@ SWING_VALUES = (
 )
 """Of a mechanism with `swing_at`, and a `swing` in degrees, None where the member turns fully."""
 
+_CALLED = "force in the coupler"
 F_COUPLER = Offer(
-    own_force("F_coupler", "F_K", "force", "Force in the coupler, thrust positive", "force in the coupler", "M_out"),
+    own_force("F_coupler", "F_K", "force", f"{_CALLED.capitalize()}, thrust positive", called=_CALLED, after="M_out"),
     lambda one, angle: one.coupler_force_factor(angle),
     ("M_out",),
 )

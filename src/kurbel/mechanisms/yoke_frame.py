@@ -14,7 +14,7 @@ from kurbel.mechanisms import Offer, check_lengths, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 
 _TEXT, _CALLED = "Bending moment of N on the piston rod at its stuffing box", "bending moment of N on the piston rod"
-_M_BEND = own_force("M_bend", "M_b", "torque", _TEXT, _CALLED)
+_M_BEND = own_force("M_bend", "M_b", "torque", _TEXT, called=_CALLED)
 
 
 @frozen

@@ -1,7 +1,6 @@
 """The few operations beside + − × ÷ that the formulas need, for floats, arrays, jets and high-precision numbers."""
 
 import math
-from collections.abc import Iterable, Iterator
 from typing import Any
 
 
@@ -102,9 +101,14 @@ def total(*terms: Any) -> Any:
     whole, missed = terms[0], 0.0
     for term in terms[1:]:
         before, whole = whole, whole + term
-        of_term = whole - before
-        missed = missed + ((before - (whole - of_term)) + (term - of_term))
+        missed = missed + lost(before, term, whole)
     return whole + missed
+
+
+def lost(before: Any, term: Any, whole: Any) -> Any:
+    """Return by what a sum misses its two terms as it is rounded, exactly (Knuth)."""
+    of_term = whole - before
+    return (before - (whole - of_term)) + (term - of_term)
 
 
 _ROUNDING = 16 * 2.0**-52
@@ -122,25 +126,3 @@ def unless_cancelled(whole: Any, sizes: Any) -> Any:
     import numpy as np
 
     return np.where(np.abs(whole) > _ROUNDING * sizes, whole, 0.0)
-
-
-def running_sums(terms: Iterable[float]) -> Iterator[float]:
-    """Yield the sum of the first one, two, … terms, each rounded once (Shewchuk).
-
-    >>> list(running_sums([1e20, 1.0, -1e20]))
-    [1e+20, 1e+20, 1.0]
-    """
-    parts: list[float] = []  # they do not overlap, and their sum is exact
-    for term in terms:
-        parts = [*_joined(parts, term)]
-        yield math.fsum(parts) if math.isfinite(parts[-1]) else parts[-1]
-
-
-def _joined(parts: list[float], term: float) -> Iterator[float]:
-    """Yield parts that do not overlap, whose sum is exactly that of the given ones and a term."""
-    for part in parts:
-        large, small = (part, term) if abs(part) >= abs(term) else (term, part)
-        term = large + small
-        if rest := small - (term - large):
-            yield rest
-    yield term

@@ -11,8 +11,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Flags
 from kurbel.numerics.cyclic import around
-from kurbel.numerics.elements import STAGES, Elements, Prepared, rule
-from kurbel.numerics.legendre import legendre
+from kurbel.numerics.elements import STAGES, Elements, legendre, rule
 
 _TOLERANCE = 1e-13
 """What the last two Legendre coefficients of an element may be, over the swing of the unknown."""
@@ -20,13 +19,17 @@ _ROUNDS = 60
 _MOST_ELEMENTS = 20_000
 
 
-class Equation(Prepared, Protocol):
+class Equation(Protocol):
     """y′ = f(φ, y) with m unknowns y of about one size, smooth between its breaks.
 
     y may not fall to `floor(φ)`; `noise` in y is not looked into.
     """
 
     noise: float
+
+    def prepared(self, degrees: Array, within: Array) -> Array:
+        """Return what hangs on the angle alone at angles (k, n), as (…, k, n)."""
+        ...
 
     def rate(self, prepared: Array, y: Array) -> tuple[Array, Array]:
         """Return f and ∂f/∂y, per radian, at y (k, n, m): (k, n, m) and (k, n, m, m)."""
@@ -44,14 +47,13 @@ class Equation(Prepared, Protocol):
 class Periodic(NamedTuple):
     """A periodic solution: Legendre coefficients (k, m, s + 1) on elements.
 
-    start, values: y at the starts (k, m) and at the nodes (k, s, m) of the elements; growth: the logarithm of what is
-    left of a small disturbance after the cycle (Floquet).
+    y: at the starts and the nodes of the elements, (k, s + 1, m); growth: the logarithm of what is left of a small
+    disturbance after the cycle (Floquet).
     """
 
     elements: Elements
     coefficients: Array
-    start: Array
-    values: Array
+    y: Array
     growth: float
 
     def at(self, degrees: Array, within: Array) -> Array:
@@ -66,13 +68,12 @@ def periodic(equation: Equation, elements: Elements, unknowns: int = 1) -> Perio
     back to the given one. What a linear equation leaves open is as small as can be.
     Raises Standstill where y falls to its floor on that way, and Unsettled where the way ends before it does.
     """
-    start, values = np.zeros((len(elements.low), unknowns)), np.zeros((*elements.degrees.shape, unknowns))
-    guess = _Guess(elements, start, values)
+    still = np.zeros((len(elements.low), STAGES + 1, unknowns))
     with np.errstate(all="ignore"):  # a step too far may overflow; it is taken back
         try:
-            return _settled(equation, guess)
+            return _settled(equation, elements, still)
         except Unsettled:
-            return _followed(equation, guess)
+            return _followed(equation, elements, still)
 
 
 class Unsettled(Exception):
@@ -91,14 +92,6 @@ class Standstill(Unsettled):
         self.degrees = degrees
 
 
-class _Guess(NamedTuple):
-    """Elements, with y at their starts (k, m) and at their nodes (k, s, m)."""
-
-    elements: Elements
-    start: Array
-    values: Array
-
-
 _TAMEST = 12
 """Hundredfolds of the depth of the floor that are tried for a first solution."""
 _STEP = 0.1
@@ -109,19 +102,19 @@ _STANDING = 0.05
 """y − floor, over that of y = 0, that is taken for standing still where the way back ends."""
 
 
-def _followed(equation: Equation, guess: _Guess) -> Periodic:
+def _followed(equation: Equation, elements: Elements, y: Array) -> Periodic:
     """Follow the solution from a deep floor up to that of the equation."""
-    own = -float(equation.floor(guess.elements.prepared(equation)).max())
+    own = -float(equation.floor(_prepared(equation, elements)).max())
     if not math.isfinite(own):
         raise Unsettled
-    found, depth = _tame(equation, guess, own)
+    found, depth = _tame(equation, elements, y, own)
     factor = _STEP
     for _ in range(_MOST_STEPS):
         if depth <= own:
             return found
         nearer = max(depth * factor, own)
         try:
-            found = _settled(equation.eased(nearer - own), _Guess(found.elements, found.start, found.values))
+            found = _settled(equation.eased(nearer - own), found.elements, found.y)
             depth, factor = nearer, max(factor**1.5, _STEP)
         except Unsettled:
             factor = math.sqrt(factor)
@@ -130,11 +123,11 @@ def _followed(equation: Equation, guess: _Guess) -> Periodic:
     raise _end_of(equation.eased(depth - own), found, depth - own)
 
 
-def _tame(equation: Equation, guess: _Guess, own: float) -> tuple[Periodic, float]:
+def _tame(equation: Equation, elements: Elements, y: Array, own: float) -> tuple[Periodic, float]:
     for hundredfolds in range(1, _TAMEST + 1):
         depth = own * 100.0**hundredfolds
         try:
-            return _settled(equation.eased(depth - own), guess), depth
+            return _settled(equation.eased(depth - own), elements, y), depth
         except Unsettled:
             continue
     raise Unsettled
@@ -142,31 +135,35 @@ def _tame(equation: Equation, guess: _Guess, own: float) -> tuple[Periodic, floa
 
 def _end_of(equation: Equation, found: Periodic, enough: float) -> Unsettled:
     """Return why the way back ends at this solution: because z is all but at its floor, or not."""
-    floor = equation.floor(found.elements.prepared(equation))
-    share = 1 - found.values / floor
+    floor = equation.floor(_prepared(equation, found.elements))
+    share = 1 - found.y[:, 1:] / floor
     if share.min() > _STANDING:
         return Unsettled(enough)
     return Standstill(float(found.elements.degrees.ravel()[np.argmin(share.min(axis=2))]), enough)
 
 
-def _settled(equation: Equation, guess: _Guess) -> Periodic:
+def _settled(equation: Equation, elements: Elements, y: Array) -> Periodic:
     """Solve and refine until every element is smooth; raises Unsettled."""
-    elements, start, values = guess
-    prepared = elements.prepared(equation)
+    prepared = _prepared(equation, elements)
     for _ in range(_ROUNDS):
-        start, values = _newton(equation, elements, prepared, start, values)
-        whole = np.concatenate((start[:, None], values), axis=1)
-        coefficients = np.asarray(np.einsum("ns,ksm->kmn", rule().to_legendre, whole))
-        least = _tolerance(whole) + equation.noise
+        y = _newton(_Equations(equation, elements, prepared), y)
+        coefficients = np.asarray(np.einsum("ns,ksm->kmn", rule().to_legendre, y))
+        least = _tolerance(y) + equation.noise
         rough = (np.abs(coefficients[..., -2:]).sum(axis=2) > least).any(axis=1)
         rough &= elements.width > 1e-16 * float(elements.low[-1] + elements.width[-1])
         if not rough.any():
-            growth = _growth(np.radians(elements.width), equation.rate(prepared, values)[1])
-            return Periodic(elements, coefficients, start, values, growth)
-        elements, start, values, prepared = _refined(equation, elements, prepared, coefficients, rough)
+            growth = _growth(np.radians(elements.width), equation.rate(prepared, y[:, 1:])[1])
+            return Periodic(elements, coefficients, y, growth)
+        elements, y, prepared = _refined(equation, elements, prepared, coefficients, rough)
         if len(elements.width) > _MOST_ELEMENTS:
             break
     raise Unsettled
+
+
+def _prepared(equation: Equation, elements: Elements) -> Array:
+    """Return what the equation prepares at the nodes, (…, k, s)."""
+    degrees = elements.degrees
+    return equation.prepared(degrees, np.broadcast_to(elements.within[:, None], degrees.shape))
 
 
 def _tolerance(values: Array) -> Array:
@@ -178,16 +175,12 @@ def _growth(width: Array, slope: Array) -> float:
     if slope.shape[-1] == 1:  # ∮ ∂f/∂z dφ, which holds however fast a disturbance dies
         return float((width[:, None] * slope[..., 0, 0] @ rule().matrix[-1]).sum())
     whole, size = np.eye(slope.shape[-1]), 0.0
-    for gain in _gains(width[:, None, None, None] * slope):
+    stiffness = width[:, None, None, None] * slope
+    for gain in _answers(stiffness, np.zeros(stiffness.shape[:-1]))[1]:
         whole = gain[-1] @ whole
         largest = float(np.abs(whole).max()) or 1.0
         whole, size = whole / largest, size + math.log(largest)
     return size + math.log(float(np.abs(np.linalg.eigvals(whole)).max()) or 5e-324)
-
-
-def _gains(stiffness: Array) -> Array:
-    """Return what unit changes at the start of each element make of the nodes, (k, s, m, m)."""
-    return _answers(stiffness, np.zeros(stiffness.shape[:-1]))[1]
 
 
 def _answers(stiffness: Array, residual: Array) -> tuple[Array, Array]:
@@ -202,18 +195,20 @@ def _answers(stiffness: Array, residual: Array) -> tuple[Array, Array]:
 
 
 class _State(NamedTuple):
-    """Where Newton's method stands: y, the slope of its rate times the width, and what the equations still lack."""
+    """Where Newton's method stands: y, the slope of its rate times the width, and what the equations still lack.
 
-    start: Array
-    values: Array
+    That is, (k, s + 1, m), of y at the start of an element what its end before has more, and of y at its nodes what the
+    rate makes of the start.
+    """
+
+    y: Array
     stiffness: Array
-    residual: Array
-    jump: Array
+    lacking: Array
 
     @property
     def lack(self) -> float:
         """Size of what is lacking; not a number where the rate overflows."""
-        return math.sqrt(float(np.square(self.residual).sum() + np.square(self.jump).sum()))
+        return math.sqrt(float(np.square(self.lacking).sum()))
 
 
 class _Equations:
@@ -226,71 +221,69 @@ class _Equations:
         height_above = -self._floor.max(axis=(0, 1))
         self._least = float(height_above[np.isfinite(height_above)].max(initial=0.0))
 
-    def state(self, start: Array, values: Array) -> _State:
-        """Return what the equations lack where y has these starts and values."""
-        rate, slope = self._equation.rate(self._prepared, values)
-        residual = start[:, None] + self._height * (rule().matrix @ rate) - values
-        jump = np.roll(values[:, -1], 1, axis=0) - start
-        return _State(start, values, self._height[..., None] * slope, residual, jump)
+    def state(self, y: Array) -> _State:
+        """Return what the equations lack where y has these values at starts and nodes."""
+        start, nodes = y[:, :1], y[:, 1:]
+        rate, slope = self._equation.rate(self._prepared, nodes)
+        jump = np.roll(nodes[:, -1:], 1, axis=0) - start
+        lacking = np.concatenate((jump, start + self._height * (rule().matrix @ rate) - nodes), axis=1)
+        return _State(y, self._height[..., None] * slope, lacking)
 
-    def near(self, values: Array) -> float:
+    def near(self, y: Array) -> float:
         """Return the size of a step that is small beside what y swings by.
 
         High above its floor y is moved as a whole by rounding, though by nothing beside that height.
         """
-        return max(1e-9 * float(np.ptp(values, axis=(0, 1)).max()), 1e-14 * self._least)
+        return max(1e-9 * float(np.ptp(y, axis=(0, 1)).max()), 1e-14 * self._least)
 
-    def after(self, at: _State, step_start: Array, step: Array, halved: bool) -> tuple[_State, float]:
+    def after(self, at: _State, step: Array, halved: bool) -> tuple[_State, float]:
         """Return where a step leads, and the share of it that stays above the floor.
 
         halved: that share is halved until less is lacking.
         """
-        share = _allowed(at.values - self._floor, step)
-        after = self.state(at.start + share * step_start, at.values + share * step)
+        share = _allowed(at.y[:, 1:] - self._floor, step[:, 1:])
+        after = self.state(at.y + share * step)
         while halved and not after.lack <= (1 - share / 8) * at.lack and share > 1e-6:
             share /= 2
-            after = self.state(at.start + share * step_start, at.values + share * step)
+            after = self.state(at.y + share * step)
         return after, share
 
 
-def _newton(
-    equation: Equation, elements: Elements, prepared: Array, start: Array, values: Array
-) -> tuple[Array, Array]:
+def _newton(equations: _Equations, y: Array) -> Array:
     """Solve the collocation equations of all elements by Newton's method, with steps that make what is lacking less."""
-    equations = _Equations(equation, elements, prepared)
-    at, previous = equations.state(start, values), np.inf
+    at, previous = equations.state(y), np.inf
     for _ in range(100):
         if not math.isfinite(at.lack):
             break
-        step_start, step = _linear_step(at)
-        size, near = float(np.abs(step).max()), equations.near(at.values + step)
-        after, share = equations.after(at, step_start, step, halved=size > near)
+        step = _linear_step(at)
+        size, near = float(np.abs(step).max()), equations.near(at.y + step)
+        after, share = equations.after(at, step, halved=size > near)
         # the next step answers what is left lacking: of a linear equation nothing but rounding
         left = size * after.lack / at.lack if at.lack else 0.0
         at = after
         settled = size <= 1e-6 * near or left <= 1e-5 * near or (size <= near and size >= previous / 4)
         if share == 1 and settled:
-            return at.start, at.values
+            return at.y
         if share <= 1e-6 or not math.isfinite(size):
             break
         previous = size if share == 1 else np.inf
     raise Unsettled
 
 
-def _linear_step(at: _State) -> tuple[Array, Array]:
-    """Return the Newton step of starts and values, with the periodic chain of elements eliminated element by element.
+def _linear_step(at: _State) -> Array:
+    """Return the Newton step of y, with the periodic chain of elements eliminated element by element.
 
     In one element δ = response + gain δ_start; its last node is the start of the next one.
     """
     try:
-        response, gain = _answers(at.stiffness, at.residual)
+        response, gain = _answers(at.stiffness, at.lacking[:, 1:])
         # δ_start of element k + 1 is more[k] + gain[k] δ_start(k)
-        more = response[:, -1] + np.roll(at.jump, -1, axis=0)
+        more = response[:, -1] + np.roll(at.lacking[:, 0], -1, axis=0)
         ends = gain[:, -1]
-        step_start = around(-ends, np.broadcast_to(np.eye(ends.shape[-1]), ends.shape), more)
+        start = around(-ends, np.broadcast_to(np.eye(ends.shape[-1]), ends.shape), more)
     except np.linalg.LinAlgError:  # singular, or beyond the range of floats
         raise Unsettled from None
-    return step_start, response + np.einsum("ksij,kj->ksi", gain, step_start)
+    return np.concatenate((start[:, None], response + np.einsum("ksij,kj->ksi", gain, start)), axis=1)
 
 
 def _allowed(room: Array, step: Array) -> float:
@@ -301,12 +294,11 @@ def _allowed(room: Array, step: Array) -> float:
 
 def _refined(
     equation: Equation, elements: Elements, prepared: Array, coefficients: Array, rough: Flags
-) -> tuple[Elements, Array, Array, Array]:
-    """Cut the rough elements; values on the new ones come from the polynomials of the old."""
+) -> tuple[Elements, Array, Array]:
+    """Cut the rough elements; y on the new ones comes from the polynomials of the old, and stays above its floor."""
     finer, old, places = elements.cut(rough)
-    whole = np.einsum("kin,kmn->kim", legendre(places, STAGES), coefficients[old])
-    new = rough[old]
-    prepared = prepared[:, old]
-    prepared[:, new] = Elements(*(of[new] for of in finer)).prepared(equation)
-    values = np.where(new[:, None, None], np.maximum(whole[:, 1:], 0.99 * equation.floor(prepared)), whole[:, 1:])
-    return finer, whole[:, 0], values, prepared
+    y = np.einsum("kin,kmn->kim", legendre(places, STAGES), coefficients[old])
+    new, prepared = rough[old], prepared[:, old]
+    prepared[:, new] = _prepared(equation, Elements(*(of[new] for of in finer)))
+    y[new, 1:] = np.maximum(y[new, 1:], 0.99 * equation.floor(prepared[:, new]))
+    return finer, y, prepared

@@ -1,22 +1,21 @@
 """Elements for collocation over a cycle: parts of its smooth pieces, each with the nodes of Radau IIA of 11 stages."""
 
 from functools import cache
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices
-from kurbel.numerics.legendre import legendre, legendre_slopes
 
 STAGES = 11
 
 
-class Prepared(Protocol):
-    """An equation of which a part hangs on the angle alone."""
-
-    def prepared(self, degrees: Array, within: Array) -> Array:
-        """Return what it needs at angles (k, n) and does not change with the unknowns, as (m, k, n)."""
-        ...
+def legendre(x: Array, degree: int) -> Array:
+    """Return P_0 … P_degree at x (…,) as (…, degree + 1)."""
+    p = [np.ones_like(x), x]
+    for n in range(1, degree):
+        p.append(((2 * n + 1) * x * p[n] - n * p[n - 1]) / (n + 1))
+    return np.stack(p[: degree + 1], axis=-1)
 
 
 class Rule(NamedTuple):
@@ -28,25 +27,19 @@ class Rule(NamedTuple):
 
 
 @cache
-def rule(stages: int = STAGES) -> Rule:
+def rule() -> Rule:
     """Return the rule with nodes at the roots of P_s − P_{s−1}, the last one at 1."""
     # Golub: Jacobi matrix of the Legendre polynomials whose last entry puts an eigenvalue at 1
-    k = np.arange(1, stages, dtype=float)
-    off = k / np.sqrt(4 * k * k - 1)
-    last = np.zeros(stages)
-    last[-1] = stages / (2 * stages - 1)
-    x: Array = np.asarray(np.linalg.eigvalsh(np.diag(last) + np.diag(off, 1) + np.diag(off, -1)), dtype=float)
-    for _ in range(3):
-        p, slope = legendre(x, stages), legendre_slopes(x, stages)
-        x = np.asarray(x - (p[:, -1] - p[:, -2]) / (slope[:, -1] - slope[:, -2]), dtype=float)
-    x[-1] = 1.0
-    p = legendre(x, stages)
-    n = np.arange(stages)
-    below = np.concatenate((-np.ones((stages, 1)), p[:, : stages - 1]), axis=1)
-    integrals = (p[:, 1 : stages + 1] - below) / (2 * n + 1) / 2
+    n = np.arange(STAGES)
+    off = n[1:] / np.sqrt(4.0 * n[1:] ** 2 - 1)
+    last = np.where(n == STAGES - 1, STAGES / (2 * STAGES - 1), 0.0)
+    x = np.append(np.linalg.eigvalsh(np.diag(last) + np.diag(off, 1) + np.diag(off, -1))[:-1], 1.0)
+    p = legendre(x, STAGES)
+    below = np.concatenate((-np.ones((STAGES, 1)), p[:, : STAGES - 1]), axis=1)
+    integrals = (p[:, 1 : STAGES + 1] - below) / (2 * n + 1) / 2
     integrals[:, 0] = (x + 1) / 2
-    matrix: Array = np.asarray(integrals @ np.linalg.inv(p[:, :stages]), dtype=float)
-    whole = legendre(np.concatenate(([-1.0], x)), stages)
+    matrix: Array = np.asarray(integrals @ np.linalg.inv(p[:, :STAGES]), dtype=float)
+    whole = legendre(np.append(-1.0, x), STAGES)
     return Rule((x + 1) / 2, matrix, np.asarray(np.linalg.inv(whole), dtype=float))
 
 
@@ -77,11 +70,6 @@ class Elements(NamedTuple):
     def degrees(self) -> Array:
         """Angles (k, s) of the nodes."""
         return self.piece[:, None] + (self.offset[:, None] + self.width[:, None] * rule().nodes)
-
-    def prepared(self, equation: Prepared) -> Array:
-        """Return what the equation prepares at the nodes, (m, k, s)."""
-        degrees = self.degrees
-        return equation.prepared(degrees, np.broadcast_to(self.within[:, None], degrees.shape))
 
     def at(self, coefficients: Array, degrees: Array, within: Array) -> Array:
         """Return Σ c_n P_n at angles (n,), of the elements that hold `within`; coefficients: (k, …, s + 1)."""

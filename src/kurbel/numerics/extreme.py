@@ -24,6 +24,11 @@ class Extreme(NamedTuple):
         return list(map(tuple.__new__, repeat(cls), zip(values, degrees)))
 
 
+def number_of(answer: Any) -> Any:
+    """Return an answer without its angle: the value of an extreme, or the answer itself."""
+    return answer.value if isinstance(answer, Extreme) else answer
+
+
 def largest(first: Extreme, *others: Extreme) -> Extreme:
     """Return the one with the largest value, the first of equal ones; one that is nan counts for nothing."""
     for other in others:

@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.numerics.arithmetic import running_sums
+from kurbel.numerics.arithmetic import lost
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
 
@@ -55,8 +55,9 @@ class Piecewise:
 
     @cached_property
     def _up_to(self) -> Array:
-        """The integral up to the start of each piece."""
-        return np.array([0.0, *running_sums(self._wholes[:-1].tolist())])
+        """The integral up to the start of each piece and to the end, each as good as rounded once."""
+        sums = np.append(0.0, self._wholes.cumsum())
+        return np.append(0.0, sums[1:] + lost(sums[:-1], self._wholes, sums[1:]).cumsum())
 
     def integral_to(self, degrees: Array) -> Array:
         """Return the integral over φ in radians from the start of the cycle to angles (…,) in degrees within it."""

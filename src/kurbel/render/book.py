@@ -38,7 +38,7 @@ def table(sheet: Sheet, look: Look) -> Iterator[Line]:
     for size in sizes:
         if start:
             yield BLANK
-        yield from _block(sheet, grid, slice(start, start + size), look.charset.rule)
+        yield from _block(sheet, grid, slice(start, start + size), look.charset.text("─"))
         start += size
 
 
@@ -57,7 +57,7 @@ def _fitting_sizes(count: int, most: int) -> list[int]:
 def _grid(sheet: Sheet) -> _Grid:
     rows = [*sheet.heads, *(row for band in sheet.bands for row in band.rows)]
     name = max(width(band.name) for band in sheet.bands) if sheet.named_beside else 0
-    cells = max(row.cells.width for row in rows)
+    cells = max(row.width for row in rows)
     return _Grid(name, max(width(row.symbol) for row in rows), max(width(row.unit) for row in rows), cells + _GAP)
 
 
@@ -82,5 +82,5 @@ def _line(name: str, row: Row, grid: _Grid, across: slice, role: str) -> Line:
     side.append(Piece(symbol + gap, "head" if role == "head" else "symbol"))
     if grid.unit:
         side.append(Piece(left(row.unit, grid.unit) + gap, "unit"))
-    cells = (Piece(right(text, grid.cell), "mark" if text.endswith("*") else role) for text in row.cells.within(across))
+    cells = (Piece(right(text, grid.cell), "mark" if text.endswith("*") else role) for text in row.cells[across])
     return (*side, *cells)

@@ -71,21 +71,6 @@ class Charset(NamedTuple):
         printed = "10" + str(exponent).translate(_SUPERSCRIPT)
         return printed if self.has(printed) else f"10^{exponent}"
 
-    @property
-    def degree(self) -> str:
-        """The degree sign behind a number."""
-        return "°" if self.has("°") else " deg"
-
-    @property
-    def rule(self) -> str:
-        """The character of a thin rule."""
-        return "─" if self.has("─") else "-"
-
-    @property
-    def no_value(self) -> str:
-        """What stands for a value that does not exist."""
-        return "–" if self.has("–") else "-"
-
 
 def _stand_in(character: str) -> str:
     if character in _ASCII:

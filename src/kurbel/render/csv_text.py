@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from itertools import repeat
 
 from kurbel.render import Look
-from kurbel.render.numbers import exact, whole_if_integral
+from kurbel.render.numbers import decimal, exact, whole_if_integral
 from kurbel.report.tables import Column, Part, Report, Value
 
 _FIRST = {"ratios": "rod_ratio", "bearings": "bearing"}
@@ -118,10 +118,7 @@ def _texts(column: Column | None, count: int, look: Look) -> Iterator[str]:
 
 
 def _number(value: Value, digits: int | None, look: Look) -> str:
-    if value is None:
-        return ""
-    text = exact(value, digits)
-    return text.replace(".", ",") if look.comma else text
+    return "" if value is None else decimal(exact(value, digits), look.comma)
 
 
 def _quoted(text: str, separator: str) -> str:

@@ -1,32 +1,32 @@
 """A report as documents have it, Markdown, HTML and LaTeX: one walk through it, and what each of them must write."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple, Protocol
 
 from kurbel.render import Look
 from kurbel.render.numbers import angle
 from kurbel.render.prose import number_text, sentence_text
-from kurbel.render.sheet import part_name, sheets
+from kurbel.render.sheet import Row, part_name, sheets
 from kurbel.report.alike import told_once
 from kurbel.report.tables import KeyValue, Report
 
 ON_PAPER = 9
 """Columns of a table beside that of the angle: what a page of A4 holds; more make a table of their own."""
-KEY_VALUE_HEADS = ("Symbol", "Value", "Unit", "At", "Meaning")
+_KEY_VALUE_HEADS = {"Symbol": True, "Value": False, "Unit": True, "At": False, "Meaning": True}
+"""Heads of a table of key values, and which of its columns are words."""
 
 
 class Table(NamedTuple):
-    """A table of texts: heads of its columns with their units, and its rows.
-
-    of_row: how many columns are heads of their rows, such as crank angles; names: how many are words; all others are
-    numbers.
-    """
+    """A table of texts; of_row: how many of its columns are heads of its rows, such as crank angles."""
 
     caption: str
-    heads: Sequence[tuple[str, str]]
-    rows: Iterable[Sequence[str]]
-    of_row: int
-    names: int
+    columns: Sequence[Row]
+    of_row: int = 0
+
+    @property
+    def rows(self) -> Iterator[tuple[str, ...]]:
+        """The cells, row by row."""
+        return zip(*(column.cells for column in self.columns))
 
 
 class _Writer(Protocol):
@@ -40,7 +40,7 @@ class _Writer(Protocol):
     def title(self, text: str) -> Iterator[str]: ...
     def paragraph(self, text: str) -> Iterator[str]: ...
     def table(self, table: Table) -> Iterator[str]: ...
-    def key_values(self, title: str, found: Iterable[KeyValue]) -> Iterator[str]: ...
+    def key_values(self, title: str, found: Collection[KeyValue]) -> Iterator[str]: ...
     def items(self, title: str, lines: Sequence[str]) -> Iterator[str]: ...
 
 
@@ -70,20 +70,16 @@ def _angle_tables(report: Report, look: Look, across: int | None) -> Iterator[Ta
     for sheet in sheets(report, look):
         for band in sheet.bands:
             for part in _parts(len(band.rows), across):
-                columns = [*sheet.heads, *band.rows[part]]
-                heads = [(row.symbol, row.unit) for row in columns]
-                yield Table(band.name, heads, zip(*(row.cells for row in columns)), len(sheet.heads), 0)
+                yield Table(band.name, [*sheet.heads, *band.rows[part]], len(sheet.heads))
 
 
 def _place_tables(report: Report, look: Look, across: int | None) -> Iterator[Table]:
-    from kurbel.render.place_table import cells_of
+    from kurbel.render.place_table import text_of
 
     for one in (one for part in report.all_parts for one in part.place_tables):
-        cells = cells_of(one, look)
-        for part in _parts(len(cells.heads), across):
-            heads = [*((head, "") for head in one.heads), *cells.heads[part]]
-            rows = [(*names, *texts[part]) for names, texts in zip(cells.names, cells.rows)]
-            yield Table(look.charset.text(one.title), heads, rows, 0, len(one.heads))
+        names, columns = text_of(one, look)
+        for part in _parts(len(columns), across):
+            yield Table(look.charset.text(one.title), [*names, *columns[part]])
 
 
 def _parts(count: int, across: int | None) -> Iterator[slice]:
@@ -92,13 +88,21 @@ def _parts(count: int, across: int | None) -> Iterator[slice]:
     return (slice(start, start + most) for start in range(0, max(count, 1), most))
 
 
-def key_value_cells(one: KeyValue, look: Look) -> tuple[str, ...]:
-    """Return symbol, value, unit, where it stands, and what it is."""
+def key_value_table(title: str, found: Iterable[KeyValue], look: Look) -> Table:
+    """Return a table of key values: symbol, value, unit, where each stands, and what it is."""
+    rows = [_cells(one, look) for one in found]
+    columns = [
+        Row(head, "", [row[k] for row in rows], words) for k, (head, words) in enumerate(_KEY_VALUE_HEADS.items())
+    ]
+    return Table(title, columns, 1)
+
+
+def _cells(one: KeyValue, look: Look) -> tuple[str, ...]:
     charset = look.charset
     return (
         charset.symbol(one.symbol, one.ascii_symbol),
         number_text(one, look),
         charset.unit(one.unit),
-        "" if one.at_deg is None else angle(one.at_deg, look.comma) + charset.degree,
+        "" if one.at_deg is None else angle(one.at_deg, look.comma) + charset.text("°"),
         sentence_text(one.text, look),
     )

@@ -2,12 +2,12 @@
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from html import escape
-from itertools import chain, cycle, repeat
+from itertools import chain, repeat
 from typing import NamedTuple
 
 from kurbel.render import Look
-from kurbel.render.document import KEY_VALUE_HEADS, ON_PAPER, Table, document, key_value_cells
-from kurbel.render.sheet import MARK
+from kurbel.render.document import ON_PAPER, Table, document, key_value_table
+from kurbel.render.sheet import MARK, Row
 from kurbel.report.tables import KeyValue, Report
 
 INK, PAPER, FAINT, RULE, SHADE = (
@@ -88,77 +88,64 @@ class _Html(NamedTuple):
         yield f"<p>{escape(text)}</p>\n"
 
     def table(self, table: Table) -> Iterator[str]:
-        numbers = range(table.names, len(table.heads))
-        return grid(table.heads, table.rows, table.caption, table.of_row, numbers)
+        return grid(table)
 
-    def key_values(self, title: str, found: Iterable[KeyValue]) -> Iterator[str]:
-        yield key_values(found, title, self.look)
+    def key_values(self, title: str, found: Collection[KeyValue]) -> Iterator[str]:
+        return key_values(title, found, self.look)
 
     def items(self, title: str, lines: Sequence[str]) -> Iterator[str]:
         yield item_list(title, lines, self.level + 1)
 
 
-def grid(
-    heads: Sequence[tuple[str, str]],
-    rows: Iterable[Sequence[str]],
-    caption: str,
-    of_row: int,
-    numbers: Collection[int],
-    verdicts: Sequence[str] = (),
-) -> Iterator[str]:
-    """Yield a table that a narrow window scrolls, row by row: heads of columns with their units, rows of texts.
-
-    of_row: how many columns are the heads of their rows; numbers: which columns are numbers; verdicts: a class of each
-    row, `good` or `bad`, where they have one.
-    """
-    said = f"<caption>{escape(caption)}</caption>" if caption else ""
-    below = [f"<br><small>{escape(unit)}</small>" if unit else "" for _, unit in heads]
-    over = "".join(
-        f'<th scope="col"{_RIGHT if k in numbers else ""}>{escape(symbol)}{unit}</th>'
-        for k, ((symbol, _), unit) in enumerate(zip(heads, below))
-    )
-    label = escape(caption or "values over the crank angle", quote=True)
-    yield f'<div class="wide" tabindex="0" role="region" aria-label="{label}"><table>{said}\n'
-    yield f"<thead><tr>{over}</tr></thead>\n<tbody>\n"
+def grid(table: Table, verdicts: Sequence[str] = ()) -> Iterator[str]:
+    """Yield a table row by row; verdicts: a class of each row, `good` or `bad`, where they have one."""
+    numbers = [k for k, column in enumerate(table.columns) if not column.words]
     classes = (f' class="{one}"' for one in verdicts) if verdicts else repeat("")
-    for own, row in zip(classes, rows):
-        yield f"<tr{own}>{''.join(_cells(row, of_row, numbers))}</tr>\n"
+    return _scrolled(table, (f"<tr{own}>{_cells(row, table.of_row, numbers)}" for own, row in zip(classes, table.rows)))
+
+
+def key_values(title: str, found: Collection[KeyValue], look: Look) -> Iterator[str]:
+    """Yield a table of key values: symbol, value, unit, where it stands, what it is."""
+    table = key_value_table(title, found, look)
+    # a list of values may be folded
+    numbers = ((3,) if isinstance(one.value, tuple) and one.value else (1, 3) for one in found)
+    return _scrolled(table, (f"<tr>{_cells(row, 1, right)}" for row, right in zip(table.rows, numbers)))
+
+
+def _scrolled(table: Table, rows: Iterable[str]) -> Iterator[str]:
+    """Yield a table that a narrow window scrolls: heads of columns with their units, and these rows."""
+    said = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
+    label = escape(table.caption or "values over the crank angle", quote=True)
+    yield f'<div class="wide" tabindex="0" role="region" aria-label="{label}"><table>{said}\n'
+    yield f"<thead><tr>{''.join(map(_head, table.columns))}</tr></thead>\n<tbody>\n"
+    yield from (f"{row}</tr>\n" for row in rows)
     yield "</tbody></table></div>\n"
 
 
 _RIGHT = ' class="r"'
 
 
-def _cells(row: Sequence[str], of_row: int, numbers: Collection[int]) -> Iterator[str]:
+def _head(column: Row) -> str:
+    unit = f"<br><small>{escape(column.unit)}</small>" if column.unit else ""
+    return f'<th scope="col"{"" if column.words else _RIGHT}>{escape(column.symbol)}{unit}</th>'
+
+
+def _cells(row: Sequence[str], of_row: int, numbers: Collection[int]) -> str:
+    """Return the cells of a row; of_row: how many are its heads; numbers: which are numbers."""
+    cells = []
     for k, text in enumerate(row):
         text = text.strip()
         shown = f"<b>{escape(text[:-1])}</b>" if text.endswith(MARK) else escape(text)
         right = _RIGHT if k in numbers else ""
         if k < of_row:
-            yield f'<th scope="row"{right}>{shown if right else shown.replace(".", ".<wbr>")}</th>'  # long keys fold
+            shown = shown if right else shown.replace(".", ".<wbr>")  # long keys fold
+            cells.append(f'<th scope="row"{right}>{shown}</th>')
         else:
-            yield f"<td{right}>{shown}</td>"
+            cells.append(f"<td{right}>{shown}</td>")
+    return "".join(cells)
 
 
 def item_list(title: str, lines: Iterable[str], level: int) -> str:
     """Return a list of sentences under its title, a heading of this level."""
     items = "".join(f"<li>{escape(one)}</li>\n" for one in lines)
     return f"<h{level}>{escape(title)}</h{level}>\n<ul>\n{items}</ul>\n"
-
-
-def key_values(found: Iterable[KeyValue], caption: str, look: Look) -> str:
-    """Return a table of key values: symbol, value, unit, where it stands, what it is."""
-    rows = "".join(f"<tr>{_key_value(one, look)}</tr>\n" for one in found)
-    over = "".join(f'<th scope="col"{right}>{head}</th>' for head, right in zip(KEY_VALUE_HEADS, cycle(("", _RIGHT))))
-    return (
-        f'<div class="wide" tabindex="0" role="region" aria-label="{escape(caption, quote=True)}"><table>'
-        f"<caption>{escape(caption)}</caption>\n<thead><tr>{over}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
-    )
-
-
-def _key_value(one: KeyValue, look: Look) -> str:
-    symbol, number, unit, at, meaning = map(escape, key_value_cells(one, look))
-    right = "" if isinstance(one.value, tuple) and one.value else _RIGHT  # a list may be folded
-    return (
-        f'<th scope="row">{symbol}</th><td{right}>{number}</td><td>{unit}</td><td{_RIGHT}>{at}</td><td>{meaning}</td>'
-    )

@@ -12,7 +12,7 @@ from kurbel.render.numbers import rounded, whole_if_integral
 from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Provenance, Report, Value
 
 if TYPE_CHECKING:
-    from kurbel.report.findings import Findings
+    from kurbel.report.check import Findings
 
 FORMAT = 1
 """Number of the output format; it changes when a script that reads it would break."""

@@ -4,15 +4,13 @@ import csv
 import json
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
+from kurbel.designs.chosen import Condition
+from kurbel.designs.sweep import Row, Sweep
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.sweep_output import Titles, csv_rows, json_rows
-
-if TYPE_CHECKING:
-    from kurbel.designs.chosen import Condition
-    from kurbel.designs.sweep import Row, Sweep
+from kurbel.render.sweep_output import WRITERS, Titles, csv_rows
 
 _SAME = 1e-9
 """What two processors may differ by in a number, relatively and in SI: they round otherwise, but are of one sweep."""
@@ -42,7 +40,7 @@ class KeptRows:
             self._refuse(f"it begins with {text.partition(chr(10))[0][:60]!r}")
         self._headed = bool(head)
 
-    def rest(self, sweep: "Sweep", conditions: "Sequence[Condition]") -> range:
+    def rest(self, sweep: Sweep, conditions: Sequence[Condition]) -> range:
         """Return the rows that are still to be computed.
 
         Raises UsageError where the file has rows that this sweep has not, or has with other inputs or other answers:
@@ -61,7 +59,7 @@ class KeptRows:
             self._compare_answers(last, sweep, conditions)
         return self._rows[following - self._rows.start :]
 
-    def _compare_answers(self, line: _Line, sweep: "Sweep", conditions: "Sequence[Condition]") -> None:
+    def _compare_answers(self, line: _Line, sweep: Sweep, conditions: Sequence[Condition]) -> None:
         from kurbel.designs.workers import rows_of
 
         row = next(rows_of(sweep, range(line.number - 1, line.number)))
@@ -69,22 +67,13 @@ class KeptRows:
         if not all(one.holds(row) for one in conditions):
             self._refuse(f"row {line.number} is in it, which --where leaves out")
 
-    def _compare(self, line: _Line, row: "Row", count: int) -> None:
+    def _compare(self, line: _Line, row: Row, count: int) -> None:
         """Refuse a line of which one of the first cells is not what the row has there."""
-        for name, there, here in list(zip(self._titles.whole, line.cells, self._cells_of(row)))[:count]:
+        *_, text = WRITERS[self._look.format](self._titles, [row], self._look)
+        cells = self._cells(text.rstrip("\n"))
+        for name, there, here in list(zip(self._titles.whole, line.cells, cells))[:count]:
             if there != here and not self._same(there, here):
                 self._refuse(f"row {line.number} has {there or 'no'} {name} in it, and {here or 'none'} now")
-
-    def _cells_of(self, row: "Row") -> list[str]:
-        text = next(json_rows(self._titles, [row], self._look) if self._is_json else self._csv(row))
-        return self._cells(text.rstrip("\n"))
-
-    def _csv(self, row: "Row") -> Iterator[str]:
-        return csv_rows(self._titles, [row], self._look, headed=False)
-
-    @property
-    def _is_json(self) -> bool:
-        return self._look.format == "json"
 
     def _parsed(self) -> Iterator[_Line]:
         for text in self._lines[self._headed :]:
@@ -96,7 +85,7 @@ class KeptRows:
 
     def _cells(self, line: str) -> list[str]:
         """Return the texts under the heads; raises ValueError for other heads."""
-        if self._is_json:
+        if self._look.format == "json":
             found = json.loads(line)
             names, cells = list(found), [_text(one) for one in found.values()]
         else:

@@ -1,11 +1,11 @@
 r"""LaTeX: tables in the manner of booktabs, to be \input into a document that has \usepackage{booktabs, longtable}."""
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from kurbel.render import Look
-from kurbel.render.document import KEY_VALUE_HEADS, ON_PAPER, Table, document, key_value_cells
+from kurbel.render.document import ON_PAPER, Table, document, key_value_table
 from kurbel.render.sheet import MARK
 from kurbel.report.tables import KeyValue, Report
 
@@ -50,30 +50,26 @@ class _Latex(NamedTuple):
         yield f"{text(plain)}\n\n"
 
     def table(self, table: Table) -> Iterator[str]:
-        layout = "l" * table.names + "r" * (len(table.heads) - table.names)
-        rows = (map(_cell, row) for row in table.rows)
-        heads = [(text(s) if k < table.names else symbol(s), unit) for k, (s, unit) in enumerate(table.heads)]
-        yield from self._table(table.caption, layout, heads, rows)
+        layout = "".join("l" if column.words else "r" for column in table.columns)
+        return self._table(table, layout, (map(_cell, row) for row in table.rows))
 
-    def key_values(self, title: str, found: Iterable[KeyValue]) -> Iterator[str]:
-        heads = [(head, "") for head in KEY_VALUE_HEADS]
-        every = (key_value_cells(one, self.look) for one in found)
-        rows = ((symbol(name), *map(_cell, cells)) for name, *cells in every)
-        yield from self._table(title, "lrlrp{0.42\\linewidth}", heads, rows)
+    def key_values(self, title: str, found: Collection[KeyValue]) -> Iterator[str]:
+        table = key_value_table(title, found, self.look)
+        rows = ((symbol(name), *map(_cell, cells)) for name, *cells in table.rows)
+        return self._table(table, "lrlrp{0.42\\linewidth}", rows)
 
     def items(self, title: str, lines: Sequence[str]) -> Iterator[str]:
         items = "".join(f"\\item {text(one)}\n" for one in lines)
         yield f"\\paragraph{{{text(title)}}}\n\\begin{{itemize}}\n{items}\\end{{itemize}}\n\n"
 
-    def _table(
-        self, caption: str, layout: str, heads: Sequence[tuple[str, str]], rows: Iterable[Iterable[str]]
-    ) -> Iterator[str]:
+    def _table(self, table: Table, layout: str, rows: Iterable[Iterable[str]]) -> Iterator[str]:
+        columns = table.columns
         yield f"{_NARROW}\\begin{{longtable}}{{@{{}}{layout}@{{}}}}\n"
-        if caption:
-            yield f"\\multicolumn{{{len(heads)}}}{{@{{}}l}}{{{text(caption)}}}\\\\\n"
-        yield f"\\toprule\n{_row(head for head, _ in heads)}"
-        if any(unit for _, unit in heads):
-            yield _row(text(unit) for _, unit in heads)
+        if table.caption:
+            yield f"\\multicolumn{{{len(columns)}}}{{@{{}}l}}{{{text(table.caption)}}}\\\\\n"
+        yield f"\\toprule\n{_row((text if one.words else symbol)(one.symbol) for one in columns)}"
+        if any(one.unit for one in columns):
+            yield _row(text(one.unit) for one in columns)
         yield "\\midrule\n\\endhead\n"
         yield from map(_row, rows)
         yield "\\bottomrule\n\\end{longtable}}\n\n"

@@ -1,15 +1,18 @@
 """A check as text: head lines with their entries, one to a line."""
 
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from kurbel.render import Look
 from kurbel.render.charset import left, width
 from kurbel.render.lines import plain
 from kurbel.render.prose import folded, sentence
-from kurbel.report.check import Checked
+
+if TYPE_CHECKING:
+    from kurbel.report.check import Checked
 
 
-def listing(checked: Checked, look: Look) -> str:
+def listing(checked: "Checked", look: Look) -> str:
     """Return the check as plain text in the characters and the width of the output."""
     charset = look.charset
     lines = folded(charset.text(checked.title), look.width)

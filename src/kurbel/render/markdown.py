@@ -1,11 +1,11 @@
 """Markdown: one row per crank angle, key values as a second table, for reports and issues."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import chain
 from typing import NamedTuple
 
 from kurbel.render import Look
-from kurbel.render.document import KEY_VALUE_HEADS, Table, document, key_value_cells
+from kurbel.render.document import Table, document, key_value_table
 from kurbel.render.sheet import MARK
 from kurbel.report.tables import KeyValue, Report
 
@@ -28,26 +28,20 @@ class _Markdown(NamedTuple):
         yield f"\n{_escaped(text)}\n"
 
     def table(self, table: Table) -> Iterator[str]:
-        heads = [f"{symbol} ({unit})" if unit else symbol for symbol, unit in table.heads]
-        rules = ["---"] * table.names + ["--:"] * (len(heads) - table.names)
-        yield from self._table(table.caption, heads, rules, table.rows)
+        if table.caption:
+            yield f"\n### {_escaped(table.caption)}\n"
+        yield "\n"
+        heads = [f"{one.symbol} ({one.unit})" if one.unit else one.symbol for one in table.columns]
+        rules = ["---" if one.words else "--:" for one in table.columns]
+        for row in chain((heads, rules), table.rows):
+            yield f"| {' | '.join(map(_bold_if_marked, row))} |\n"
 
-    def key_values(self, title: str, found: Iterable[KeyValue]) -> Iterator[str]:
-        rows = (key_value_cells(one, self.look) for one in found)
-        yield from self._table(title, KEY_VALUE_HEADS, ("---", "--:", "---", "--:", "---"), rows)
+    def key_values(self, title: str, found: Collection[KeyValue]) -> Iterator[str]:
+        return self.table(key_value_table(title, found, self.look))
 
     def items(self, title: str, lines: Sequence[str]) -> Iterator[str]:
         yield f"\n### {_escaped(title)}\n\n"
         yield from (f"- {_escaped(line)}\n" for line in lines)
-
-    def _table(
-        self, caption: str, heads: Sequence[str], rules: Sequence[str], rows: Iterable[Sequence[str]]
-    ) -> Iterator[str]:
-        if caption:
-            yield f"\n### {_escaped(caption)}\n"
-        yield "\n"
-        for row in chain((heads, rules), rows):
-            yield f"| {' | '.join(map(_bold_if_marked, row))} |\n"
 
 
 def _bold_if_marked(text: str) -> str:

@@ -63,7 +63,7 @@ def cell(value: Value, scale: Scale, comma: bool = False) -> str:
         return ""
     if value == 0:
         return "0"
-    return _decimal(f"{_rounded(_over(value, scale.exponent), scale.decimals):.{max(0, scale.decimals)}f}", comma)
+    return decimal(f"{_rounded(_over(value, scale.exponent), scale.decimals):.{max(0, scale.decimals)}f}", comma)
 
 
 def _over(value: float, exponent: int) -> float:
@@ -76,7 +76,8 @@ def _rounded(value: float, decimals: int) -> float:
     return round(value, decimals) + 0.0  # adding 0.0 turns -0.0 into 0.0
 
 
-def _decimal(text: str, comma: bool) -> str:
+def decimal(text: str, comma: bool) -> str:
+    """Return a number with the decimal sign that is wanted."""
     return text.replace(".", ",") if comma else text
 
 
@@ -109,8 +110,8 @@ def alone(value: float, digits: int, comma: bool = False) -> tuple[str, int]:
         return str(int(value)), 0
     power = _power(abs(value), digits)
     if -3 < power < 5:
-        return _decimal(f"{value:.{max(0, digits - 1 - power)}f}", comma), 0
-    return _decimal(f"{value / 10.0**power:.{digits - 1}f}", comma), power
+        return decimal(f"{value:.{max(0, digits - 1 - power)}f}", comma), 0
+    return decimal(f"{value / 10.0**power:.{digits - 1}f}", comma), power
 
 
 def angle(value: float, comma: bool = False) -> str:
@@ -119,7 +120,7 @@ def angle(value: float, comma: bool = False) -> str:
     >>> angle(79.10014), angle(180.0)
     ('79.1', '180')
     """
-    return _decimal(_shortest(value, 2), comma)
+    return decimal(_shortest(value, 2), comma)
 
 
 def exact(value: float, digits: int | None = None) -> str:

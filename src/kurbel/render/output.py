@@ -28,17 +28,16 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
     A terminal gets as many angles to a block as fit its width, and colours where they are wanted; a pipe gets plain
     text, of a width only where it is asked for. Raises UsageError where it cannot be written.
     """
-    if file_name is not None and file_name != "-":
-        write_file(file_name, pieces(report, look._replace(encoding="utf-8")))
-        return
-    encoding = "utf-8" if look.format in _SAYING_UTF_8 else stdout_charset().encoding
-    look = look._replace(encoding=encoding, width=look.width or stdout_width())
-    if look.format == "table":
-        from kurbel.render.page import page
+    look = look._replace(encoding="utf-8")
+    if file_name is None or file_name == "-":
+        encoding = "utf-8" if look.format in _SAYING_UTF_8 else stdout_charset().encoding
+        look = look._replace(encoding=encoding, width=look.width or stdout_width())
+        if look.format == "table":
+            from kurbel.render.page import page
 
-        if write_coloured(page(report, look), look):
-            return
-    write_stdout(pieces(report, look), encoding)
+            if write_coloured(page(report, look), look):
+                return
+    write_out(pieces(report, look), file_name, look.encoding)
 
 
 def write_coloured(page: "Iterable[Line]", look: Look) -> bool:

@@ -13,7 +13,7 @@ from kurbel.report.tables import Report
 def page(report: Report, look: Look) -> Iterator[Line]:
     """Yield the lines of the whole page."""
     if look.layout == "rows":
-        from kurbel.render.rows import table
+        from kurbel.render.columns import table
     else:
         from kurbel.render.book import table
     report = told_once(report)

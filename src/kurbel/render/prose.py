@@ -61,7 +61,8 @@ def key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Li
     # a long list stands out beyond the column of numbers instead of pushing everything aside
     number = max((w for s in shown if (w := width(_aligned(s, whole))) <= _LONGEST), default=0)
     if look.width is not None and 2 + symbol + 2 + number + 2 + unit + 2 + place > look.width:
-        shown, place = [_placed_below(one) for one in shown], 0
+        below = (one._replace(place="", text=f"{one.place}  {one.text}") if one.place else one for one in shown)
+        shown, place = list(below), 0
     for one in shown:
         value = _aligned(one, whole)
         head = f"  {left(one.symbol, symbol)}  {left(value, number)}  {left(one.unit, unit)}  "
@@ -70,10 +71,6 @@ def key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Li
             yield from _standing_out(f"  {left(one.symbol, symbol)}  ", f"{value}  {one.unit}".rstrip(), look)
             head = " " * (4 + symbol + number + 2 + unit + 2 + (place + 2 if place else 0))
         yield from sentence(head, one.text, look)
-
-
-def _placed_below(one: _Shown) -> _Shown:
-    return one._replace(place="", text=f"{one.place}  {one.text}") if one.place else one
 
 
 def _standing_out(head: str, value: str, look: Look) -> Iterator[Line]:
@@ -90,7 +87,7 @@ def _aligned(one: _Shown, whole: int) -> str:
 def _shown(one: KeyValue, look: Look) -> _Shown:
     charset = look.charset
     whole, fraction = _number(one, look)
-    place = "" if one.at_deg is None else f"at {angle(one.at_deg, look.comma)}{charset.degree}"
+    place = "" if one.at_deg is None else f"at {angle(one.at_deg, look.comma)}{charset.text('°')}"
     return _Shown(
         charset.symbol(one.symbol, one.ascii_symbol), whole, fraction, charset.unit(one.unit), place, one.text
     )
@@ -110,7 +107,7 @@ def _number(one: KeyValue, look: Look) -> tuple[str, str]:
 def number_text(one: KeyValue, look: Look) -> str:
     """Return the number of a key value, or its numbers in one line; of a long list how many there are."""
     if one.value is None or one.value == ():
-        return look.charset.no_value
+        return look.charset.text("–")
     if one.noise:
         return look.charset.below(NOISE_POWER)
     if not isinstance(one.value, tuple):

@@ -6,11 +6,13 @@ from itertools import chain
 
 from kurbel import __version__
 from kurbel.render import Look
+from kurbel.render.document import Table
 from kurbel.render.html import grid, item_list, page, tables
 from kurbel.render.pictures.layout import scene
 from kurbel.render.pictures.style import css
 from kurbel.render.pictures.svg import svg
 from kurbel.render.prose import sentence_text
+from kurbel.render.sheet import Row
 from kurbel.report.document import Document, Grid, Item, Pair, Section
 from kurbel.report.pictures.picture import Picture
 from kurbel.report.tables import Provenance, Report
@@ -80,18 +82,11 @@ def _figure(picture: Picture, look: Look) -> str:
 
 def _grid(given: Grid, look: Look) -> str:
     charset = look.charset
-    parts = grid(
-        [(charset.text(head), "") for head in given.heads],
-        [
-            [(charset.unit if k in given.units else charset.text)(text) for k, text in enumerate(row)]
-            for row in given.rows
-        ],
-        charset.text(given.title),
-        1,
-        numbers=given.numbers,
-        verdicts=given.verdicts,
-    )
-    return "".join(parts)
+    columns = []
+    for k, (head, texts) in enumerate(zip(given.heads, zip(*given.rows))):
+        cells = [*map(charset.unit if k in given.units else charset.text, texts)]
+        columns.append(Row(charset.text(head), "", cells, words=k not in given.numbers))
+    return "".join(grid(Table(charset.text(given.title), columns, 1), given.verdicts))
 
 
 def _text(text: str, look: Look) -> str:

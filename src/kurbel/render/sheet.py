@@ -1,12 +1,13 @@
 """A table before it is laid out: its columns as cells of text, the parts that share their crank angles side by side."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import groupby
 from typing import NamedTuple
 
 from kurbel.render import Look
-from kurbel.render.numbers import Scale, angle_scale, cell, scale_of, whole_if_integral
+from kurbel.render.charset import width
+from kurbel.render.numbers import Scale, angle_scale, cell, decimal, scale_of, whole_if_integral
 from kurbel.report.tables import Column, Part, Report, Value
 
 MARK = "*"
@@ -26,9 +27,9 @@ class Cells:
         return len(self._values)
 
     def __iter__(self) -> Iterator[str]:
-        return self.within(slice(None))
+        return self[:]
 
-    def within(self, part: slice) -> Iterator[str]:
+    def __getitem__(self, part: slice) -> Iterator[str]:
         """Yield the cells of a part of the column."""
         for index in range(len(self._values))[part]:
             yield self._text(self._values[index]) + (MARK if index in self._marked else self._pad)
@@ -44,11 +45,17 @@ class Cells:
 
 
 class Row(NamedTuple):
-    """One quantity as text; in print it runs across the page or down it."""
+    """One quantity as text; in print it runs across the page or down it. words: it is no quantity but names."""
 
     symbol: str
     unit: str
-    cells: Cells
+    cells: Cells | Sequence[str]
+    words: bool = False
+
+    @property
+    def width(self) -> int:
+        """Width of the widest cell."""
+        return self.cells.width if isinstance(self.cells, Cells) else max(map(width, self.cells), default=0)
 
 
 class Band(NamedTuple):
@@ -97,16 +104,9 @@ def part_name(report: Report, part: Part, look: Look) -> str:
     if part is report.whole:
         return look.charset.text(str(part.name)) if report.parts else ""
     if report.group == "ratios":
-        return f"L/R = {ratio_text(part, look)}"
+        ratio = str(whole_if_integral(float(part.name))).replace("inf", "∞")
+        return look.charset.text(f"L/R = {decimal(ratio, look.comma)}")
     return look.charset.text(str(part.name)) if len(report.all_parts) > 1 else ""
-
-
-def ratio_text(part: Part, look: Look) -> str:
-    """Return L/R as a person writes it."""
-    ratio = str(whole_if_integral(float(part.name)))
-    if ratio == "inf" and look.charset.has("∞"):
-        return "∞"
-    return ratio.replace(".", ",") if look.comma else ratio
 
 
 def _row(column: Column, look: Look, pad: str) -> Row:

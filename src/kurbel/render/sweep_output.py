@@ -15,7 +15,7 @@ from kurbel.designs.chosen import Unit
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.csv_text import _harmless, _quoted
-from kurbel.render.numbers import exact, single
+from kurbel.render.numbers import decimal, exact, single
 from kurbel.render.output import silence, stdout_look
 
 _AT_LEAST_EVERY = 0.5
@@ -54,11 +54,10 @@ class Titles(NamedTuple):
         return [row.number, *row.values, *kept, *((row.failure,) if self.failing else ())]
 
 
-def csv_rows(titles: Titles, rows: Iterable[Any], look: Look, headed: bool = True) -> Iterator[str]:
+def csv_rows(titles: Titles, rows: Iterable[Any], look: Look) -> Iterator[str]:
     """Yield the rows as CSV; a list stands in one cell, its values parted by blanks."""
     separator = ";" if look.comma else ","
-    if headed:
-        yield separator.join(_quoted(_harmless(name), separator) for name in titles.whole) + "\n"
+    yield separator.join(_quoted(_harmless(name), separator) for name in titles.whole) + "\n"
     plain = float if look.digits is None and not look.comma else None
     for row in rows:
         cells = [
@@ -109,8 +108,7 @@ def _cell(value: Any, look: Look, in_full: bool = False) -> str:
     if isinstance(value, tuple):
         return " ".join(_cell(one, look, in_full) for one in value)
     if in_full:
-        text = exact(value, look.digits)
-        return text.replace(".", ",") if look.comma else text
+        return decimal(exact(value, look.digits), look.comma)
     text, power = single(value, look.digits, look.comma)
     return f"{text}e{power}" if power else text
 
@@ -138,7 +136,7 @@ def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
     return "  ".join(cell.rjust(width) for cell, width in zip(cells, widths)).rstrip() + "\n"
 
 
-_WRITERS: dict[str, Callable[..., Iterator[str]]] = {
+WRITERS: dict[str, Callable[..., Iterator[str]]] = {
     "csv": csv_rows,
     "json": json_rows,
     "markdown": markdown_rows,
@@ -147,7 +145,7 @@ _WRITERS: dict[str, Callable[..., Iterator[str]]] = {
 
 
 class SweepOutput:
-    """The output of a sweep; headed: with a head; kept: bytes of the file that stay, 0 to begin it anew."""
+    """The output of a sweep; headed: csv with its head; kept: bytes of the file that stay, 0 to begin it anew."""
 
     def __init__(self, titles: Titles, look: Look, file_name: str | None, headed: bool = True, kept: int = 0) -> None:
         self.titles = titles
@@ -160,13 +158,11 @@ class SweepOutput:
         if self._look.format == "parquet":
             self._write_parquet(rows)
             return
+        texts = WRITERS[self._look.format](self.titles, rows, self._look)
+        if self._look.format == "csv" and not self._headed:
+            next(texts)
         with self._opened() as file:
-            _flow(self._texts(rows), file, self._look.encoding)
-
-    def _texts(self, rows: Iterable[Any]) -> Iterator[str]:
-        if self._look.format == "csv":
-            return csv_rows(self.titles, rows, self._look, self._headed)
-        return _WRITERS[self._look.format](self.titles, rows, self._look)
+            _flow(texts, file, self._look.encoding)
 
     @contextmanager
     def _opened(self) -> Iterator[Any]:

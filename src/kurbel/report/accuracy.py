@@ -186,15 +186,9 @@ def answer(machine: Machine, asked: str) -> float | None:
     command, _, quantity = asked.partition(" ")
     name, _, at = quantity.partition("@")
     report = report_of(Case(machine), Frame(command, (float(at or 0),), None, "si"))
-    for part in (report.whole, *report.parts):
-        for column in part.columns if part and at else ():
-            if column.id == name:
-                return _number(column.values[0])
-        for one in part.key_values if part and not at else ():
-            if one.id == name:
-                return _number(one.value)
-    return None
-
-
-def _number(value: Any) -> float | None:
+    parts = [part for part in (report.whole, *report.parts) if part]
+    found: Iterator[Any] = (one.value for part in parts for one in part.key_values if one.id == name)
+    if at:
+        found = (column.values[0] for part in parts for column in part.columns if column.id == name)
+    value = next(found, None)
     return None if value is None else float(value)

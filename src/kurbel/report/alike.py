@@ -50,14 +50,8 @@ def told_once(report: Report) -> Report:
 
 def _equal(one: Part, other: Part) -> bool:
     """Return whether two parts say the same but for their warnings, which may be of the whole machine."""
-    return one.columns == other.columns and all(
-        tuple(ours) == tuple(theirs)
-        for ours, theirs in (
-            (one.key_values, other.key_values),
-            (one.left_out, other.left_out),
-            (one.place_tables, other.place_tables),
-        )
-    )
+    told = ("columns", "key_values", "left_out", "place_tables")
+    return all(tuple(getattr(one, name)) == tuple(getattr(other, name)) for name in told)
 
 
 def _as_one(parts: Sequence[Part]) -> Part:

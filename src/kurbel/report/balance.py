@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -10,8 +10,7 @@ from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.report.frame import Frame, Subject
-from kurbel.report.given import pin_notes
-from kurbel.report.shown import shown_column
+from kurbel.report.shown import place_table, shown_column
 from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
 from kurbel.solver.balance.circles import Circles
 from kurbel.solver.balance.free import Free
@@ -25,29 +24,34 @@ _NOTHING = 1e-6
 """Degrees by which a direction may miss another by rounding."""
 
 
+@np.errstate(all="ignore")  # what overflows is refused, by name
 def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Report:
     """Return what is free and what balances it; orders_only: no columns over the crank angle.
 
     Raises UsageError where no masses move.
     """
     compare = frame.compare
-    with np.errstate(all="ignore"):  # what overflows is refused, by name
-        (whole,) = subjects(case, compare)
-        tables = tuple(_balance_tables(case.balance, frame.system, compare))
-        whole = whole._replace(place_tables=tables, at=None if orders_only or case.machine.speed is None else whole.at)
+    (whole,) = subjects(case, compare)
+    tables = tuple(_balance_tables(case.balance, frame.system, compare))
+    whole = whole._replace(place_tables=tables, at=None if orders_only or case.machine.speed is None else whole.at)
     return frame.report(case.machine, "Massenausgleich", (), whole, _notes(case.balance))
 
 
 def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
     """Yield the whole machine; compare: with what the acceleration of first order gives, beside the true figures."""
-    machine = case.machine
     balance = case.balance
+
+    def warnings() -> Iterable[str]:
+        from kurbel.report.notes import pin_notes
+
+        return pin_notes(case.machine)
+
     yield Subject(
         "whole machine",
         (*balance.answering, *((BookBalance(balance),) if compare else ())),
         balance.at,
         left_out=lambda: _left_out(balance, compare),
-        warnings=lambda: pin_notes(machine),
+        warnings=warnings,
     )
 
 
@@ -66,7 +70,7 @@ def _left_out(balance: MachineBalance, compare: bool) -> Iterable[LeftOut]:
 
 def _without_place(balance: MachineBalance) -> Iterable[str]:
     yield from (throw.name for throw in balance.throws if throw.place is None)
-    if any(one.place is None for one in balance.loose_counterweights):
+    if any(one.place is None for one in balance.counterweights):
         yield "counterweights of the machine"
     if any(one.axial_position is None for one in balance.machine.balance_shafts):
         yield "balance_shafts"
@@ -176,27 +180,22 @@ def _weights(balance: MachineBalance, system: str) -> Iterator[PlaceTable]:
     planes = {f"counterweight_{end}": one for end, one in zip("AB", balance.best_in_planes) if one.product}
     shafts = {f"shaft_{_sense(one)}": one for one in balance.best_shafts}
     if best := planes | shafts:
-        names = tuple((name,) for name in best)
-        columns = _of_weights(list(best.values()), system)
-        yield PlaceTable(
-            "best_weights", "Counterweights in two planes, and balance shafts", ("weight",), names, columns
-        )
+        title = "Counterweights in two planes, and balance shafts"
+        yield place_table("best_weights", title, ("weight",), ((name,) for name in best), _of(best.values()), system)
     if balance.locomotive:
         wheels = [Weight(one, 1, place) for one, place in zip(balance.locomotive.unbalanced, balance.wheels)]
-        columns = _of_weights(wheels, system)
+        found = [*_of(wheels)]
         if square := (balance.omega or 0.0) ** 2:
-            columns += (shown_column(WEIGHTS["hammer_blow"], [abs(one.product) * square for one in wheels], system),)
-        yield PlaceTable("wheels", "Beyond what turns, in the wheels", ("wheel",), (("A",), ("B",)), columns)
+            found.append((WEIGHTS["hammer_blow"], [abs(one.product) * square for one in wheels]))
+        yield place_table("wheels", "Beyond what turns, in the wheels", ("wheel",), (("A",), ("B",)), found, system)
 
 
 def _sense(weight: Weight) -> str:
     return f"n = {abs(weight.order)}, {'with' if weight.order > 0 else 'against'} the crank".replace(" ", "_")
 
 
-def _of_weights(weights: Sequence[Weight], system: str) -> tuple[Column, ...]:
-    places = [one.place for one in weights]
-    return (
-        *((shown_column(WEIGHTS["axial_position"], places, system),) if any(p is not None for p in places) else ()),
-        shown_column(WEIGHTS["product"], [abs(one.product) for one in weights], system),
-        shown_column(WEIGHTS["angle"], [_phase(one.product) for one in weights], system),
-    )
+def _of(weights: Collection[Weight]) -> Iterator[_Entry]:
+    if any(one.place is not None for one in weights):
+        yield WEIGHTS["axial_position"], [one.place for one in weights]
+    yield WEIGHTS["product"], [abs(one.product) for one in weights]
+    yield WEIGHTS["angle"], [_phase(one.product) for one in weights]

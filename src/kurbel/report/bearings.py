@@ -1,6 +1,7 @@
 """The report of `kurbel bearings`: the load on every pin and main bearing, each a part of its own."""
 
 from collections.abc import Iterable
+from functools import partial
 
 from kurbel.declared.unit_systems import show
 from kurbel.report.frame import Frame, Subject
@@ -21,7 +22,7 @@ def bearings_report(case: Case, frame: Frame) -> Report:
         "whole machine",
         (),
         left_out=lambda: _machine_left_out(case.bearings),
-        warnings=lambda: (*of_machine(case), *bearing_warnings(case)),
+        warnings=lambda: (*of_machine(case), *as_far_as_solved(bearing_warnings(case), "bearings")),
     )
     report = frame.report(case.machine, "Lagerkräfte", subjects(case), whole, _notes(case.bearings))
     return report._replace(group="bearings")
@@ -31,17 +32,9 @@ def subjects(case: Case) -> Iterable[Subject]:
     """Yield every pin and main bearing."""
     for forces in case.cylinders:
         forces.refuse_locking()
-    return map(_subject, case.bearings.parts)
-
-
-def _subject(part: Bearing) -> Subject:
-    return Subject(
-        part.name,
-        (part,),
-        part.at,
-        left_out=lambda: _left_out(part),
-        of=part.followed[0].drive.name if part.of_rod else "",
-    )
+    for part in case.bearings.parts:
+        of = part.followed[0].drive.name if part.of_rod else ""
+        yield Subject(part.name, (part,), part.at, left_out=partial(_left_out, part), of=of)
 
 
 _FRAMES = (
@@ -91,12 +84,7 @@ _ROUNDED = 0.05
 """By which distances of throws may contradict their crankshaft, over what they should be."""
 
 
-def bearing_warnings(case: Case) -> tuple[str, ...]:
-    """Return what looks wrong in the bearings of the shaft."""
-    return as_far_as_solved(lambda: _spacing(case), "bearings")
-
-
-def _spacing(case: Case) -> Iterable[str]:
+def bearing_warnings(case: Case) -> Iterable[str]:
     """Yield that the throws do not stand as far apart as their bearings put them."""
     shaft, cylinders = case.machine.crankshaft, case.machine.cylinders
     if shaft is None or shaft.overhung or any(one.axial_position is None for one in cylinders):

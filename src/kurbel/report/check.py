@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.declared.forms import Physical
 from kurbel.declared.unit_systems import show
-from kurbel.errors import KurbelError, Path
+from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Cylinder, Machine
 from kurbel.mechanisms import Mechanism
 from kurbel.report.alike import grouped, together
 from kurbel.report.compared import Entry, Unjudged, judged
 from kurbel.report.left_out import left_out, missing, stages, strength_left_out, turning_stages
-from kurbel.report.notes import Note, machine_notes
-from kurbel.report.tables import LeftOut
+from kurbel.report.notes import Note, Solved, machine_notes
+from kurbel.report.provenance import provenance
+from kurbel.report.tables import LeftOut, Provenance
 
 if TYPE_CHECKING:
     from kurbel.solver.case import Case
@@ -26,6 +27,11 @@ class Section(NamedTuple):
     title: str
     entries: tuple[Entry, ...]
     cylinder: bool = False
+
+    @property
+    def said(self) -> Hashable:
+        """What equal cylinders have in common."""
+        return self.cylinder or self.title, tuple((one.what, one.text, one.severity) for one in self.entries)
 
 
 class Checked(NamedTuple):
@@ -44,27 +50,25 @@ class Checked(NamedTuple):
     @property
     def told_once(self) -> tuple[Section, ...]:
         """The sections, equal cylinders in one."""
-        groups = grouped(self.sections, _said)
+        groups = grouped(self.sections, lambda one: one.said)
         return tuple(group[0]._replace(title=together([one.title for one in group])) for group in groups)
 
 
-def _said(section: Section) -> Hashable:
-    """Return what equal cylinders have in common."""
-    return (section.cylinder or section.title, tuple((one.what, one.text, one.severity) for one in section.entries))
+def checked(machine: Machine, solved: "Case | None" = None) -> Checked:
+    """Return what is to be said of a machine; key values are computed only as far as it needs.
 
-
-def checked(machine: Machine) -> Checked:
-    """Return what is to be said of a machine; key values are computed only as far as it needs."""
-    found = tuple(judged(machine))
-    entries = [one for one in found if isinstance(one, Entry)]
+    solved: the machine with its results, where there are some.
+    """
 
     @cache
     def case() -> "Case":
         from kurbel.solver.case import Case
 
-        return Case(machine)
+        return solved or Case(machine)
 
-    notes = machine_notes(machine)
+    found = tuple(judged(machine, case))
+    entries = [one for one in found if isinstance(one, Entry)]
+    notes = machine_notes(machine, case)
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
@@ -79,10 +83,6 @@ def checked(machine: Machine) -> Checked:
     broken = any(one.severity == "error" for one in entries)
     unjudged = tuple(one for one in found if isinstance(one, Unjudged))
     return Checked(f"{machine.name}: a valid machine", tuple(s for s in sections if s.entries), broken, unjudged)
-
-
-Solved = Callable[[], "Case"]
-"""Returns the machine with its results; asked only where some are needed, which loads what computes them."""
 
 
 def _machine_entries(machine: Machine) -> Iterable[Entry]:
@@ -155,9 +155,13 @@ def _crankshaft_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
     if machine.crankshaft is None:
         return
     from kurbel.report.bearings import bearing_warnings
+    from kurbel.report.warnings import as_far_as_solved
     from kurbel.solver.shaft.line import shaft_obstacle
 
-    yield from (Entry("bearings", text, "warning", ("crankshaft",)) for text in bearing_warnings(case()))
+    yield from (
+        Entry("bearings", text, "warning", ("crankshaft",))
+        for text in as_far_as_solved(bearing_warnings(case()), "bearings")
+    )
     if not shaft_obstacle(machine):
         yield Entry("computed", "loads on pins and main bearings")
     if obstacle := machine.strength_obstacle:
@@ -189,8 +193,9 @@ def _shaft_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
     if machine.shaft is None and machine.coupling is None:
         return
     from kurbel.report.torsion import torsion_left_out, torsion_warnings
+    from kurbel.report.warnings import as_far_as_solved
 
-    yield from (Entry("torsion", text, "warning") for text in torsion_warnings(case()))
+    yield from (Entry("torsion", text, "warning") for text in as_far_as_solved(torsion_warnings(case()), "torsion"))
     if machine.shaft is None:
         return
     yield Entry("masses", str(len(machine.shaft.masses)))
@@ -212,3 +217,68 @@ def _described(mechanism: Mechanism) -> str:
         if isinstance(key.form, Physical) and isinstance(size := getattr(mechanism, name, None), float) and size
     ]
     return f"{mechanism.name}: {', '.join(lengths)}"
+
+
+# for programs: each finding with its place in the machine file
+
+
+class Finding(NamedTuple):
+    """One finding: file; line and column from 1 and the dotted key, None where it is about no key; severity.
+
+    severity: `error`: a fault of the file, a limit that is broken, a figure that is off, or what cannot be judged;
+    `warning`; `info`: what is kept, met or left out.
+    """
+
+    file: str
+    line: int | None
+    column: int | None
+    key: str | None
+    message: str
+    severity: str
+
+
+class Findings(NamedTuple):
+    """The outcome of a check for programs; machine: its name, None where the file describes none."""
+
+    machine: str | None
+    findings: tuple[Finding, ...]
+    provenance: Provenance | None = None
+
+
+def faults_found(file: str, error: KurbelError) -> Findings:
+    """Return what is wrong with a machine file that cannot be read."""
+    if not isinstance(error, MachineFileError):
+        return Findings(None, (Finding(file, None, None, None, str(error), "error"),))
+    return Findings(
+        None, tuple(_finding(error.file_name, fault.path, fault, fault.message, "error") for fault in error.faults)
+    )
+
+
+Locate = Callable[[str, "list[Fault]"], "list[Fault]"]
+
+
+def findings(machine: Machine, checked: Checked, locate: Locate) -> Findings:
+    """Return what was found of a machine; locate: returns faults with their places in the text of the file."""
+    several = len(machine.cylinders) > 1
+    said = [
+        (
+            one.path,
+            f"{f'{section.title}: ' if several and section.cylinder else ''}{one.what}: {one.text}",
+            one.severity,
+        )
+        for section in checked.sections
+        for one in section.entries
+        if one.severity
+    ]
+    said += [(path, str(error).removeprefix(f"{path_text(path)}: "), "error") for path, error in checked.unjudged]
+    origin, paths = machine.origin, {path for path, _, _ in said if path}
+    placed = locate(origin.text, [Fault(path, "", at_key=True) for path in paths]) if origin and paths else []
+    places = {fault.path: fault for fault in placed}
+    file = origin.name if origin else machine.name
+    found = tuple(_finding(file, path, places.get(path), text, severity) for path, text, severity in said)
+    return Findings(machine.name, found, provenance(machine))
+
+
+def _finding(file: str, path: Path, place: Fault | None, message: str, severity: str) -> Finding:
+    line, column = (place.line, place.column) if place else (None, None)
+    return Finding(file, line, column, path_text(path) or None, message, severity)

@@ -10,7 +10,9 @@ from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
+from kurbel.numerics.extreme import Extreme
 from kurbel.report.alike import grouped, together
+from kurbel.report.notes import Solved
 
 if TYPE_CHECKING:
     from kurbel.solver.case import Case
@@ -45,14 +47,14 @@ _ROUNDING = 1e-9
 """A bound is no more exact than what is printed of it: a stroke of 110 mm does not break a limit of 110 mm."""
 
 
-def judged(machine: Machine) -> Iterator[Judged]:
+def judged(machine: Machine, solved: Solved) -> Iterator[Judged]:
     """Yield how each limit and then each expectation stands, or why that cannot be told."""
     if not machine.limits and not machine.expect:
         return
-    declared = by_id(every_quantity().all_key_values)
+    declared = by_id(*every_quantity().all_key_values)
     opposites = [other for name, _ in machine.limits if (other := _opposite(name)) in declared]
     asked = (*(name for name, _ in (*machine.limits, *machine.expect)), *opposites)
-    values = limited_values(machine, dict.fromkeys(asked))
+    values = limited_values(solved(), dict.fromkeys(asked))
     for name, bound in machine.limits:
         found = tuple(_all_of(_path("limits", name, bound), declared[name], bound, values[name]))
         yield from found
@@ -155,18 +157,15 @@ def _shown(value: float, kind: str, unit: str) -> str:
 # the values, computed only as far as they are asked for
 
 
-def limited_values(machine: Machine, names: Iterable[str]) -> dict[str, Values]:
+def limited_values(case: "Case", names: Iterable[str]) -> dict[str, Values]:
     """Return by id what the machine has of these key values, or what keeps them from being computed."""
     import numpy as np
 
-    from kurbel.solver.case import Case
-
-    case = Case(machine)
     found: dict[str, Values] = {}
     with np.errstate(all="ignore"):
         for name in names:
             try:
-                found[name] = [one for command in commands_for(machine, name) for one in _values(case, command, name)]
+                found[name] = list(_values(case, name))
             except KurbelError as error:
                 found[name] = error
     return found
@@ -179,12 +178,12 @@ def commands_for(machine: Machine, name: str) -> tuple[str, ...]:
     return (first, *(command for command in others if command == "flywheel" and not alike))
 
 
-def _values(case: "Case", command: str, name: str) -> Iterator[Found]:
-    from kurbel.numerics.extreme import Extreme
+def _values(case: "Case", name: str) -> Iterator[Found]:
     from kurbel.report.frame import subjects_of
 
-    for subject in subjects_of(case, command):
-        quantity = subject.lists.key_values(command).get(name)
-        value = quantity and subject.answer(quantity)
-        if isinstance(value, (Extreme, float)):
-            yield subject.name, value.value if isinstance(value, Extreme) else value
+    for command in commands_for(case.machine, name):
+        for subject in subjects_of(case, command):
+            quantity = subject.lists.key_values(command).get(name)
+            value = quantity and subject.answer(quantity)
+            if isinstance(value, (Extreme, float)):
+                yield subject.name, value.value if isinstance(value, Extreme) else value

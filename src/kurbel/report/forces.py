@@ -1,19 +1,16 @@
 """The report of `kurbel forces`."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from kurbel.declared.indicated import CYCLE_VALUES
+from kurbel.declared.forces import CYCLE_VALUES
 from kurbel.errors import UsageError
 from kurbel.report.frame import Frame, Subject, refuse_without_cylinder
-from kurbel.report.shown import shown_column
+from kurbel.report.shown import place_table
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
-
-if TYPE_CHECKING:
-    from kurbel.report.notes import Note
 
 
 def forces_report(case: Case, frame: Frame) -> Report:
@@ -39,12 +36,10 @@ def cycles_report(case: Case, system: str) -> Report:
 
 def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
     if cycles := forces.indicated.cycles:
-        shown = [
-            one.absolute() if forces.drive.own_gas and forces.drive.own_gas.absolute else one for one in CYCLE_VALUES
-        ]
-        names = tuple((str(number),) for number in range(1, len(cycles.p_max) + 1))
-        columns = [shown_column(one, getattr(cycles, one.id).tolist(), system) for one in shown]
-        yield PlaceTable("cycles", "Measured cycles", ("cycle",), names, tuple(columns), headed=True)
+        absolute = forces.drive.own_gas and forces.drive.own_gas.absolute
+        names = ((str(number),) for number in range(1, len(cycles.p_max) + 1))
+        found = ((one.absolute() if absolute else one, getattr(cycles, one.id).tolist()) for one in CYCLE_VALUES)
+        yield place_table("cycles", "Measured cycles", ("cycle",), names, found, system, headed=True)
 
 
 def _notes(case: Case) -> Iterable[str]:
@@ -92,29 +87,23 @@ def _rod_load_notes(case: Case) -> Iterable[str]:
 
 
 def subjects(case: Case) -> Iterable[Subject]:
-    """Yield every cylinder, with its forces and its motion."""
+    """Return every cylinder, with its forces and its motion."""
 
     @cache
-    def found() -> "Sequence[Note]":
-        from kurbel.report.notes import machine_notes
+    def notes() -> dict[str, list[str]]:
+        from kurbel.report.notes import by_cylinder
 
-        return machine_notes(case.machine, case)
+        return by_cylinder(case)
 
-    for forces in case.cylinders:
-        yield _subject(case, forces, found)
+    return (_subject(case, forces, notes) for forces in case.cylinders)
 
 
-def _subject(case: Case, forces: CylinderForces, found: "Callable[[], Sequence[Note]]") -> Subject:
+def _subject(case: Case, forces: CylinderForces, notes: Callable[[], dict[str, list[str]]]) -> Subject:
     cylinder = forces.drive.cylinder
 
     def at(degrees: Any) -> Any:
         forces.refuse_locking()  # first, with an angle that does not depend on the step
         return forces.at(degrees)
-
-    def warnings() -> Iterable[str]:
-        from kurbel.report.notes import of_cylinder
-
-        yield from of_cylinder(found(), case.machine, cylinder)
 
     def left() -> Iterable[LeftOut]:
         from kurbel.report.left_out import left_out
@@ -129,4 +118,5 @@ def _subject(case: Case, forces: CylinderForces, found: "Callable[[], Sequence[N
             why = "are within the noise of the trace and no Druckwechsel"
             yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
 
-    return Subject(cylinder.name, tuple(forces.answering), at, forces.lists, left, warnings, source=forces)
+    results = tuple(forces.answering)
+    return Subject(cylinder.name, results, at, forces.lists, left, lambda: notes()[cylinder.name], source=forces)

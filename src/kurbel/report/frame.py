@@ -93,6 +93,7 @@ class Frame(NamedTuple):
     over: str = ""
     compare: bool = False
 
+    @np.errstate(all="ignore")
     def report(
         self,
         machine: Machine,
@@ -102,17 +103,15 @@ class Frame(NamedTuple):
         notes: Iterable[str] = (),
     ) -> Report:
         """Return the report on these subjects; what overflows is refused by name."""
-        with np.errstate(all="ignore"):
-            every = (*subjects, *((whole,) if whole else ()))
-            parts = [self._part(one) for one in every]
-            self._refuse_absent(every, parts)
-            told = (*notes, *self._nothing_compared(parts), *_nowhere(parts))
-            last = parts.pop() if whole else None
-            name = machine.name
-            report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=told)
-            return report._replace(
-                provenance=provenance(machine), cylinders=tuple(cylinder.name for cylinder in machine.cylinders)
-            )
+        every = (*subjects, *((whole,) if whole else ()))
+        parts = [self._part(one) for one in every]
+        self._refuse_absent(every, parts)
+        told = (*notes, *self._nothing_compared(parts), *_nowhere(parts))
+        last = parts.pop() if whole else None
+        name = machine.name
+        report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=told)
+        names = tuple(cylinder.name for cylinder in machine.cylinders)
+        return report._replace(provenance=provenance(machine), cylinders=names)
 
     def _part(self, subject: Subject) -> Part:
         try:
@@ -132,12 +131,7 @@ class Frame(NamedTuple):
 
     def later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:
         """Return what is made when it is read."""
-
-        def ignoring() -> tuple[Any, ...]:
-            with np.errstate(all="ignore"):
-                return tuple(make())
-
-        return Later(ignoring)
+        return Later(np.errstate(all="ignore")(lambda: tuple(make())))
 
     def _columns(self, subject: Subject) -> tuple[Column, ...]:
         if subject.at is None:
@@ -146,12 +140,10 @@ class Frame(NamedTuple):
         if self.columns:
             chosen = [*(known[name] for name in self.columns if name in known), *filter(self._adds, known.values())]
         else:
-            chosen = [one for one in known.values() if subject.says(one) and self._shows(one)]
+            unasked = (one for one in known.values() if self.command not in one.on_request or self._adds(one))
+            chosen = [*filter(subject.says, unasked)]
         angles = self.angles(subject) if callable(self.angles) else self.angles
         return shown_columns(known["phi"], chosen, subject.at, angles, self.system)
-
-    def _shows(self, column: Quantity) -> bool:
-        return self.command not in column.on_request or self._adds(column)
 
     def _adds(self, column: Quantity) -> bool:
         return column.id == self.over or (self.compare and column.id.endswith("_book"))

@@ -4,8 +4,8 @@ import math
 
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.report.shown import shown_column, shown_key_value
-from kurbel.report.tables import LeftOut, Part, PlaceTable, Report
+from kurbel.report.shown import place_table, shown_key_value
+from kurbel.report.tables import LeftOut, Part, Report
 from kurbel.solver.cylinder.friction import holding_force
 
 _UP = Quantity("P_up", "P_1/Q", "ratio", "Force over the weight that moves the body up")
@@ -31,11 +31,12 @@ def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -
             left.append(LeftOut(what, "no force does it, however large: the body locks itself"))
             return None
 
-    columns = tuple(
-        shown_column(quantity, [force(friction, name) for name in asked], "si")
+    found = {
+        quantity: [force(friction, name) for name in asked]
         for quantity, friction in ((_UP, coefficient), (_HELD, -coefficient))
-    )
-    table = PlaceTable("plane", "Force P over the weight Q", ("direction",), tuple((name,) for name in asked), columns)
+    }
+    names = ((name,) for name in asked)
+    table = place_table("plane", "Force P over the weight Q", ("direction",), names, found.items(), "si")
     rho = shown_key_value(_RHO, math.degrees(math.atan(coefficient)), "si")
     whole = Part("inclined plane", (), (rho,), tuple(left), place_tables=(table,))
     head = (

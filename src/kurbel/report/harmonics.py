@@ -6,20 +6,22 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
+from kurbel.declared.quantity import Quantity
 from kurbel.declared.torsion import TORQUE_ORDERS
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import flywheel_left_out, left_out
 from kurbel.report.notes import of_machine
-from kurbel.report.shown import counted, shown_column
-from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
+from kurbel.report.shown import place_table
+from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
 from kurbel.solver.turning.harmonics import CylinderOrders, MachineOrders, Orders, Spectrum
 
 _HIGHEST = 1000
 
 
+@np.errstate(all="ignore")  # what overflows is refused, by name
 def harmonics_report(
     case: Case, frame: Frame, orders: Sequence[float] | None = None, speeds: Sequence[float] | None = None
 ) -> Report:
@@ -28,10 +30,11 @@ def harmonics_report(
     speeds: in revolutions per second, at which the orders of the whole machine are told besides. Raises UsageError
     where nothing turns the shaft.
     """
-    with np.errstate(all="ignore"):  # what overflows is refused, by name
-        found = case.harmonics(orders_of(case.machine, orders))
-        each = [_cylinder(case.machine, one, frame.system) for one in found.cylinders]
-        whole = _whole(case, found, tuple(_speed_tables(case.machine, found, speeds, frame.system)), frame.system)
+    found = case.harmonics(orders_of(case.machine, orders))
+    each = [_cylinder(case.machine, one, frame.system) for one in found.cylinders]
+    (whole,) = subjects(case, found)
+    tables = (_machine_table(found, frame.system), *_speed_tables(case.machine, found, speeds, frame.system))
+    whole = whole._replace(place_tables=tables)
     return frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
 
 
@@ -57,27 +60,27 @@ def orders_of(machine: Machine, asked: Sequence[float] | None) -> Array | None:
 def _cylinder(machine: Machine, one: CylinderOrders, system: str) -> Subject:
     cylinder = one.forces.drive.cylinder
     title = f"Orders of the torque of {cylinder.name}, φ from its own inner dead centre"
-    table = _table("orders", title, one.own, one.area, [""] * len(one.own.gas.orders), system)
+    table = _table(title, one.own, one.area, [""] * len(one.own.gas.orders), system)
     return Subject(cylinder.name, (), left_out=lambda: left_out(machine, cylinder), place_tables=(table,))
 
 
-def _whole(case: Case, found: MachineOrders, more: tuple[PlaceTable, ...], system: str) -> Subject:
+def _machine_table(found: MachineOrders, system: str) -> PlaceTable:
     major = found.major_orders or ()
     marks = ["major" if order in major else "" for order in found.orders.tolist()]
-    title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
-    table = _table("orders", title, found.machine, None, marks, system)
-    return Subject(
+    return _table(
+        "Orders of the turning effort, φ from the inner dead centre of crank 1", found.machine, None, marks, system
+    )
+
+
+def subjects(case: Case, asked: MachineOrders | None = None) -> Iterable[Subject]:
+    """Yield the whole machine; asked: by other than the usual orders."""
+    found = asked or case.harmonics()
+    yield Subject(
         "whole machine",
         (found,),
         left_out=lambda: (*flywheel_left_out(case.machine), *_no_cranks(found)),
         warnings=lambda: of_machine(case),
-        place_tables=(table, *more),
     )
-
-
-def subjects(case: Case) -> Iterable[Subject]:
-    """Yield the whole machine."""
-    yield _whole(case, case.harmonics(), (), "si")
 
 
 def _no_cranks(found: MachineOrders) -> Iterable[LeftOut]:
@@ -86,9 +89,9 @@ def _no_cranks(found: MachineOrders) -> Iterable[LeftOut]:
         yield LeftOut("gas and inertia apart", why)
 
 
-def _table(id: str, title: str, orders: Orders, area: float | None, marks: list[str], system: str) -> PlaceTable:
-    columns = (shown_column(TORQUE_ORDERS[name], values, system) for name, values in _columns(orders, area))
-    return PlaceTable(id, title, ("kind",), tuple((mark,) for mark in marks), counted(columns))
+def _table(title: str, orders: Orders, area: float | None, marks: list[str], system: str) -> PlaceTable:
+    found = ((TORQUE_ORDERS[name], values) for name, values in _columns(orders, area))
+    return place_table("orders", title, ("kind",), ((mark,) for mark in marks), found, system)
 
 
 def _columns(orders: Orders, area: float | None) -> Iterable[tuple[str, Sequence[Any]]]:
@@ -122,15 +125,13 @@ def _speed_tables(
     if not machine.speed:
         raise UsageError("--speeds: the inertia forces are told from those at the 'speed' of the machine; give it one")
     spectra = [found.machine.at_speed(speed / machine.speed) for speed in speeds]
-    columns: dict[str, list[Any]] = {"speed": [speed for speed in speeds for _ in found.orders]}
+    columns: dict[Quantity, list[Any]] = {TORQUE_ORDERS["speed"]: [speed for speed in speeds for _ in found.orders]}
     for one in spectra:
         for name, values in _of_spectrum(one):
-            columns.setdefault(name, []).extend(values)
-    shown: tuple[Column, ...] = counted(
-        shown_column(TORQUE_ORDERS[name], values, system) for name, values in columns.items()
-    )
-    names = tuple(("",) for _ in columns["speed"])
-    yield PlaceTable("orders_by_speed", "Orders of the turning effort at other speeds", ("kind",), names, shown)
+            columns.setdefault(TORQUE_ORDERS[name], []).extend(values)
+    names = [("",)] * len(spectra) * len(found.orders)
+    title = "Orders of the turning effort at other speeds"
+    yield place_table("orders_by_speed", title, ("kind",), names, columns.items(), system)
 
 
 def _notes(found: MachineOrders) -> Iterable[str]:

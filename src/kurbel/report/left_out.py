@@ -116,12 +116,9 @@ def flywheel_left_out(machine: Machine) -> tuple[LeftOut, ...]:
         for cylinder, ones in list(zip(machine.cylinders, of_each))[: 1 if alike else None]
         for one in ones
     ]
-    return (*found, *_beside_rim(machine), *missing(turning_stages(machine)))
-
-
-def _beside_rim(machine: Machine) -> Iterable[LeftOut]:
     if machine.flywheel and machine.flywheel.rim and machine.flywheel.rim.sized_by:
-        yield LeftOut("arms and hub of the flywheel", "J is that of the rim, whose sizes are given")
+        found.append(LeftOut("arms and hub of the flywheel", "J is that of the rim, whose sizes are given"))
+    return (*found, *missing(turning_stages(machine)))
 
 
 def turning_stages(machine: Machine) -> dict[str, str]:

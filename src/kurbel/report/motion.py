@@ -1,13 +1,13 @@
 """The report of `kurbel motion`."""
 
 from collections.abc import Iterable
+from functools import partial
 
 from kurbel.machine import Machine
 from kurbel.report.frame import Frame, Subject, refuse_without_cylinder
 from kurbel.report.left_out import motion_left_out
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
 
 
 def motion_report(case: Case, frame: Frame) -> Report:
@@ -18,20 +18,10 @@ def motion_report(case: Case, frame: Frame) -> Report:
 
 
 def subjects(case: Case) -> Iterable[Subject]:
-    """Return every cylinder, with its motion."""
-    return (_subject(case.machine, forces) for forces in case.cylinders)
-
-
-def _subject(machine: Machine, forces: CylinderForces) -> Subject:
-    cylinder = forces.drive.cylinder
-    return Subject(
-        cylinder.name,
-        (forces.motion,),
-        forces.at,
-        forces.lists,
-        lambda: motion_left_out(machine, cylinder),
-        source=forces,
-    )
+    """Yield every cylinder, with its motion."""
+    for forces in case.cylinders:
+        left_out = partial(motion_left_out, case.machine, forces.drive.cylinder)
+        yield Subject(forces.drive.name, (forces.motion,), forces.at, forces.lists, left_out, source=forces)
 
 
 def mechanism_notes(machine: Machine) -> tuple[str, ...]:

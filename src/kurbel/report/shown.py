@@ -11,7 +11,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.errors import UsageError
 from kurbel.numerics.extreme import Extreme
-from kurbel.report.tables import Column, KeyValue
+from kurbel.report.tables import Column, KeyValue, PlaceTable
 
 _AT_ONCE = 8192
 """Crank angles computed at once: what a table of any length costs in memory beside its own numbers."""
@@ -63,27 +63,34 @@ def shown_column(
     unit = shown_unit(quantity.kind, system, max(size or largest, beside))
     given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
     given += 0.0
-    shown = values if isinstance(values, array) else _filled(values, given.tolist())
+    following = map(float, given)
+    shown = values if isinstance(values, array) else tuple(None if v is None else next(following) for v in values)
     size = convert(size, quantity.kind, unit)
     symbols = quantity.symbol, quantity.ascii_symbol
     return Column(quantity.id, *symbols, quantity.marked(unit), shown, quantity.text, size=size)
 
 
-def _filled(values: Sequence[float | None], given: list[float]) -> tuple[float | None, ...]:
-    """Return the given values in the places of those that are not None."""
-    following = iter(given)
-    return tuple(None if value is None else next(following) for value in values)
+def place_table(
+    id: str,
+    title: str,
+    heads: tuple[str, ...],
+    names: Iterable[tuple[str, ...]],
+    found: Iterable[tuple[Quantity, Sequence[float | None]]],
+    system: str,
+    headed: bool = False,
+) -> PlaceTable:
+    """Return a table of places; found: its quantities with their values in SI.
 
+    Orders and numbers of modes are written as such, 1.5, but 1 and 2; a distance in thousandths.
+    """
 
-def counted(columns: Iterable[Column]) -> tuple[Column, ...]:
-    """Return columns with orders and numbers of modes written as such, 1.5, but 1 and 2; a distance in thousandths."""
+    def column(quantity: Quantity, values: Sequence[float | None]) -> Column:
+        decimals = {"distance": 3}.get(quantity.id)
+        if quantity.id in ("order", "mode"):
+            decimals = int(any(value and value % 1 for value in values))
+        return shown_column(quantity, values, system)._replace(decimals=decimals)
 
-    def decimals(column: Column) -> int | None:
-        if column.id in ("order", "mode"):
-            return int(any(value and value % 1 for value in column.values))
-        return 3 if column.id == "distance" else column.decimals
-
-    return tuple(one._replace(decimals=decimals(one)) for one in columns)
+    return PlaceTable(id, title, heads, tuple(names), tuple(column(*one) for one in found), headed)
 
 
 def shown_key_value(quantity: Quantity, value: Any, system: str) -> KeyValue:

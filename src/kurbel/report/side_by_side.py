@@ -24,15 +24,15 @@ _NONE = "–"
 Item = TypeVar("Item")
 
 
+@np.errstate(all="ignore")
 def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, progress: Progress) -> Document:
     """Return two machines side by side. progress: is told what is being done."""
     first, second = _names(cases)
     told = (*_files(cases, (first, second)), *_given(given, first, second))
     sections = [Section("input", "What was given differently", told)]
-    with np.errstate(all="ignore"):
-        for command in COMMANDS:
-            progress(command.title.lower())
-            sections.append(Section(command.word, command.title, tuple(_of_command(cases, command, system))))
+    for command in COMMANDS:
+        progress(command.title.lower())
+        sections.append(Section(command.word, command.title, tuple(_of_command(cases, command, system))))
     sources = tuple(provenance(case.machine) for case in cases)
     return Document(f"{first} and {second}", sources, tuple(one for one in sections if one.items))
 

@@ -5,12 +5,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from kurbel.declared.factors import PHI
+from kurbel.declared.quantity import Quantity
 from kurbel.declared.shaft import STRESSES
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.left_out import left_out, strength_left_out
 from kurbel.report.notes import of_machine
-from kurbel.report.shown import shown_column
-from kurbel.report.tables import Column, PlaceTable, Report
+from kurbel.report.shown import place_table
+from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import shell_verdict
 from kurbel.solver.case import Case
 from kurbel.solver.strength.crankshaft import CrankshaftStrength, Strained
@@ -22,23 +23,23 @@ _TITLES = {
 }
 
 
+@np.errstate(all="ignore")  # what overflows is refused, by name
 def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report:
     """Return the stresses of the crankshaft; places_only: no columns over the crank angle.
 
     Raises UsageError where no crankshaft can be examined.
     """
-    with np.errstate(all="ignore"):  # what overflows is refused, by name
-        (whole,) = subjects(case)
-        tables = tuple(_place_tables(case.strength, frame.system))
-        whole = whole._replace(name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
-        cool, verdict = shell_verdict(case.strength)
-        notes = (*_NOTES, *((_TURNING_ROD,) if case.strength.C_rod else ()), *(verdict if cool else ()))
+    (whole,) = subjects(case)
+    tables = tuple(_place_tables(case.stress, frame.system))
+    whole = whole._replace(name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
+    cool, verdict = shell_verdict(case.stress)
+    notes = (*_NOTES, *((_TURNING_ROD,) if case.stress.C_rod else ()), *(verdict if cool else ()))
     return frame.report(case.machine, "Festigkeit der Kurbelwelle", (), whole, notes)
 
 
 def subjects(case: Case) -> Iterable[Subject]:
     """Yield the crankshaft."""
-    machine, strength = case.machine, case.strength
+    machine, strength = case.machine, case.stress
     yield Subject(
         "crankshaft",
         (strength,),
@@ -64,12 +65,11 @@ _TURNING_ROD = (
 def _place_tables(strength: CrankshaftStrength, system: str) -> Iterable[PlaceTable]:
     found = (strength.at_dead_centre, strength.at_largest_torque, strength.at_worst)
     for (id, title), strained in zip(_TITLES.items(), found):
-        names = tuple((one.place.part, one.place.name.replace(" ", "_")) for one in strained)
-        yield PlaceTable(id, title, ("part", "place"), names, tuple(_place_columns(strained, system)))
+        names = ((one.place.part, one.place.name.replace(" ", "_")) for one in strained)
+        yield place_table(id, title, ("part", "place"), names, _place_columns(strained), system)
 
 
-def _place_columns(strained: tuple[Strained, ...], system: str) -> Iterable[Column]:
-    yield shown_column(PHI, [one.degrees for one in strained], system)
+def _place_columns(strained: tuple[Strained, ...]) -> Iterable[tuple[Quantity, list[float]]]:
+    yield PHI, [one.degrees for one in strained]
     for name, quantity in STRESSES.items():
-        values = [getattr(one if name in ("combined", "von_mises") else one.stresses, name) for one in strained]
-        yield shown_column(quantity, values, system)
+        yield quantity, [getattr(one if name in ("combined", "von_mises") else one.stresses, name) for one in strained]

@@ -13,13 +13,13 @@ from kurbel.errors import NoSolutionError
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.harmonics import orders_of
 from kurbel.report.notes import of_machine
-from kurbel.report.shown import counted, shown_column
+from kurbel.report.shown import place_table
 from kurbel.report.tables import LeftOut, PlaceTable, Report
-from kurbel.report.warnings import as_far_as_solved
 from kurbel.solver.case import Case
 from kurbel.solver.torsion.forced import Vibration, stress
 from kurbel.solver.torsion.vibration import RUN_UP, Critical, ShaftVibration
 
+_Values = dict[Quantity, Sequence[Any]]
 _HIGHEST = 12
 """Order up to which critical speeds are told unless orders are asked for."""
 _MODES = 3
@@ -35,18 +35,18 @@ class Wanted(NamedTuple):
     speeds: Sequence[float] | None = None
 
 
+@np.errstate(all="ignore")  # what overflows is refused, by name
 def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Report:  # noqa: B008 (immutable)
     """Return the torsional vibration of the shaft line; without columns of the frame only its tables are told.
 
     Raises UsageError without a shaft line, NoSolutionError where an undamped resonance has no end.
     """
-    with np.errstate(all="ignore"):  # what overflows is refused, by name
-        found = case.torsion_of(orders_of(case.machine, wanted.orders))
-        critical = found.critical_speeds(wanted.modes, _HIGHEST if wanted.orders is None else math.inf)
-        (whole,) = subjects(case, found, critical)
-        whole = whole._replace(place_tables=tuple(_tables(found, critical, wanted, frame.system)))
-        pieces = found.pieces if frame.columns else ()
-        each = [Subject(one.name, (), one.at) for one in pieces]
+    found = case.torsion_of(orders_of(case.machine, wanted.orders))
+    critical = found.critical_speeds(wanted.modes, _HIGHEST if wanted.orders is None else math.inf)
+    (whole,) = subjects(case, found, critical)
+    whole = whole._replace(place_tables=tuple(_tables(found, critical, wanted, frame.system)))
+    pieces = found.pieces if frame.columns else ()
+    each = [Subject(one.name, (), one.at) for one in pieces]
     return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found, wanted, critical))
 
 
@@ -64,14 +64,10 @@ def subjects(
     )
 
 
-def torsion_warnings(case: Case) -> tuple[str, ...]:
-    """Return which of the usual critical speeds lie beside the working speed, or that a vibration has no end."""
-
-    def found() -> Iterable[str]:
-        _refuse_endless(case.torsion)
-        return _warnings(case.torsion, case.torsion.critical_speeds(_MODES, _HIGHEST))
-
-    return as_far_as_solved(found, "torsion")
+def torsion_warnings(case: Case) -> Iterable[str]:
+    """Yield which of the usual critical speeds lie beside the working speed; refuses a vibration without an end."""
+    _refuse_endless(case.torsion)
+    yield from _warnings(case.torsion, case.torsion.critical_speeds(_MODES, _HIGHEST))
 
 
 def _refuse_endless(found: ShaftVibration) -> None:
@@ -89,31 +85,22 @@ def _tables(found: ShaftVibration, critical: tuple[Critical, ...], wanted: Wante
         yield _speeds_table(found, wanted.speeds, system)
 
 
-def _table(
-    id: str, title: str, head: str, names: Sequence[str], declared: dict[str, Quantity], system: str, **values: Any
-) -> PlaceTable:
-    columns = counted(
-        shown_column(declared[name], of, system)
-        for name, of in values.items()
-        if of is not None and any(one is not None for one in of)
-    )
-    return PlaceTable(id, title, (head,), tuple((name.replace(" ", "_"),) for name in names), columns)
+def _table(id: str, title: str, head: str, names: Iterable[str], values: _Values, system: str) -> PlaceTable:
+    """Return a table of what any of its rows has."""
+    found = ((quantity, of) for quantity, of in values.items() if any(one is not None for one in of))
+    return place_table(id, title, (head,), ((name.replace(" ", "_"),) for name in names), found, system)
 
 
 def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
     """Return the natural frequencies, with what stands still in each mode."""
     omegas = found.modes.omegas.tolist()
-    return _table(
-        "modes",
-        "Natural frequencies",
-        "nodes",
-        [_nodes(found, index) for index in range(len(omegas))],
-        MODES,
-        system,
-        mode=[float(found.first + index) for index in range(len(omegas))],
-        frequency=[omega / (2 * np.pi) for omega in omegas],
-        omega_natural=omegas,
-    )
+    names = [_nodes(found, index) for index in range(len(omegas))]
+    values: _Values = {
+        MODES["mode"]: [float(found.first + index) for index in range(len(omegas))],
+        MODES["frequency"]: [omega / (2 * np.pi) for omega in omegas],
+        MODES["omega_natural"]: omegas,
+    }
+    return _table("modes", "Natural frequencies", "nodes", names, values, system)
 
 
 def _nodes(found: ShaftVibration, index: int) -> str:
@@ -132,34 +119,23 @@ def _holzer_table(found: ShaftVibration, mode: int, system: str) -> PlaceTable:
     """Return Holzer's table of a mode, from the first mass to the last."""
     table, chain = found.holzer(mode), found.chain
     omega = float(found.modes.omegas[mode - found.first])
-    before, after = chain.ground == "before", chain.ground == "after"
-    angles, own = table.angles, omega**2 * chain.inertias * table.angles
-    twists = table.torques / chain.stiffnesses
+    before, after = (["ground"] if chain.ground == end else [] for end in ("before", "after"))
 
-    def rows(values: Any) -> list[float | None]:
+    def rows(of_masses: Any) -> list[float | None]:
         """Return the values of masses, with none at a fixed end."""
-        return [*([None] if before else []), *values.tolist(), *([None] if after else [])]
+        return [*(None for _ in before), *of_masses.tolist(), *(None for _ in after)]
 
-    names = [
-        *(["ground"] if before else []),
-        *(mass.name for mass in found.line.masses),
-        *(["ground"] if after else []),
-    ]
+    values: _Values = {
+        HOLZER["inertia"]: rows(chain.inertias),
+        HOLZER["theta"]: [0.0 if angle is None else angle for angle in rows(table.angles)],
+        HOLZER["inertia_torque"]: rows(omega**2 * chain.inertias * table.angles),
+        HOLZER["torque_sum"]: [*table.torques.tolist(), None],
+        HOLZER["stiffness"]: [*chain.stiffnesses.tolist(), None],
+        HOLZER["twist"]: [*(table.torques / chain.stiffnesses).tolist(), None],
+    }
+    names = [*before, *(mass.name for mass in found.line.masses), *after]
     title = f"Holzer's table of mode {mode}, f = {omega / (2 * np.pi):.6g} Hz, ω² = {omega**2:.6g} 1/s²"
-    return _table(
-        "holzer",
-        title,
-        "mass",
-        names,
-        HOLZER,
-        system,
-        inertia=rows(chain.inertias),
-        theta=[0.0 if angle is None else angle for angle in rows(angles)],
-        inertia_torque=rows(own),
-        torque_sum=[*table.torques.tolist(), None],
-        stiffness=[*chain.stiffnesses.tolist(), None],
-        twist=[*twists.tolist(), None],
-    )
+    return _table("holzer", title, "mass", names, values, system)
 
 
 def _critical_table(found: ShaftVibration, critical: tuple[Critical, ...], system: str) -> PlaceTable:
@@ -173,21 +149,17 @@ def _critical_table(found: ShaftVibration, critical: tuple[Critical, ...], syste
         for index, torque, strain, endless in found_there:
             if not endless:
                 torques[index], stresses[index] = torque, strain
-    return _table(
-        "critical_speeds",
-        "Critical speeds",
-        "note",
-        ["near" if one.near else "" for one in critical],
-        CRITICAL_SPEEDS,
-        system,
-        order=[one.order for one in critical],
-        mode=[float(one.mode) for one in critical],
-        speed=[one.speed for one in critical],
-        phase_sum=[one.phase_sum for one in critical],
-        distance=[one.distance for one in critical],
-        M_vibratory=torques,
-        tau_vibratory=stresses,
-    )
+    values: _Values = {
+        CRITICAL_SPEEDS["order"]: [one.order for one in critical],
+        CRITICAL_SPEEDS["mode"]: [float(one.mode) for one in critical],
+        CRITICAL_SPEEDS["speed"]: [one.speed for one in critical],
+        CRITICAL_SPEEDS["phase_sum"]: [one.phase_sum for one in critical],
+        CRITICAL_SPEEDS["distance"]: [one.distance for one in critical],
+        CRITICAL_SPEEDS["M_vibratory"]: torques,
+        CRITICAL_SPEEDS["tau_vibratory"]: stresses,
+    }
+    names = ["near" if one.near else "" for one in critical]
+    return _table("critical_speeds", "Critical speeds", "note", names, values, system)
 
 
 def _stresses(vibration: Vibration) -> list[float | None]:
@@ -201,9 +173,9 @@ def _stresses(vibration: Vibration) -> list[float | None]:
 
 def _pieces_table(found: ShaftVibration, system: str) -> PlaceTable:
     """Return torques and stresses in the pieces at the working speed."""
-    values = {name: [getattr(piece, name) for piece in found.pieces] for name in PIECES}
+    values: _Values = {quantity: [getattr(piece, id) for piece in found.pieces] for id, quantity in PIECES.items()}
     title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
-    return _table("pieces", title, "piece", [piece.name for piece in found.pieces], PIECES, system, **values)
+    return _table("pieces", title, "piece", [piece.name for piece in found.pieces], values, system)
 
 
 def _speeds_table(found: ShaftVibration, speeds: Sequence[float], system: str) -> PlaceTable:
@@ -216,18 +188,13 @@ def _speeds_table(found: ShaftVibration, speeds: Sequence[float], system: str) -
         told = [None if endless else torque for torque, endless in zip(of_piece.tolist(), vibration.endless)]
         torques += told
         stresses += [None if factor is None or torque is None else factor * torque for torque in told]
+    values: _Values = {
+        SPEEDS["speed"]: list(speeds) * len(found.line.pieces),
+        SPEEDS["M_vibratory"]: torques,
+        SPEEDS["tau_vibratory"]: stresses,
+    }
     title = "Vibratory torque over the speed, all these orders together"
-    return _table(
-        "speeds",
-        title,
-        "piece",
-        names,
-        SPEEDS,
-        system,
-        speed=list(speeds) * len(found.line.pieces),
-        M_vibratory=torques,
-        tau_vibratory=stresses,
-    )
+    return _table("speeds", title, "piece", names, values, system)
 
 
 def torsion_left_out(found: ShaftVibration) -> Iterable[LeftOut]:

@@ -1,11 +1,12 @@
 """Whether the pressures of a trace are those that an engine can have: level, unit, and the line of its compression."""
 
+import math
 from collections.abc import Callable
-from itertools import pairwise
 
 import numpy as np
 
-from kurbel.report.given import LARGEST_PEAK
+from kurbel.numerics.roots import bracketed_roots
+from kurbel.report.notes import LARGEST_PEAK
 from kurbel.report.trace_readings import ENGINE, Reading, in_bar, zero_text
 from kurbel.solver.pressure.exponents import AS_GIVEN, COMPRESSION, Supposed, exponent
 
@@ -30,14 +31,14 @@ _LATEST = 10.0
 
 def _of_sign(reading: Reading) -> str:
     """Judge whether the trace stands on its head, as of a charge amplifier with the wrong polarity."""
-    trace, p = reading.pressure.trace, reading.pressure.pressures
+    p = reading.pressure.pressures
     middle = float(np.median(p))
     if middle - float(p.min()) < ENGINE * max(float(p.max()) - middle, _LEAST_SWING):
         return ""
-    other = reading.otherwise(samples=-trace.samples)
+    other = reading.otherwise(samples=-reading.trace.samples)
     return (
         f"its swing from {in_bar(middle)} goes down to {in_bar(float(p.min()))}: does it stand on its head? write "
-        f"'scale: {-trace.scale:g}'; {reading.against(other)}"
+        f"'scale: {-reading.trace.scale:g}'; {reading.against(other)}"
     )
 
 
@@ -47,7 +48,7 @@ def _of_unit(reading: Reading) -> str:
     power = _power(reading)
     if power == 1:
         return ""
-    trace = reading.pressure.trace
+    trace = reading.trace
     other = reading.otherwise(samples=trace.samples * power)
     what = f"{1 / power:g} times too large" if power < 1 else f"{power:g} times too small"
     can = f"compression gives about {in_bar(aimed / 2)}" if trace.clearance else "cylinders peak at 1 to 300 bar"
@@ -62,16 +63,16 @@ def _of_unit(reading: Reading) -> str:
 def _power(reading: Reading) -> float:
     """Return the power of ten by which the pressures are likely to be too small; 1 where nothing speaks for one."""
     low, high, aimed = _peaks(reading)
-    lift, ambient = reading.pressure.setting.lift, reading.pressure.setting.ambient
+    lift, ambient = reading.setting.lift, reading.setting.ambient
     if low <= reading.absolute_peak <= high:
-        return _power_of_flat(reading) if reading.pressure.setting.cycle == 720 else 1.0
+        return _power_of_flat(reading) if reading.setting.cycle == 720 else 1.0
     found = min(_POWERS, key=lambda one: abs(_log((reading.peak * one + lift) / aimed)))
     return found if low <= reading.peak * found + lift <= max(high, ambient) else 1.0
 
 
 def _power_of_flat(reading: Reading) -> float:
     """Return the power of a four-stroke trace that, as it is, hardly compresses, or only against a vacuum."""
-    lift, ambient = reading.pressure.setting.lift, reading.pressure.setting.ambient
+    lift, ambient = reading.setting.lift, reading.setting.ambient
     if lift:  # gauge
         risen = ((reading.peak * one + lift) / max(reading.low * one + lift, 0.2 * ambient) for one in _POWERS[3:])
         return 1.0 if reading.ratio > ENGINE else next((one for one, r in zip(_POWERS[3:], risen) if r > ENGINE), 1.0)
@@ -82,14 +83,12 @@ def _power_of_flat(reading: Reading) -> float:
 
 
 def _log(ratio: float) -> float:
-    from math import inf, log
-
-    return log(ratio) if ratio > 0 else inf
+    return math.log(ratio) if ratio > 0 else math.inf
 
 
 def _peaks(reading: Reading) -> tuple[float, float, float]:
     """Return the smallest and the largest absolute peak in Pa that there can be, and the usual one."""
-    setting, clearance = reading.pressure.setting, reading.pressure.trace.clearance
+    setting, clearance = reading.setting, reading.trace.clearance
     if clearance is not None:
         compressed = setting.ambient * (1 + 1 / clearance) ** _AIMED
         return _TO_COMPRESSION[0] * compressed, max(_TO_COMPRESSION[1] * compressed, _SMALLEST_PEAK), 2 * compressed
@@ -99,16 +98,16 @@ def _peaks(reading: Reading) -> tuple[float, float, float]:
 
 def _of_level(reading: Reading) -> str:
     """Judge by the level below which the cycle lies for a while whether gauge and absolute are mixed up."""
-    setting, low = reading.pressure.setting, reading.low
+    setting, low = reading.setting, reading.low
     said = f"for 15 % of the cycle the pressure lies below {in_bar(low)}"
     stays = f"p_i stays, P changes by {in_bar(setting.ambient)} times the area"
     vacuum = 0.0 if setting.absolute else -setting.ambient
     if setting.absolute and -_BELOW * setting.ambient <= low < 0.1 * setting.ambient:
         return f"{said} absolute: these look like gauge pressures; write 'pressures: gauge'; {stays}"
     if low < vacuum:
-        way = "mend 'pegging'" if reading.pressure.trace.pegging else "write 'pegging: ambient'"
+        way = "mend 'pegging'" if reading.trace.pegging else "write 'pegging: ambient'"
         return f"{said}, the perfect vacuum being at {in_bar(vacuum)}; {way}; {stays}"
-    known = "" if reading.pressure.trace.clearance else "; a 'compression_ratio' would tell by the compression"
+    known = "" if reading.trace.clearance else "; a 'compression_ratio' would tell by the compression"
     near = _NEAR_AMBIENT[0] < low / max(setting.ambient, 1.0) < _NEAR_AMBIENT[1]
     if not setting.absolute and near and not _sensible(reading):
         return f"{said} gauge, about the ambient: absolute? Then write 'pressures: absolute'; {stays}{known}"
@@ -127,8 +126,8 @@ def _of_compression(reading: Reading) -> str:
     if found is None or not reading.engine or _sensible(reading):
         return ""
     begin = f"its compression goes by p V^{found.value:.3g}, where air has 1.2 to 1.4"
-    setting = reading.pressure.setting
-    other_level = -setting.ambient if not setting.absolute else setting.ambient
+    ambient = reading.setting.ambient
+    other_level = ambient if reading.setting.absolute else -ambient
     if _sensible(reading, Supposed(raised=other_level)):
         word = "absolute" if other_level < 0 else "gauge"
         return f"{begin}: as {word} pressures it would; write 'pressures: {word}'; p_i stays"
@@ -137,43 +136,36 @@ def _of_compression(reading: Reading) -> str:
 
 
 def _by_dead_centre(reading: Reading) -> str:
-    later = _root(lambda shift: _off(reading, Supposed(later=shift)), _LATEST)
+    later = _nearest_root(lambda shift: _off(reading, Supposed(later=shift)), _LATEST)
     if later is None:
         return ""
-    other = reading.put_at(reading.pressure.trace.angle_zero - later)
+    other = reading.put_at(reading.trace.angle_zero - later)
     return f"write {zero_text(other)}, {abs(later):.2g} deg away ({reading.against(other)})"
 
 
 def _by_level(reading: Reading) -> str:
-    raised = _root(lambda lift: _off(reading, Supposed(raised=lift)), 2 * reading.pressure.setting.ambient)
+    raised = _nearest_root(lambda lift: _off(reading, Supposed(raised=lift)), 2 * reading.setting.ambient)
     if raised is None:
         return ""
-    return f"write 'offset: {in_bar(reading.pressure.trace.offset + raised)}' or 'pegging' (p_i stays)"
+    return f"write 'offset: {in_bar(reading.trace.offset + raised)}' or 'pegging' (p_i stays)"
 
 
-def _off(reading: Reading, supposed: Supposed) -> float | None:
+def _off(reading: Reading, supposed: Supposed) -> float:
+    """Return by how much the exponent of the compression is off; not a number where it has none."""
     found = exponent(reading.pressure, COMPRESSION, supposed)
-    return None if found is None else found.value - _AIMED
+    return math.nan if found is None else found.value - _AIMED
 
 
-def _root(off: Callable[[float], float | None], most: float) -> float | None:
+def _nearest_root(off: Callable[[float], float], most: float) -> float | None:
     """Return the root nearest to 0 of what changes sign within ±most; None where there is none."""
-    steps = [most * number / 10 for number in range(11)]
-    for near, far in pairwise(steps):
-        for sign in (1.0, -1.0):
-            a, b = off(sign * near), off(sign * far)
-            if a is not None and b is not None and a * b <= 0:
-                return _bisected(off, sign * near, sign * far)
+    for number in range(10):
+        for sign in (most, -most):
+            ends = sign * number / 10, sign * (number + 1) / 10
+            values = off(ends[0]), off(ends[1])
+            if values[0] * values[1] <= 0:
+                between = (np.array([one]) for one in (*ends, *values))
+                return float(bracketed_roots(lambda x: np.array([off(float(x[0]))]), *between)[0])
     return None
-
-
-def _bisected(off: Callable[[float], float | None], near: float, far: float) -> float:
-    below = (off(near) or 0.0) < 0
-    for _ in range(40):
-        middle = (near + far) / 2
-        value = off(middle)
-        near, far = (middle, far) if value is not None and (value < 0) == below else (near, middle)
-    return (near + far) / 2
 
 
 JUDGES = (_of_sign, _of_unit, _of_level, _of_compression)

@@ -3,7 +3,6 @@
 import numpy as np
 
 from kurbel.report.trace_readings import Reading, zero_text
-from kurbel.solver.pressure.trace import TracePressure
 
 _FIRED = -15.0, 45.0
 """Degrees after the firing dead centre between which a fired four-stroke cycle peaks."""
@@ -24,10 +23,9 @@ _MOTORED_RISE = 3.0  # least pressure of the peak over that at its feet; what is
 
 
 def _backward(reading: Reading) -> str:
-    pressure = reading.pressure
-    judged = reading.engine and (pressure.setting.cycle == 720 or pressure.trace.clearance is not None)
+    judged = reading.engine and (reading.setting.cycle == 720 or reading.trace.clearance is not None)
     early = -60.0 < reading.peak_at < -_MOTORED_LEAD - reading.step
-    if not judged or not early or pressure.area >= 0 or motored(pressure, reading.top):
+    if not judged or not early or reading.pressure.area >= 0 or _motored(reading):
         return ""
     other = reading.reversed()
     if other.pressure.area <= 0 or not _stands_well(other):
@@ -39,7 +37,7 @@ def _backward(reading: Reading) -> str:
 
 
 def _stands_well(reading: Reading) -> bool:
-    low, high = _FIRED if reading.pressure.setting.cycle == 720 else _TWO_STROKE
+    low, high = _FIRED if reading.setting.cycle == 720 else _TWO_STROKE
     return low <= reading.peak_at <= high
 
 
@@ -48,7 +46,7 @@ def _elsewhere(reading: Reading) -> str:
         return ""
     other = _brought_back(reading)
     away = "after" if reading.peak_at > 0 else "before"
-    where = "firing dead centre" if reading.pressure.setting.cycle == 720 else "dead centre"
+    where = "firing dead centre" if reading.setting.cycle == 720 else "dead centre"
     gas_exchange = abs(reading.peak_at) > 180
     return (
         f"the peak stands {abs(reading.top_at):.4g} deg {away} the {where}"
@@ -58,11 +56,10 @@ def _elsewhere(reading: Reading) -> str:
 
 def _brought_back(reading: Reading) -> Reading:
     """Return the reading whose peak stands as it may: by quarter turns, or else where such a peak usually is."""
-    pressure = reading.pressure
-    zero = pressure.trace.angle_zero
-    if motored(pressure, reading.top):
+    zero = reading.trace.angle_zero
+    if _motored(reading):
         return reading.put_at(zero + reading.peak_at)
-    for quarter in np.arange(90.0, pressure.setting.cycle, 90.0).tolist():
+    for quarter in np.arange(90.0, reading.setting.cycle, 90.0).tolist():
         if _AIMED[0] <= (other := reading.put_at(zero + quarter)).peak_at <= _AIMED[1]:
             return other
     return reading.put_at(float(round(zero + reading.peak_at - _USUAL)))
@@ -73,9 +70,9 @@ def _motored_off(reading: Reading) -> str:
     if peak is None or not -_MOTORED_SEARCH[0] <= after <= _MOTORED_SEARCH[1]:
         return ""
     sure = _OFF + _SURE * peak.error
-    if -_MOTORED_LEAD - sure <= after <= sure or not motored(reading.pressure, reading.top):
+    if -_MOTORED_LEAD - sure <= after <= sure or not _motored(reading):
         return ""
-    other = reading.put_at(reading.pressure.trace.angle_zero + after)
+    other = reading.put_at(reading.trace.angle_zero + after)
     return (
         f"no combustion shows, and the peak stands {abs(after):.2g} deg {'after' if after > 0 else 'before'} "
         f"the dead centre; that of a motored engine stands at it or just before: check angle_zero; with "
@@ -83,20 +80,20 @@ def _motored_off(reading: Reading) -> str:
     )
 
 
-def motored(pressure: TracePressure, top: int) -> bool:
-    """Judge by the shape whether nothing burns: the two sides of the peak, the sample `top`, are alike.
+def _motored(reading: Reading) -> bool:
+    """Judge by the shape whether nothing burns: the two sides of the peak are alike.
 
     The sign of the work tells nothing, since a motored trace that stands too late does work.
     """
-    trace, lift, sides = pressure.trace, pressure.setting.lift, np.array(_MOTORED_SIDES)
-    around = trace.angles[top] + np.linspace(-_AROUND, _AROUND, 21)
+    trace, p, sides = reading.trace, reading.pressure.pressures + reading.setting.lift, np.array(_MOTORED_SIDES)
+    around = trace.angles[reading.top] + np.linspace(-_AROUND, _AROUND, 21)
     before, after = (
-        lift + np.interp(np.add.outer(way, around), trace.angles, pressure.pressures, period=trace.period).mean(axis=1)
+        np.interp(np.add.outer(way, around), trace.angles, p, period=trace.period).mean(axis=1)
         for way in (-sides, sides)
     )
     low, high = _MOTORED_RATIO
     alike = bool(np.all((low * before <= after) & (after <= high * before)))
-    return alike and bool(lift + pressure.pressures[top] > _MOTORED_RISE * max(before[-1], after[-1]))
+    return alike and bool(p[reading.top] > _MOTORED_RISE * max(before[-1], after[-1]))
 
 
 JUDGES = (_backward, _elsewhere, _motored_off)

@@ -24,7 +24,7 @@ class Reading:
     """What of a trace can be judged; pressures in Pa, angles in degrees from the chamber's own (firing) dead centre."""
 
     def __init__(self, pressure: TracePressure) -> None:
-        self.pressure = pressure
+        self.pressure, self.trace, self.setting = pressure, pressure.trace, pressure.setting
         p, angles = pressure.pressures, pressure.trace.angles
         widths = np.append(np.diff(angles), 0.0) + np.append(0.0, np.diff(angles))
         order = np.argsort(p, kind="stable")
@@ -50,12 +50,12 @@ class Reading:
     @property
     def absolute_low(self) -> float:
         """The low level as an absolute pressure."""
-        return self.low + self.pressure.setting.lift
+        return self.low + self.setting.lift
 
     @property
     def absolute_peak(self) -> float:
         """The peak as an absolute pressure."""
-        return self.peak + self.pressure.setting.lift
+        return self.peak + self.setting.lift
 
     @property
     def engine(self) -> bool:
@@ -65,7 +65,7 @@ class Reading:
     @property
     def ratio(self) -> float:
         """Peak over low level, both absolute; of a trace that goes down to the vacuum, as over a good one."""
-        return self.absolute_peak / max(self.absolute_low, 0.2 * self.pressure.setting.ambient, 1.0)
+        return self.absolute_peak / max(self.absolute_low, 0.2 * self.setting.ambient, 1.0)
 
     @property
     def compression(self) -> Exponent | None:
@@ -74,11 +74,11 @@ class Reading:
 
     def otherwise(self, **changes: Any) -> "Reading":
         """Return the reading of the trace with other fields."""
-        return Reading(TracePressure(replace(self.pressure.trace, **changes), self.pressure.setting))
+        return Reading(TracePressure(replace(self.trace, **changes), self.setting))
 
     def reversed(self) -> "Reading":
         """Return the reading of the trace as if it ran the other way."""
-        return Reading(TracePressure(self.pressure.trace.turned_round(), self.pressure.setting))
+        return Reading(TracePressure(self.trace.turned_round(), self.setting))
 
     def put_at(self, angle_zero: float) -> "Reading":
         """Return the reading with another angle of the dead centre, as the trace counts."""
@@ -92,8 +92,8 @@ class Reading:
 
 def zero_text(reading: Reading) -> str:
     """Return the key that gives a trace the dead centre of this reading."""
-    trace = reading.pressure.trace
-    return f"'angle_zero: {round((trace.written_zero + 180) % trace.period - 180, 3):g} deg'"
+    zero, period = reading.trace.written_zero, reading.trace.period
+    return f"'angle_zero: {round((zero + 180) % period - 180, 3):g} deg'"
 
 
 def in_bar(pressure: float) -> str:

@@ -25,18 +25,17 @@ _OTHER = 0.2
 
 def _of_turns(reading: Reading) -> str:
     """Laps that differ by twos are the turns of a four-stroke cycle, taken for two strokes, or each for a cycle."""
-    pressure = reading.pressure
-    each, trace = pressure.each, pressure.trace
+    each, trace = reading.pressure.each, reading.trace
     if len(each) < 2 or len(each) % 2:
         return ""
     odd, even = each[0::2].mean(axis=0), each[1::2].mean(axis=0)
     if np.abs(odd - even).max() <= _OTHER * max(np.ptp(odd), np.ptp(even)):
         return ""
     peaks = f"differ by twos, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
-    if pressure.setting.cycle == 360:
+    if reading.setting.cycle == 360:
         return (
             f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; p_i is then "
-            f"{in_bar(2 * pressure.area)} instead of {in_bar(pressure.area)}"
+            f"{in_bar(2 * reading.pressure.area)} instead of {in_bar(reading.pressure.area)}"
         )
     step = trace.period / (len(trace.angles) - 1) / 2
     angles = np.arange(2 * len(trace.angles) - 1) * step
@@ -50,8 +49,7 @@ def _of_turns(reading: Reading) -> str:
 
 def _of_speed(reading: Reading) -> str:
     """Cycles of one engine do not wander against each other; those that are told by time and a wrong speed do."""
-    pressure = reading.pressure
-    each, trace = pressure.each, pressure.trace
+    each, trace = reading.pressure.each, reading.trace
     if len(each) < 3:
         return ""
     wave = np.exp(-2j * np.pi * trace.angles / trace.period) * np.gradient(trace.angles)
@@ -63,7 +61,7 @@ def _of_speed(reading: Reading) -> str:
     change = f"{abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'}"
     told = f" If it is told by time: a 'recorded_speed' about {change} brings both together"
     way = told if abs(off) < _LAPPED else ""
-    first, last = (float(pressure.weights @ one) for one in (each[0], each[-1]))
+    first, last = (float(reading.pressure.weights @ one) for one in (each[0], each[-1]))
     return (
         f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last, "
         f"and p_i goes from {in_bar(first)} to {in_bar(last)}: was the speed another, or not constant?{way}"
@@ -71,7 +69,7 @@ def _of_speed(reading: Reading) -> str:
 
 
 def _of_twins(reading: Reading) -> str:
-    trace = reading.pressure.trace
+    trace = reading.trace
     twins = int(np.count_nonzero(np.diff(trace.angles) == 0))
     if twins < _TWICE * len(trace.angles):
         return ""
@@ -87,10 +85,9 @@ def _of_twins(reading: Reading) -> str:
 
 def _of_drift(reading: Reading) -> str:
     pressure = reading.pressure
-    trace, p = pressure.trace, pressure.pressures
-    jump = float(drift_of(trace, p[np.newaxis])[0])
-    closes = abs(float(p[0]) - reading.low)
-    if abs(jump) <= max(_RANGE * closes, _LEAST * reading.pressure.setting.ambient, _doubt(reading)):
+    jump = float(drift_of(reading.trace, pressure.pressures[np.newaxis])[0])
+    closes = abs(float(pressure.pressures[0]) - reading.low)
+    if abs(jump) <= max(_RANGE * closes, _LEAST * reading.setting.ambient, _doubt(reading)):
         return ""
     other = reading.otherwise(level=True)
     change = abs(other.pressure.area - pressure.area)
@@ -104,15 +101,15 @@ def _of_drift(reading: Reading) -> str:
 
 def _doubt(reading: Reading) -> float:
     """Return in Pa what noise, and the bend of the pressure, may do to the jump where the cycle closes."""
-    pressure = reading.pressure
-    if not pressure.trace.completed:
-        return _SURE * pressure.noise
-    p = pressure.pressures[:-1]
-    bends = np.sort(np.abs(np.concatenate((np.diff(p[-4:], 2), np.diff(p[:4], 2)))))
-    coarse = pressure.trace.angles[-1] - pressure.trace.angles[-4] > LAST
-    steps = np.abs(np.diff(pressure.pressures))
+    noise = _SURE * reading.pressure.noise
+    if not reading.trace.completed:
+        return noise
+    p, angles = reading.pressure.pressures, reading.trace.angles
+    bends = np.sort(np.abs(np.concatenate((np.diff(p[-5:-1], 2), np.diff(p[:4], 2)))))
+    coarse = angles[-1] - angles[-4] > LAST
+    steps = np.abs(np.diff(p))
     resolution = 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0
-    return max(_SURE * pressure.noise, resolution, 3.0 * float(bends[-1] if coarse else bends[len(bends) // 2]))
+    return max(noise, resolution, 3.0 * float(bends[-1] if coarse else bends[len(bends) // 2]))
 
 
 JUDGES = (_of_turns, _of_speed, _of_twins, _of_drift)

@@ -1,15 +1,15 @@
 """What looks wrong in measurements and results: said as warnings, the same whichever command computes them."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Machine
-from kurbel.report.given import LARGEST_PEAK
 from kurbel.report.guide import guide_warnings
+from kurbel.report.notes import LARGEST_PEAK
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
@@ -19,44 +19,10 @@ if TYPE_CHECKING:
     from kurbel.solver.turning.flywheel import MachineTurning
 
 
-def cylinder_warnings(forces: CylinderForces) -> tuple[str, ...]:
-    """Return what looks wrong in the forces of a cylinder, or that it locks itself."""
-
-    def found() -> Iterable[str]:
-        forces.refuse_locking()  # first, with an angle that does not depend on the step
-        yield from _balance_warnings(forces)
-        yield from _bound_warnings(forces)
-        yield from _pressure_warnings(forces)
-        yield from _reversal_warnings(forces)
-        yield from guide_warnings(forces)
-
-    return as_far_as_solved(found, "forces")
-
-
-def turning_warnings(case: Case) -> tuple[str, ...]:
-    """Return what looks wrong in the turning effort and the speed of the whole machine, or that it stalls."""
-    machine = case.machine
-    if machine.efficiency == 1 and not any((machine.flywheel, machine.load, machine.coupling)):
-        return ()
-    return as_far_as_solved(lambda: _of_turning(case.flywheel), "flywheel")
-
-
-def strength_warnings(case: Case) -> tuple[str, ...]:
-    """Return what looks wrong in the crankshaft."""
-    if case.machine.strength_obstacle:
-        return ()
-
-    def found() -> Iterable[str]:
-        cool, verdict = shell_verdict(case.strength)
-        return () if cool else verdict
-
-    return as_far_as_solved(found, "stress")
-
-
-def as_far_as_solved(found: Callable[[], Iterable[str]], command: str) -> tuple[str, ...]:
+def as_far_as_solved(found: Iterable[str], command: str) -> tuple[str, ...]:
     """Return the warnings; where there is no solution, why; what a command refuses is for that command to tell."""
     try:
-        return tuple(found())
+        return tuple(found)
     except NoSolutionError as error:
         return (f"{error}. kurbel {command} ends with status {error.exit_status}",)
     except (KurbelError, OverflowError):
@@ -73,6 +39,16 @@ _CLOSED = 1e-9
 """An energy residual beyond this is no rounding."""
 _COARSE = 0.01
 """An energy residual beyond this is more than an indicator may miss by its spacing."""
+
+
+def cylinder_warnings(forces: CylinderForces) -> Iterable[str]:
+    """Yield what looks wrong in the forces of a cylinder."""
+    forces.refuse_locking()  # first, with an angle that does not depend on the step
+    yield from _balance_warnings(forces)
+    yield from _bound_warnings(forces)
+    yield from _pressure_warnings(forces)
+    yield from _reversal_warnings(forces)
+    yield from guide_warnings(forces)
 
 
 def _balance_warnings(forces: CylinderForces) -> Iterable[str]:
@@ -127,8 +103,12 @@ def _reversal_warnings(forces: CylinderForces) -> Iterable[str]:
         )
 
 
-def _of_turning(turning: "MachineTurning") -> Iterable[str]:
-    machine = turning.machine
+def turning_warnings(case: Case) -> Iterable[str]:
+    """Yield what looks wrong in the turning effort and the speed of the whole machine."""
+    machine = case.machine
+    if machine.efficiency == 1 and not any((machine.flywheel, machine.load, machine.coupling)):
+        return
+    turning = case.flywheel
     if turning.deficit is not None:
         word = "more" if turning.deficit > 0 else "less"
         yield (
@@ -180,6 +160,13 @@ def _coupling_warnings(turning: "MachineTurning") -> Iterable[str]:
         )
     if turning.elastic.delta > _LINEAR:
         yield "the speed varies so much that the coupling, computed at nearly uniform rotation, is only a rough guide"
+
+
+def strength_warnings(case: Case) -> Iterable[str]:
+    """Yield what looks wrong in the crankshaft."""
+    if not case.machine.strength_obstacle:
+        cool, verdict = shell_verdict(case.stress)
+        yield from () if cool else verdict
 
 
 _SHELLS = (

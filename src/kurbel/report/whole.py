@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.report.alike import together
@@ -47,13 +48,16 @@ COMMANDS = (
 def whole_report(case: Case, given: Given, system: str, step: float, progress: Progress) -> Document:
     """Return everything that a machine has. progress: is told what is being done."""
     stepped(step, 360.0)  # a step that is none is refused at once
-    found = checked(case.machine)
+    found = checked(case.machine, case)
     sections: list[Section | None] = [_input(case, given, found)]
     left_out: list[LeftOut] = []
     for command in COMMANDS:
         progress(command.title.lower())
         sections.append(_section(case, command, system, step, left_out))
-    sections += [_verdicts(found), _energy(case, system), _left_out(left_out)]
+    sections += [_verdicts(found), _energy(case, system)]
+    if left_out:
+        grid = Grid("", ("Part", "Why"), tuple((one.what, one.why) for one in left_out))
+        sections.append(Section("left-out", "Left out", (grid,)))
     name = case.machine.name
     return Document(name, (provenance(case.machine),), tuple(one for one in sections if one))
 
@@ -122,33 +126,25 @@ _TERMS = (
 """Works of a cycle by their names in `CylinderForces`, the sign with which they reach the shaft, and what they are."""
 
 
+@np.errstate(all="ignore")
 def _energy(case: Case, system: str) -> Section | None:
     """Return for every cylinder where the energy of a cycle goes, and what an independent quadrature leaves open."""
-    from kurbel.declared.unit_systems import convert, shown_unit
-
     items: list[Item] = []
-    with np.errstate(all="ignore"):
-        for equal in gathered(case.cylinders, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
-            forces = equal[0]
-            try:
-                left = forces.work_left
-                terms = [(text, sign * value) for name, sign, text in _TERMS if (value := getattr(forces, name))]
-                residual = forces.energy_residual
-            except KurbelError:
-                continue
-            if left is None:
-                continue
-            unit = shown_unit("energy", system, max((abs(value) for _, value in terms), default=abs(left)))
-            terms.append(("Reaches the shaft, 2π R W per turn", left))
-            rows = [(text, f"{convert(value, 'energy', unit):.5g}", unit) for text, value in terms]
-            open_ = "below 1e-14" if residual is not None and abs(residual) < 1e-14 else f"{residual:.2g}"
-            rows.append(("Left open by an independent quadrature, over the turnover", open_, ""))
-            name = together([one.drive.name for one in equal])
-            items.append(Grid(name, ("Per cycle", "Energy", "Unit"), tuple(rows), numbers=(1,), units=(2,)))
+    for equal in gathered(case.cylinders, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
+        forces = equal[0]
+        try:
+            left = forces.work_left
+            terms = [(text, sign * value) for name, sign, text in _TERMS if (value := getattr(forces, name))]
+            residual = forces.energy_residual
+        except KurbelError:
+            continue
+        if left is None:
+            continue
+        unit = shown_unit("energy", system, max((abs(value) for _, value in terms), default=abs(left)))
+        terms.append(("Reaches the shaft, 2π R W per turn", left))
+        rows = [(text, f"{convert(value, 'energy', unit):.5g}", unit) for text, value in terms]
+        open_ = "below 1e-14" if residual is not None and abs(residual) < 1e-14 else f"{residual:.2g}"
+        rows.append(("Left open by an independent quadrature, over the turnover", open_, ""))
+        name = together([one.drive.name for one in equal])
+        items.append(Grid(name, ("Per cycle", "Energy", "Unit"), tuple(rows), numbers=(1,), units=(2,)))
     return Section("energy", "Energy balance", tuple(items)) if items else None
-
-
-def _left_out(found: Sequence[LeftOut]) -> Section | None:
-    rows = tuple((one.what, one.why) for one in found)
-    items = (Grid("", ("Part", "Why"), rows),) if rows else ()
-    return Section("left-out", "Left out", items) if items else None

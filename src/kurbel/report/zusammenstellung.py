@@ -3,7 +3,6 @@
 import math
 from array import array
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
@@ -28,36 +27,28 @@ ROWS = {
 _ODD = ("velocity_factor", "psi", "guide_force_factor")  # they change their sign on the return stroke
 
 
-class _Rod(NamedTuple):
-    """R/L, and ρ = 1 − (R/L)² without its cancellation."""
-
-    lam: float
-    rho: float
+Factor = Callable[[float, float, float, float], float]
+"""Of sine and cosine of the crank angle, R/L, and ρ = 1 − (R/L)² without its cancellation."""
 
 
-Factor = Callable[[CrankAngle, _Rod], float]
-
-
-def _guide(angle: CrankAngle, rod: _Rod) -> float:
+def _guide(sin: float, cos: float, lam: float, rho: float) -> float:
     """Return N/P = tan ψ, R 301."""
-    return float(rod.lam * angle.sin / formulas.cos_rod_angle(angle.sin, angle.cos, rod.rho))
+    return float(lam * sin / formulas.cos_rod_angle(sin, cos, rho))
 
 
 _EXACT: dict[str, Factor] = {
-    "acceleration_factor": lambda a, rod: formulas.acceleration_factor(a.sin, a.cos, rod.lam, rod.rho),
-    "velocity_factor": lambda a, rod: formulas.velocity_factor(a.sin, a.cos, rod.lam, rod.rho),
-    "displacement_factor": lambda a, rod: formulas.displacement_factor(a.sin, a.cos, rod.lam, rod.rho),
-    "psi": lambda a, rod: math.degrees(math.atan(_guide(a, rod))),
-    "rod_force_factor": lambda a, rod: 1 / formulas.cos_rod_angle(a.sin, a.cos, rod.rho),
+    "acceleration_factor": formulas.acceleration_factor,
+    "velocity_factor": formulas.velocity_factor,
+    "displacement_factor": formulas.displacement_factor,
+    "psi": lambda *known: math.degrees(math.atan(_guide(*known))),
+    "rod_force_factor": lambda sin, cos, _, rho: 1 / formulas.cos_rod_angle(sin, cos, rho),
     "guide_force_factor": _guide,
-    "radial_force_factor": lambda a, rod: formulas.radial_factor(a.sin, a.cos, rod.lam, rod.rho),
+    "radial_force_factor": formulas.radial_factor,
 }
-_BOOK = _EXACT | {
-    "acceleration_factor": lambda a, rod: formulas.first_order_acceleration(a.sin, a.cos, rod.lam),
-}
+_BOOK = _EXACT | {"acceleration_factor": lambda sin, cos, lam, _: formulas.first_order_acceleration(sin, cos, lam)}
 _FIRST_ORDER = _BOOK | {
-    "velocity_factor": lambda a, rod: formulas.first_order_velocity(a.sin, a.cos, rod.lam),
-    "displacement_factor": lambda a, rod: formulas.first_order_displacement(a.sin, a.cos, rod.lam),
+    "velocity_factor": lambda sin, cos, lam, _: formulas.first_order_velocity(sin, cos, lam),
+    "displacement_factor": lambda sin, cos, lam, _: formulas.first_order_displacement(sin, cos, lam),
 }
 _FACTORS = {"book": _BOOK, "exact": _EXACT, "first-order": _FIRST_ORDER}
 
@@ -109,12 +100,12 @@ def _row_id(row: str) -> str:
 def _part(ratio: float, ids: tuple[str, ...], angles: Sequence[float], formula: str) -> Part:
     if not ratio > 1:
         raise UsageError(f"--ratio: L/R must be larger than 1 for the crank to turn, got {ratio:g}")
-    rod = _Rod(1 / ratio, 1.0 if math.isinf(ratio) else (ratio - 1) / ratio * ((ratio + 1) / ratio))
+    lam, rho = 1 / ratio, 1.0 if math.isinf(ratio) else (ratio - 1) / ratio * ((ratio + 1) / ratio)
     factors = [_FACTORS[formula][id] for id in ids]
     values = [array("d") for _ in ids]
     for angle in map(CrankAngle.of, angles):
         for column, factor in zip(values, factors):
-            column.append(factor(angle, rod))
+            column.append(factor(angle.sin, angle.cos, lam, rho))
     columns = (_column(FACTORS[id], column, formula) for id, column in zip(ids, values))
     return Part(ratio, (_column(PHI, angles, formula), *columns))
 

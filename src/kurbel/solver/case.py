@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from kurbel.solver.turning.harmonics import MachineOrders
 
 
-_WHOLE = {"stress": "strength", "flywheel": "flywheel", "balance": "balance", "torsion": "torsion"}
-"""Command of the whole machine -> the results of a case that answer it."""
+_WHOLE = ("stress", "flywheel", "balance", "torsion")
+"""Commands of the whole machine, by whose names a case has the results."""
 
 
 class Case(Shown):
@@ -49,7 +49,7 @@ class Case(Shown):
         commands = {word for id in called(name, known.all_key_values) for word in known.commands_of(id)}
         if "forces" in commands and len(self.cylinders) == 1:
             return self.cylinders[0][name]
-        whole = next((_WHOLE[command] for command in _WHOLE if command in commands), "")
+        whole = next((command for command in _WHOLE if command in commands), "")
         if "forces" in commands and not whole:
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
         if "bearings" in commands:
@@ -66,16 +66,11 @@ class Case(Shown):
         return tuple(CylinderForces(self.machine, cylinder) for cylinder in self.machine.cylinders)
 
     @cached_property
-    def strength(self) -> CrankshaftStrength:
+    def stress(self) -> CrankshaftStrength:
         """Strength of the crankshaft. Raises UsageError where the machine has none that can be examined."""
         from kurbel.solver.strength.crankshaft import CrankshaftStrength
 
         return CrankshaftStrength(self.machine, self.cylinders)
-
-    @property
-    def stress(self) -> CrankshaftStrength:
-        """What `kurbel stress` answers, by the name of the command as the others are."""
-        return self.strength
 
     @cached_property
     def bearings(self) -> ShaftBearings:

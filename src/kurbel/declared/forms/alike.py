@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms.records import Record
 from kurbel.declared.forms.structures import Listing
 from kurbel.declared.keys import Schema
+from kurbel.declared.kinds import MOST_ITEMS
 from kurbel.declared.reading import REFUSED, Reading, Tree, shown
 from kurbel.errors import Path
 from kurbel.near_words import did_you_mean

@@ -2,16 +2,17 @@
 
 import re
 from abc import abstractmethod
+from collections import Counter
 from collections.abc import Callable, Collection
 from typing import Any, NamedTuple
 
-from kurbel.declared.forms.scalars import Number, Physical, refused
+from kurbel.declared.forms.scalars import Number, Physical
 from kurbel.declared.keys import Form, Schema
 from kurbel.declared.numerals import NUMBER, familiar
 from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import REFUSED, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.declared.units import written_unit
-from kurbel.errors import Path
+from kurbel.errors import Path, refused
 from kurbel.near_words import did_you_mean
 
 Known = Callable[[], tuple[dict[str, "Quantity"], Collection[str]]]
@@ -30,10 +31,6 @@ class Bound(float):
         bound.unit, bound.name = unit, name
         return bound
 
-    def named(self, name: str) -> "Bound":
-        """Return it with the name that it stands under."""
-        return Bound(self, self.unit, name)
-
 
 class Expected(NamedTuple):
     """The smallest and the largest value that meet an expectation, in the base; unit, text and name as written."""
@@ -43,10 +40,6 @@ class Expected(NamedTuple):
     unit: str = ""
     text: str = ""
     name: str = ""
-
-    def named(self, name: str) -> "Expected":
-        """Return it with the name that it stands under."""
-        return self._replace(name=name)
 
 
 class _Figures(Form):
@@ -60,16 +53,25 @@ class _Figures(Form):
         self.known = known
 
     @abstractmethod
-    def figure(self, quantity: Quantity) -> Form:
-        """Return the form of a figure for this quantity."""
+    def figure(self, size: Number | Physical) -> Form:
+        """Return the form of a figure for a quantity of which values have this form."""
+
+    @abstractmethod
+    def named(self, figure: Any, written: Any, name: str) -> Any:
+        """Return a figure with what it was written as, and the name that it stands under."""
+
+    def _figure_of(self, quantity: Quantity) -> Form:
+        return self.figure(Number() if quantity.kind == "ratio" else Physical(quantity.kind))
 
     def schema(self, definitions: Schema) -> Schema:
         known, lists = self.known()
+        # a symbol of several, or of one and the id of another, names none
+        named = Counter(name for one in known.values() for name in {one.id, one.symbol, one.ascii_symbol})
         properties = {
-            name: {**self.figure(quantity).schema(definitions), "description": quantity.text}
+            name: {**self._figure_of(quantity).schema(definitions), "description": quantity.text}
             for id, quantity in known.items()
             for name in (id, quantity.symbol, quantity.ascii_symbol)
-            if id not in lists and called(name, known.values()) == (id,)
+            if id not in lists and (name == id or named[name] == 1)
         }
         return {"type": "object", "additionalProperties": False, "properties": properties}
 
@@ -86,8 +88,8 @@ class _Figures(Form):
             if wrong:
                 reading.fault((*path, name), wrong, at_key=True)
             else:
-                read = self.figure(known[id]).read(reading, figure, (*path, name))
-                found[id] = read if read is REFUSED else read.named(name)
+                read = self._figure_of(known[id]).read(reading, figure, (*path, name))
+                found[id] = read if read is REFUSED else self.named(read, figure, name)
         return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
 
     def _meant(self, name: str, known: dict[str, Quantity], lists: Collection[str]) -> tuple[str, str]:
@@ -108,8 +110,11 @@ class Limits(_Figures):
 
     what = "bound"
 
-    def figure(self, quantity: Quantity) -> Form:
-        return _LimitOfRatio() if quantity.kind == "ratio" else _Limit(quantity.kind)
+    def figure(self, size: Number | Physical) -> Form:
+        return size
+
+    def named(self, figure: Any, written: Any, name: str) -> Bound:
+        return Bound(figure, written_unit(written), name)
 
     def expected(self) -> str:
         return "a mapping of key values to bounds, such as 'c_max: 6 m/s'"
@@ -118,23 +123,16 @@ class Limits(_Figures):
         return "`{key value: bound}`"
 
 
-class _Limit(Physical):
-    def parse(self, text: str, folder: str) -> float:
-        return Bound(super().parse(text, folder), written_unit(text))
-
-
-class _LimitOfRatio(Number):
-    def parse(self, text: str, folder: str) -> float:
-        return Bound(super().parse(text, folder), written_unit(text))
-
-
 class Expectations(_Figures):
     """A mapping from key values to figures with a tolerance; becomes pairs of id and Expected."""
 
     what = "expectation"
 
-    def figure(self, quantity: Quantity) -> Form:
-        return _Figure(Number() if quantity.kind == "ratio" else Physical(quantity.kind), quantity.kind)
+    def figure(self, size: Number | Physical) -> Form:
+        return _Figure(size)
+
+    def named(self, figure: Any, written: Any, name: str) -> Expected:
+        return figure._replace(name=name)  # type: ignore[no-any-return]
 
     def expected(self) -> str:
         return "a mapping of key values to figures, such as 'b_max: 13.16 m/s2 ± 0.5 %'"
@@ -150,8 +148,8 @@ _PERCENT = rf"({NUMBER.pattern})\s*%"
 class _Figure(Form):
     """A figure with its tolerance, such as `13.16 m/s2 ± 0.5 %`, or a list of two bounds; becomes an Expected."""
 
-    def __init__(self, size: Number | Physical, kind: str) -> None:
-        self.size, self.kind = size, kind
+    def __init__(self, size: Number | Physical) -> None:
+        self.size = size
 
     def expected(self) -> str:
         return (
@@ -165,7 +163,7 @@ class _Figure(Form):
         return f"{self.size.example()} ± 0.1 {written_unit(self.size.example())}".rstrip()
 
     def schema(self, definitions: Schema) -> Schema:
-        name = f"figure_{self.kind}"
+        name = f"figure_{self.size.kind}"
         definitions[name] = {
             "anyOf": [
                 {"type": "string", "pattern": r"^[^±]*[0-9][^±]*(±|\+\s*/?\s*-)\s*[0-9.][^±]*$"},

@@ -3,12 +3,11 @@
 import re
 from typing import Any
 
-from kurbel.declared.bounds import MOST_POINTS
-from kurbel.declared.forms.scalars import refused
 from kurbel.declared.keys import Form, Schema
+from kurbel.declared.kinds import MOST_POINTS
 from kurbel.declared.numerals import parse_number, parse_ratio
 from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Plain, Reading, is_nothing, kind_of, shown
-from kurbel.errors import Path, UnitError
+from kurbel.errors import Path, UnitError, refused
 
 _FAULTS_SHOWN = 3  # of one list: the others are of the same sort, as when every pair has a decimal comma
 

@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any, NoReturn
 
-from kurbel.declared.forms.scalars import Choice, reference, refused
+from kurbel.declared.forms.scalars import Choice, reference
 from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, contradictions, none_of, required
 from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, glued_hint, kind_of
-from kurbel.errors import Fault, Path, RuleError
+from kurbel.errors import Fault, Path, RuleError, refused
 from kurbel.near_words import near
 from kurbel.numerics.arithmetic import is_number
 
@@ -229,28 +229,12 @@ def _finite(born: Any, values: Tree) -> bool:
     )
 
 
-class Variant(Form):
-    """Keys of the same mapping that depend on the word under this one: those of the mechanism, say.
-
-    also: other words that people try, each with the word for it.
-    """
+class Variant(Choice):
+    """One of these words, on which hang further keys of the same mapping: those of the mechanism, say."""
 
     def __init__(self, default: str, cases: dict[str, Record], also: dict[str, str]) -> None:
-        self.default, self.cases, self.also = default, cases, also
-
-    @property
-    def _words(self) -> Choice:
-        return Choice(tuple(self.cases), self.also)
-
-    def expected(self) -> str:
-        return self._words.expected()
-
-    def written(self) -> str:
-        return self._words.written()
-
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
-        """Read the word that chooses."""
-        return self._words.take(reading, value, path)
+        super().__init__(tuple(cases), also)
+        self.default, self.cases = default, cases
 
     def find(self, reading: Reading, name: str, mapping: Tree, rest: Tree, path: Path) -> Any:
         """Read the chosen record out of the mapping."""
@@ -276,9 +260,6 @@ class Variant(Form):
     def records(self, word: str) -> Iterator[tuple[str, Record]]:
         for name, case in self.cases.items():
             yield f"{word}: {name}", case
-
-    def schema(self, definitions: Schema) -> Schema:
-        return self._words.schema(definitions)
 
     def describe(self, name: str, key: Key, properties: Schema, rules: list[Schema], definitions: Schema) -> None:
         """Add the keys of all variants, and for each word what must and must not stand beside it."""

@@ -5,16 +5,23 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from functools import cache
 from operator import ge, gt, le, lt
-from typing import Any, NoReturn
+from typing import Any
 
-from kurbel.declared.bounds import out_of_size, range_of
 from kurbel.declared.keys import Form, Key, Schema
-from kurbel.declared.kinds import KINDS
-from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio, plain
+from kurbel.declared.kinds import KINDS, out_of_size, range_of
+from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio
 from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import example, parse_quantity, plain_quantities, unit_example, unit_factor, unit_names
-from kurbel.errors import Fault, Path, RuleError, UnitError
+from kurbel.declared.units import (
+    example,
+    parse_quantity,
+    plain_quantities,
+    unit_example,
+    unit_factor,
+    unit_names,
+    written_unit,
+)
+from kurbel.errors import Path, UnitError, refused
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.arithmetic import is_number
 
@@ -45,11 +52,6 @@ class Scalar(Form):
     @abstractmethod
     def parse(self, text: str, folder: str) -> Any:
         """Return what a text becomes; raises RuleError."""
-
-
-def refused(message: str) -> NoReturn:
-    """Raise RuleError with this message for the value itself."""
-    raise RuleError(Fault((), message))
 
 
 class _Bounded(Scalar):
@@ -177,9 +179,18 @@ def not_negative(kind: str, text: str, symbol: str = "", **more: Any) -> Key:
 
 
 class Number(_Bounded):
-    """A bare number, a quotient such as `1/80` or `75 %` (a ratio, a fraction, a coefficient); becomes a float."""
+    """A bare number, a quotient such as `1/80` or `75 %` (a ratio, a fraction, a coefficient); becomes a float.
+
+    share_of: what a value with a unit, which people try, must be divided by.
+    """
+
+    def __init__(self, share_of: str = "", **bounds: Any) -> None:
+        super().__init__(**bounds)
+        self.share_of = share_of
 
     def number(self, text: str) -> float:
+        if self.share_of and written_unit(text)[:1].isalpha():
+            refused(f"expected a number, got '{text}'; it is a share of {self.share_of}, such as 0.05 or 5 %")
         return parse_ratio(self.unquoted(text))
 
     def expected(self) -> str:
@@ -225,45 +236,6 @@ class Count(_Bounded):
 
     def schema(self, definitions: Schema) -> Schema:
         return {"type": "integer", "minimum": self.least} | ({} if self.most is None else {"maximum": self.most})
-
-
-class Text(Scalar):
-    """Any text that is not empty."""
-
-    def parse(self, text: str, folder: str) -> str:
-        return text.strip()
-
-    def expected(self) -> str:
-        return "a text"
-
-    def schema(self, definitions: Schema) -> Schema:
-        return {"type": ["string", "number"]}
-
-
-class Patterned(Scalar):
-    """A text of a pattern, such as numbers joined by hyphens; what: what it is, sample: one that fits."""
-
-    pattern: str
-    what: str
-    sample: str
-
-    def matched(self, text: str) -> str:
-        """Return a text that fits as a keyboard writes it; raises RuleError."""
-        if not re.fullmatch(self.pattern, plain(text)):
-            refused(f"expected {self.expected()}, got '{text}'")
-        return plain(text)
-
-    def expected(self) -> str:
-        return f"{self.what}, such as '{self.sample}'"
-
-    def example(self) -> str:
-        return self.sample
-
-    def written(self) -> str:
-        return f"`{self.sample}`"
-
-    def schema(self, definitions: Schema) -> Schema:
-        return {"type": ["string", "integer"], "pattern": rf"^\s*{self.pattern}\s*$"}
 
 
 class Choice(Scalar):

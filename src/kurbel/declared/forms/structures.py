@@ -4,12 +4,12 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from kurbel.declared.bounds import MOST_ITEMS
 from kurbel.declared.forms.records import Record, demands, no_mapping
-from kurbel.declared.forms.scalars import Choice, refused
+from kurbel.declared.forms.scalars import Choice
 from kurbel.declared.keys import ABSENT, Form, Key, Schema, none_of, required
+from kurbel.declared.kinds import MOST_ITEMS
 from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of
-from kurbel.errors import Fault, Path
+from kurbel.errors import Fault, Path, refused
 from kurbel.near_words import near
 
 
@@ -19,7 +19,7 @@ class Listing(Form):
     shape = list
 
     def __init__(self, item: Form) -> None:
-        self.item = item
+        self.item, self.kind = item, item.kind
 
     def expected(self) -> str:
         return "a list, each item after '- '"
@@ -55,6 +55,7 @@ class OneOf(Form):
 
     def __init__(self, *forms: Form) -> None:
         self.forms = forms
+        self.kind = next((form.kind for form in forms if form.kind), "")
 
     def expected(self) -> str:
         return ", or ".join(form.expected() for form in self.forms)

@@ -3,11 +3,10 @@
 import re
 from typing import Any
 
-from kurbel.declared.forms.scalars import refused
 from kurbel.declared.keys import Form, Schema
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Reading, is_nothing, kind_of, shown
-from kurbel.errors import Path
+from kurbel.errors import Path, refused
 
 _EXAMPLE = "'bore: ± 0.2 mm' or 'masses.piston: ± 2 %'"
 _SIGN = r"(±|\+/-|\+-)\s*"

@@ -71,10 +71,6 @@ class Taken:
         """Keep a place free of labels."""
         self._boxes.append(box)
 
-    def _on_curves(self, box: Box) -> int:
-        x, y = self._curves.T
-        return int(((x > box.left) & (x < box.right) & (y > box.top) & (y < box.bottom)).sum())
-
     def place(self, x: float, y: float, text: str, upward: bool, clear: bool = False) -> tuple[float, float] | None:
         """Return where a label begins that names a point, above or below it first; None where all is taken.
 
@@ -102,14 +98,15 @@ class Taken:
 
     def _best(self, tries: Iterator[Try], point: tuple[float, float] | None = None) -> Free | None:
         """Return the first of the free places that cover least of the curves; point: to which a line must lead."""
-        free = []
+        free, (x, y) = [], self._curves.T
         for number, (left, base, box) in enumerate(tries):
             inside = box.top >= self._frame.top and box.bottom <= self._frame.bottom and left >= self._frame.left
             if inside and not any(
                 box.meets(other) or (point and other.cuts(*_pointer(*point, box))) for other in self._boxes
             ):
-                free.append(Free(self._on_curves(box), number, left, base, box))
-                if not free[-1].crossed:
+                crossed = int(((x > box.left) & (x < box.right) & (y > box.top) & (y < box.bottom)).sum())
+                free.append(Free(crossed, number, left, base, box))
+                if not crossed:
                     break
         return min(free, default=None)
 
@@ -156,7 +153,7 @@ def _pointer(x: float, y: float, box: Box) -> Pointer:
 
 def symbol(words: Words, look: Look) -> str:
     """Return a symbol in the characters of the output; what no character must do in it, does nothing."""
-    return look.charset.text(look.charset.symbol(words.symbol, words.ascii_symbol))
+    return look.charset.text(look.charset.symbol(words.symbol, words.ascii_symbol or words.symbol))
 
 
 def signed(number: str, look: Look) -> str:
@@ -186,7 +183,8 @@ def figure_text(figure: Figure, look: Look) -> str:
         number = look.charset.counted(signed(number, look), power)
         text += f" {number} {look.charset.unit(figure.unit)}".rstrip()
     if figure.at_deg is not None:
-        text += f"{',' if figure.value is not None else ''} {angle(figure.at_deg, look.comma)}{look.charset.degree}"
+        comma = "," if figure.value is not None else ""
+        text += f"{comma} {angle(figure.at_deg, look.comma)}{look.charset.text('°')}"
     return text
 
 

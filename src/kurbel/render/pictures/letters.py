@@ -46,11 +46,14 @@ def _panel(panel: Panel, look: Look, width: int, rows: int) -> Iterator[Printed]
     texts = tick_texts(panel.y, up, look)
     side = max(map(cells, texts), default=-1) + 1
     if panel.equal:
-        rows = _rows_of_equal(x, y, width - side)
+        # both axes have one scale, and a character is twice as high as wide
+        rows = max(_LEAST_ROWS, min(30, round((width - side) / 2 * abs((y.high - y.low) / (x.high - x.low)))))
     canvas = Canvas(width - side, rows, look.charset.has("⣿"))
     right_end, bottom = (np.array(canvas.fine) - 1) * _dot(canvas)
     scales = x.reach(0.0, right_end), y.reach(bottom, 0.0)
-    yield from (line(one) for one in folded(_head(panel, look), width))
+    axis = "" if panel.plain else axis_text(panel.y.name, panel.y.unit, look)
+    head = "   ".join(filter(None, (look.charset.text(panel.title), axis)))
+    yield from (line(one) for one in folded(head, width))
     _draw(panel, canvas, scales, look)
     at = {int(scales[1].place(v) / _CELL[1]): text for v, text in zip(up, texts)}
     for row in range(*canvas.used) if panel.plain else range(rows):
@@ -63,16 +66,6 @@ def _panel(panel: Panel, look: Look, width: int, rows: int) -> Iterator[Printed]
 def _dot(canvas: Canvas) -> Array:
     """Return width and height in points of a dot of a canvas."""
     return _CELL * (canvas.columns, canvas.rows) / canvas.fine
-
-
-def _rows_of_equal(x: Scale, y: Scale, columns: int) -> int:
-    """Return the rows in which both axes have one scale, a character being twice as high as wide."""
-    return max(_LEAST_ROWS, min(30, round(columns / 2 * abs((y.high - y.low) / (x.high - x.low)))))
-
-
-def _head(panel: Panel, look: Look) -> str:
-    said = [look.charset.text(panel.title)] if panel.title else []
-    return "   ".join([*said, *([] if panel.plain else [axis_text(panel.y.name, panel.y.unit, look)])])
 
 
 def _draw(panel: Panel, canvas: Canvas, scales: Scales, look: Look) -> None:
@@ -127,7 +120,7 @@ def _below(panel: Panel, scale: Scale, canvas: Canvas, side: int, look: Look) ->
     """Yield the axis below a panel, its ticks, and what runs along it."""
     values = ticks(scale, panel.x, max(2, canvas.columns // 10))
     texts = tick_texts(panel.x, values, look)
-    rule = [look.charset.rule] * canvas.columns
+    rule = [look.charset.text("─")] * canvas.columns
     under = [" "] * canvas.columns
     end = 0
     for value, text in zip(values, texts):

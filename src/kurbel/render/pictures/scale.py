@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.render.numbers import decimal
 from kurbel.report.pictures.picture import Axis, Panel
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
@@ -61,14 +62,12 @@ def taller(scale: Scale, height: float) -> Scale:
 
 def _extent(panel: Panel, part: str) -> tuple[float, float]:
     """Return the smallest and the largest value on an axis."""
-    drawn = [getattr(piece, part) for curve in panel.curves for piece in curve.pieces]
+    drawn = [np.array([getattr(mark, part)]) for mark in panel.marks]
     for shade in panel.shades:
         drawn += [shade.x] if part == "x" else [shade.low, shade.high]
-    for moment in panel.frames:
+    for moment in (panel, *panel.frames):
         drawn += [getattr(piece, part) for curve in moment.curves for piece in curve.pieces]
-    for arrow in [*panel.arrows, *(arrow for moment in panel.frames for arrow in moment.arrows)]:
-        drawn.append(np.array([end[0 if part == "x" else 1] for end in (arrow.tail, arrow.head)]))
-    drawn += [np.array([getattr(mark, part)]) for mark in panel.marks]
+        drawn += [np.array([end["xy".index(part)] for end in (one.tail, one.head)]) for one in moment.arrows]
     every = [(float(np.min(one)), float(np.max(one))) for one in drawn if np.size(one)]
     return min((low for low, _ in every), default=0.0), max((high for _, high in every), default=0.0)
 
@@ -102,4 +101,4 @@ def tick_text(value: float, values: list[float], comma: bool) -> str:
     else:
         decimals = max((len(f"{one:.9g}".partition(".")[2]) for one in values if "e" not in f"{one:.9g}"), default=0)
         text = f"{value:.{decimals}f}"
-    return text.replace(".", ",") if comma else text
+    return decimal(text, comma)

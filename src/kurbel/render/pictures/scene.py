@@ -81,23 +81,22 @@ class Scene(NamedTuple):
 def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
     """Return places x, y (n,) without those that lie on a straight line between others, but for `within`."""
     places = x + 1j * y
-    keep = np.zeros(len(x), dtype=bool)
-    keep[[0, -1]] = True
-    spans = [(0, len(x) - 1)]
-    while spans:
-        start, end = spans.pop()
-        if end - start < 2:
-            continue
-        far = _distances(places[start : end + 1])
-        most = int(np.argmax(far))
-        if far[most] > within:
-            keep[start + most] = True
-            spans += [(start, start + most), (start + most, end)]
-    return tuple(zip(x[keep].tolist(), y[keep].tolist()))
+    kept = np.zeros(len(x), dtype=bool)
+    kept[[0, -1]] = True
+    while True:
+        ends = np.flatnonzero(kept)
+        spans = np.diff(ends)
+        start, chord = (np.repeat(each, spans) for each in (ends[:-1], np.diff(places[ends])))
+        far = _distances(places[: ends[-1]] - places[start], chord)
+        farthest = np.repeat(np.maximum.reduceat(far, ends[:-1]), spans)
+        tops = np.flatnonzero((far == farthest) & (far > within))
+        if not len(tops):
+            return tuple(zip(x[kept].tolist(), y[kept].tolist()))
+        # of several that lie equally far from a chord the first
+        kept[tops[np.diff(start[tops], prepend=-1) != 0]] = True
 
 
-def _distances(places: ComplexArray) -> Array:
-    """Return how far places x + iy (n,) lie from the chord between the first and the last."""
-    chord, reached = places[-1] - places[0], places - places[0]
-    along = np.minimum(np.maximum((reached / chord).real, 0.0), 1.0) if chord else 0.0
-    return np.asarray(np.abs(reached - along * chord))
+def _distances(reached: ComplexArray, chord: ComplexArray) -> Array:
+    """Return how far places x + iy (n,), from the beginnings of chords (n,), lie from these; a chord may be a point."""
+    along = np.divide(reached, chord, out=np.zeros_like(reached), where=chord != 0).real
+    return np.asarray(np.abs(reached - np.minimum(np.maximum(along, 0.0), 1.0) * chord))

@@ -200,48 +200,45 @@ def pictures(case: "Case", names: Sequence[str], wish: Wish) -> Iterator[Picture
     machine locks itself or stalls.
     """
     wish = wish._replace(cylinder=wish.cylinder and cylinder_meant(wish.cylinder, _names(case)))
-    with np.errstate(all="ignore"):
-        if not names:
-            yield from _first(case, wish)
-            return
-        every = "all" in names
-        for declared in (
-            (one for one in PICTURES if _has(case, one, wish))
-            if every
-            else [_named(case, name, wish) for name in names]
-        ):
-            found = list(_pictures(case, declared, wish))
-            if not found:
+    if not names:
+        yield from _first(case, wish)
+    elif "all" in names:
+        for declared in PICTURES:
+            yield from pictures_if_any(case, declared, wish)
+    else:
+        for declared in [_named(case, name, wish) for name in names]:
+            if not (found := _drawn(case, declared, wish)):
                 raise UsageError(_missing(case, declared, wish))
             yield from found
 
 
 def pictures_of(case: "Case", wish: Wish) -> tuple[Declared, ...]:
     """Return the pictures that a machine has; one that is without a solution is drawn of it, too, and then says so."""
-    found = []
+    return tuple(one for one in PICTURES if _has(case, one, wish))
+
+
+def _has(case: "Case", declared: Declared, wish: Wish) -> bool:
     with np.errstate(all="ignore"):
-        for one in PICTURES:
-            try:
-                has = _has(case, one, wish)
-            except NoSolutionError:
-                has = True
-            found += [one] if has else []
-    return tuple(found)
+        try:
+            return any(True for source, _ in _sources(case, declared, wish) for _ in declared.drawn(source))
+        except UsageError:
+            return False
+        except NoSolutionError:
+            return True
 
 
 def pictures_if_any(case: "Case", declared: Declared, wish: Wish) -> list[Picture]:
     """Return one picture of a machine, as often as it has it, or none; raises NoSolutionError as `pictures` does."""
-    with np.errstate(all="ignore"), suppress(UsageError):
-        return list(_pictures(case, declared, wish))
+    with suppress(UsageError):
+        return _drawn(case, declared, wish)
     return []
 
 
 def _first(case: "Case", wish: Wish) -> list[Picture]:
     """Return the first picture that there is; none is drawn only to see whether there is one."""
-    for declared in PICTURES:
-        with suppress(UsageError):
-            if found := list(_pictures(case, declared, wish)):
-                return found
+    found = filter(None, (pictures_if_any(case, declared, wish) for declared in PICTURES))
+    if first := next(found, None):
+        return first
     raise UsageError(f"{case.machine.name}: there is nothing to draw; kurbel check says what is missing")
 
 
@@ -258,29 +255,25 @@ def _having(case: "Case", wish: Wish) -> str:
 
 
 def _missing(case: "Case", declared: Declared, wish: Wish) -> str:
-    names = _names(case)
+    names, has = _names(case), _having(case, wish)
     if wish.cylinder is not None and wish.cylinder not in names:
         return f"--cylinder: there is no '{shown(wish.cylinder)}'; there are {', '.join(names)}"
-    return (
-        f"{case.machine.name} has no picture '{declared.id}': what it shows is left out; it has {_having(case, wish)}"
-    )
+    return f"{case.machine.name} has no picture '{declared.id}': what it shows is left out; it has {has}"
 
 
 def _names(case: "Case") -> tuple[str, ...]:
     return tuple(one.drive.name for one in case.cylinders)
 
 
-def _has(case: "Case", declared: Declared, wish: Wish) -> bool:
-    with suppress(UsageError):
-        return any(True for source, _ in _sources(case, declared, wish) for _ in declared.drawn(source))
-    return False
-
-
-def _pictures(case: "Case", declared: Declared, wish: Wish) -> Iterator[Picture]:
-    for source, name in _sources(case, declared, wish):
-        if panels := tuple(declared.drawn(source)):
-            across = min(declared.across, len(panels))
-            yield Picture(declared.id, declared.title, declared.text, panels, case.machine.name, name, across)
+def _drawn(case: "Case", declared: Declared, wish: Wish) -> list[Picture]:
+    found = []
+    with np.errstate(all="ignore"):
+        for source, name in _sources(case, declared, wish):
+            if panels := tuple(declared.drawn(source)):
+                across = min(declared.across, len(panels))
+                words = declared.id, declared.title, declared.text
+                found.append(Picture(*words, panels, case.machine.name, name, across))
+    return found
 
 
 def _sources(case: "Case", declared: Declared, wish: Wish) -> "Iterator[tuple[Source, str]]":
@@ -288,22 +281,22 @@ def _sources(case: "Case", declared: Declared, wish: Wish) -> "Iterator[tuple[So
     from kurbel.report.pictures.source import Source
 
     if declared.command in _OF_MACHINE:
-        yield Source(_OF_MACHINE[declared.command](case), wish.system, wish.fineness), ""
+        yield Source(_OF_MACHINE[declared.command](case), wish), ""
     elif declared.command == "bearings":
         for part in case.bearings.parts:
-            yield Source(part, wish.system, wish.fineness), part.name
+            yield Source(part, wish), part.name
     else:
         wanted = [one for one in case.cylinders if wish.cylinder in (None, one.drive.name)]
         for equal in gathered(wanted, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
             if declared.command == "forces":
                 equal[0].refuse_locking()
             names = together([one.drive.name for one in equal]) if len(case.cylinders) > 1 else ""
-            yield Source(equal[0], wish.system, wish.fineness, wish.angles), names
+            yield Source(equal[0], wish), names
 
 
 _OF_MACHINE: "dict[str, Callable[[Case], Any]]" = {
     "flywheel": lambda case: case.flywheel,
-    "stress": lambda case: case.strength,
+    "stress": lambda case: case.stress,
     "balance": lambda case: case.balance,
     "harmonics": lambda case: case.harmonics(),
     "torsion": lambda case: case.torsion,

@@ -1,12 +1,10 @@
 """The work-precision picture of `kurbel accuracy`: time over error, one panel for each quantity."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from kurbel.errors import UsageError
 from kurbel.report.pictures.picture import Axis, Curve, Panel, Picture, Piece, Words
-from kurbel.report.tables import PlaceTable, Report
+from kurbel.report.tables import Report
 
 _TABLE = "numerical_error"
 _LEAST = 1e-17
@@ -36,7 +34,7 @@ def accuracy_picture(report: Report) -> Picture:
         tuple(_panel(quantity, scenes, methods, span) for quantity, scenes in found.items()),
         report.title,
         across=min(4, len(found)),
-        legend=tuple((Words(method, method), number) for number, method in enumerate(methods)),
+        legend=tuple((Words(method), number) for number, method in enumerate(methods)),
     )
 
 
@@ -44,19 +42,14 @@ def dots(report: Report) -> Dots:
     """Return what is drawn of each quantity; methods without an answer have no dots."""
     found: Dots = {}
     for table in (table for part in report.parts for table in part.place_tables if table.id == _TABLE):
+        columns = {column.id: column.values for column in table.columns}
         scene: dict[tuple[str, str], list[tuple[float, float]]] = {}
-        for quantity, method, error, time in _answers(table):
-            scene.setdefault((quantity, method), []).append((max(error, _LEAST), time))
+        for (quantity, method, _, state), error, time in zip(table.names, columns["error"], columns["median"]):
+            if error is not None and time is not None and state == "ok":
+                scene.setdefault((quantity, method.split(",")[0]), []).append((max(error, _LEAST), time))
         for (quantity, method), answers in scene.items():
             found.setdefault(quantity, {}).setdefault(method, []).append(answers)
     return found
-
-
-def _answers(table: PlaceTable) -> Iterator[tuple[str, str, float, float]]:
-    columns = {column.id: column.values for column in table.columns}
-    for (quantity, method, _, state), error, time in zip(table.names, columns["error"], columns["median"]):
-        if error is not None and time is not None and state == "ok":
-            yield quantity, method.split(",")[0], error, time
 
 
 def _panel(
@@ -66,14 +59,9 @@ def _panel(
     span: tuple[float, float],
 ) -> Panel:
     curves = [
-        Curve(
-            Words(method, method),
-            tuple(Piece(*np.array(answers).T) for answers in scenes),
-            "dots",
-            methods.index(method),
-        )
+        Curve(Words(method), tuple(Piece(*np.array(answers).T) for answers in scenes), "dots", methods.index(method))
         for method, scenes in found.items()
     ]
-    rounding = Curve(Words("", ""), (Piece(np.array([_ROUNDING, _ROUNDING]), np.array(span)),), "faint")
-    x = Axis(Words("error", "error"), "", True, _LEAST, 1.0, falling=True)
-    return Panel(x, Axis(Words("time", "time"), "ms", True, *span), (rounding, *curves), title=quantity)
+    rounding = Curve(Words(""), (Piece(np.array([_ROUNDING, _ROUNDING]), np.array(span)),), "faint")
+    x = Axis(Words("error"), "", True, _LEAST, 1.0, falling=True)
+    return Panel(x, Axis(Words("time"), "ms", True, *span), (rounding, *curves), title=quantity)

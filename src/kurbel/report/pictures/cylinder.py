@@ -17,9 +17,9 @@ from kurbel.report.pictures.source import PHI, Source, level, mark
 if TYPE_CHECKING:
     from kurbel.solver.cylinder.gas import PistonGas
 
-_V, _P, _P_0 = Words("V", "V"), Words("P", "P"), Words("P_0", "P_0")
-_INERTIA_LINE = Words("−P_b", "-P_b")
-_REVERSAL = Words("Druckwechsel", "Druckwechsel")
+_V, _P, _P_0 = Words("V"), Words("P"), Words("P_0")
+_INERTIA_LINE = Words("−P_b")
+_REVERSAL = Words("Druckwechsel")
 _MET = 1e-9
 """Of the largest distance between two lines: where they cross, rounding alone is between them."""
 
@@ -55,7 +55,7 @@ def _card(source: Source, gas: "PistonGas", over_volume: bool) -> Panel:
     ]
     own = piston is source.results.drive.cylinder.pistons[0] and not over_volume
     marks = tuple(_highest(source, unit, run)) if own else ()
-    y = Axis(Words("p", "p"), f"{unit} abs" if gas.absolute else unit)
+    y = Axis(Words("p"), f"{unit} abs" if gas.absolute else unit)
     x = Axis(_V if over_volume else source.words("x"), run)
     ambient = level(curves, float(convert(gas.base, "pressure", unit)))
     return Panel(x, y, (*curves, ambient), marks=marks, title=piston.name if several else "")
@@ -182,16 +182,16 @@ def polar_effort(source: Source) -> Iterator[Panel]:
     size = float(np.abs(force).max()) or 1.0
     base = max(0.6 * size, size * 0.25 - float(force.min()))
     around = np.linspace(0.0, 360.0, 121)
-    rings = [_faint(Words("T = 0", "T = 0"), around, base)]
+    rings = [_faint(Words("T = 0"), around, base)]
     if mean := getattr(source.results, "W", None):
-        rings.append(_faint(Words("W", "W"), around, base + float(convert(mean, "force", unit))))
+        rings.append(_faint(Words("W"), around, base + float(convert(mean, "force", unit))))
     spokes = [
         _faint(Words(f"φ = {angle:g}°", f"phi = {angle:g}"), angle, np.array([base, (base + size) * 1.04]))
         for angle in range(0, 360, 90)
     ]
     curves = (Curve(source.words("T"), pieces(samples, *_polar(samples.degrees, base + force))), *rings, *spokes)
     marks = tuple(_placed(one, base) for one in source.marks("T", unit))
-    axis = Axis(Words("", ""), unit)
+    axis = Axis(Words(""), unit)
     yield Panel(axis, axis, curves, marks=marks, equal=True, plain=True)
 
 

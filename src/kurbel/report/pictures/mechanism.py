@@ -24,7 +24,7 @@ def mechanism(source: Source) -> Iterator[Panel]:
     drive = source.results.drive
     if drive.mechanism.sketch(CrankAngle.of(0.0)) is None:
         return
-    angles = source.angles
+    angles = source.wish.angles
     moving = np.arange(_FRAMES) * (drive.cycle / _FRAMES)
     drawn = _drawn(source, np.array([_chief_angle(source)] if angles is None else angles, dtype=float))
     if angles is None:
@@ -47,14 +47,16 @@ def _drawn(source: Source, degrees: Array) -> list[Panel]:
     joints = {name: convert(_along(point, degrees), "length", unit) for name, point in sketch.joints.items()}
     guides = [[convert(_along(end, degrees), "length", unit) for end in guide] for guide in sketch.guides]
     arrows = list(_arrows(source, degrees, sketch, unit))
-    axis = Axis(Words("", ""), unit)
+    axis, around = Axis(Words(""), unit), CrankAngle.of(np.linspace(0.0, 360.0, 73))
+    way = crank * np.column_stack((around.cos, around.sin))
     panels = []
     for k, angle in enumerate(degrees.tolist()):
         here = {name: places[k] for name, places in joints.items()}
         lines = (_curve("guide", [end[k] for end in guide]) for guide in guides)
-        curves = (_path(here["shaft"], crank), *lines, *_members(sketch, here, 0.09 * crank))
+        circle = _curve("faint", [*(here["shaft"] + way)])
+        curves = (circle, *lines, *_members(sketch, here, 0.09 * crank))
         panel = Panel(axis, axis, curves, arrows=tuple(one[k] for one in arrows), equal=True, plain=True)
-        panels.append(panel._replace(title=f"φ = {round(angle, 2 if source.angles is None else 6):.9g}°"))
+        panels.append(panel._replace(title=f"φ = {round(angle, 2 if source.wish.angles is None else 6):.9g}°"))
     return panels
 
 
@@ -77,12 +79,7 @@ def _members(sketch: Sketch, joints: dict[str, Array], size: float) -> Iterator[
 
 def _curve(kind: str, points: Sequence[Array]) -> Curve:
     x, y = np.array(points, dtype=float).T
-    return Curve(Words("", ""), (Piece(x, y),), kind)
-
-
-def _path(shaft: Array, crank: float) -> Curve:
-    around = CrankAngle.of(np.linspace(0.0, 360.0, 73))
-    return _curve("faint", [*(shaft + crank * np.column_stack((around.cos, around.sin)))])
+    return Curve(Words(""), (Piece(x, y),), kind)
 
 
 def _box(middle: Array, way: Array, size: float) -> list[Array]:

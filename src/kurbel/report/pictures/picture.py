@@ -6,10 +6,10 @@ from kurbel.arrays import Array
 
 
 class Words(NamedTuple):
-    """A symbol as it is printed, and as it is written where there are no Greek letters."""
+    """A symbol as it is printed, and where there are no Greek letters, if not by what stands for each of its signs."""
 
     symbol: str
-    ascii_symbol: str
+    ascii_symbol: str = ""
 
 
 class Axis(NamedTuple):

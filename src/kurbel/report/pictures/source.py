@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,18 +15,20 @@ from kurbel.report.pictures.sampling import Samples, Values, pieces, sampled
 from kurbel.report.shown import too_large
 from kurbel.solver.figures import answered
 
+if TYPE_CHECKING:
+    from kurbel.report.pictures import Wish
+
 PHI = "phi"
 
 
 class Source:
     """The results of one cylinder or of the whole machine, as pictures need them.
 
-    results: what answers columns (`at`), key values (`answering`) and where it is smooth (`breaks`); system: of units;
-    fineness: by what of its height a line of points may miss a curve; angles: in degrees, at which a mechanism stands.
+    results: what answers columns (`at`), key values (`answering`) and where it is smooth (`breaks`).
     """
 
-    def __init__(self, results: Any, system: str, fineness: float, angles: Sequence[float] | None = None) -> None:
-        self.results, self.system, self.fineness, self.angles = results, system, fineness, angles
+    def __init__(self, results: Any, wish: "Wish") -> None:
+        self.results, self.wish = results, wish
 
     @cached_property
     def _declared(self) -> dict[str, Quantity]:
@@ -62,7 +64,7 @@ class Source:
 
         Raises UsageError where one has left the range of floats.
         """
-        found = sampled(self.results.breaks if breaks is None else breaks, values, self.fineness)
+        found = sampled(self.results.breaks if breaks is None else breaks, values, self.wish.fineness)
         for id, line in zip(ids, found.values):
             if not np.isfinite(line).all():
                 raise too_large(self.quantity(id))
@@ -74,7 +76,7 @@ class Source:
 
     def unit(self, kind: str, *values: Any) -> str:
         """Return the unit in which values in SI of one kind are shown together."""
-        return shown_unit(kind, self.system, max((float(np.max(np.abs(one))) for one in values), default=0.0))
+        return shown_unit(kind, self.wish.system, max((float(np.max(np.abs(one))) for one in values), default=0.0))
 
     def extremes(self, id: str) -> list[tuple[Quantity, Extreme]]:
         """Return the key values that are the largest and the smallest value of a column, as far as there are any."""
@@ -125,7 +127,7 @@ def words(quantity: Quantity) -> Words:
     return Words(quantity.symbol, quantity.ascii_symbol)
 
 
-def level(curves: Sequence[Curve], height: float = 0.0, name: Words = Words("", "")) -> Curve:  # noqa: B008 (immutable)
+def level(curves: Sequence[Curve], height: float = 0.0, name: Words = Words("")) -> Curve:  # noqa: B008 (immutable)
     """Return a faint level line, y = 0 if no other height is given, as far as the curves reach."""
     every = [piece.x for curve in curves for piece in curve.pieces if len(piece.x)]
     ends = min((x.min() for x in every), default=0.0), max((x.max() for x in every), default=0.0)

@@ -17,7 +17,7 @@ _FRAMES = {
     "load_engine": "engine: stroke line →",
     "load_rod": "rod: its line →",
 }
-_F = Words("F", "F")
+_F = Words("F")
 
 
 def free_vectors(source: Source) -> Iterator[Panel]:
@@ -35,8 +35,7 @@ def free_vectors(source: Source) -> Iterator[Panel]:
 def polar_loads(source: Source) -> Iterator[Panel]:
     """Yield a panel for each frame, what its directions count from to the right."""
     for frame in source.having(_FRAMES):
-        panel = _polar(source, frame)
-        yield panel._replace(title=_FRAMES[frame])
+        yield _polar(source, frame)._replace(title=_FRAMES[frame])
 
 
 def _polar(source: Source, frame: str) -> Panel:

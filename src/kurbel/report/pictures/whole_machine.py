@@ -26,14 +26,12 @@ def effort(source: Source) -> Iterator[Panel]:
     for id, mean in (("E", None), ("omega", "omega_mean"), ("M_coupling", "M_mean")):
         if source.having((id,)):
             panel = source.panel((id,))
-            yield _with_mean(source, panel, id, mean) if mean else panel
-
-
-def _with_mean(source: Source, panel: Panel, id: str, mean: str) -> Panel:
-    value = getattr(source.results, mean)
-    quantity = source.results.lists.key_values("flywheel")[mean]
-    line = level(panel.curves, float(convert(value, source.quantity(id).kind, panel.y.unit)), words(quantity))
-    return panel._replace(curves=(*panel.curves, line))
+            if mean:
+                quantity = source.results.lists.key_values("flywheel")[mean]
+                height = convert(getattr(source.results, mean), source.quantity(id).kind, panel.y.unit)
+                line = level(panel.curves, float(height), words(quantity))
+                panel = panel._replace(curves=(*panel.curves, line))
+            yield panel
 
 
 def _effort(source: Source) -> Panel:
@@ -46,7 +44,7 @@ def _effort(source: Source) -> Panel:
     line, load = convert(samples.values[1], kind, unit), convert(samples.values[2] / over, kind, unit)
     name = source.words(id)
     level_load = results.machine.load is None or results.machine.load.diagram is None
-    resistance = Words("W", "W") if at_crank else Words(*("M_m" if level_load else "M_W",) * 2)
+    resistance = Words("W") if at_crank else Words("M_m" if level_load else "M_W")
     curves = (
         Curve(name, pieces(samples, x, line)),
         Curve(resistance, pieces(samples, x, load), kind="faint" if level_load else "line"),
@@ -70,7 +68,7 @@ def _numbered(source: Source, shades: list[Shade]) -> Iterator[Shade]:
             yield shade
             continue
         unit = source.unit("energy", results.lobes)
-        name = Words(f"A_{owner + 1}", f"A_{owner + 1}")
+        name = Words(f"A_{owner + 1}")
         yield shade._replace(figure=Figure(name, float(convert(lobes[owner], "energy", unit)), unit))
 
 
@@ -109,10 +107,10 @@ def shaft_modes(source: Source) -> Iterator[Panel]:
         frequency = float(found.modes.omegas[mode - found.first]) / (2 * math.pi)
         name = f"{mode}: {frequency:.4g} Hz"
         shape = angles / np.abs(angles).max()
-        curves.append(Curve(Words(name, name), (Piece(np.arange(float(len(shape))), shape),)))
+        curves.append(Curve(Words(name), (Piece(np.arange(float(len(shape))), shape),)))
     if curves:
         names = tuple(mass.name[:_LONGEST_NAME] for mass in found.line.masses)
-        yield Panel(Axis(Words("", ""), "", names=names), Axis(Words("θ", "theta"), ""), (*curves, level(curves)))
+        yield Panel(Axis(Words(""), "", names=names), Axis(Words("θ"), ""), (*curves, level(curves)))
 
 
 def _bars(
@@ -128,5 +126,5 @@ def _bars(
             edges = np.array([left, left + wide])
             shades.append(Shade(edges, np.zeros(2), np.full(2, size), gain=number == 0))
     names = tuple(f"{order:g}" for order in orders)
-    x = Axis(Words("n", "n"), "", low=-0.6, high=len(names) - 0.4, names=names)
-    return Panel(x, Axis(Words(name, name), unit, low=0.0), shades=tuple(shades), title=title)
+    x = Axis(Words("n"), "", low=-0.6, high=len(names) - 0.4, names=names)
+    return Panel(x, Axis(Words(name), unit, low=0.0), shades=tuple(shades), title=title)

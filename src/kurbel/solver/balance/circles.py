@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import unit_vector
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import roots_by_slope
 
@@ -14,12 +14,6 @@ _ALIKE = 64 * np.finfo(float).eps
 """By which summits of one height differ by rounding, relatively."""
 _ROUNDING = 8 * np.finfo(float).eps
 """Of samples, beside the sum of the sizes that make them."""
-
-
-def unit_vectors(degrees: float | Array) -> ComplexArray:
-    """Return e^{iφ} (…,) of angles in degrees, reduced exactly."""
-    angle = CrankAngle.of(degrees)
-    return np.asarray(angle.cos + 1j * np.asarray(angle.sin))
 
 
 class Circles:
@@ -43,12 +37,11 @@ class Circles:
 
     def at(self, degrees: Array) -> ComplexArray:
         """Return the vectors (m,) at angles (m,) in degrees."""
-        (vectors,) = self._derivatives(degrees, 1)
-        return np.asarray(vectors)
+        return np.asarray(self._derivatives(degrees, 1)[0])
 
     def _derivatives(self, degrees: Array, count: int) -> ComplexArray:
         """Return the vectors and their derivatives by φ, per radian, at angles (m,) in degrees, (count, m)."""
-        turned = unit_vectors(np.multiply.outer(np.asarray(degrees, float), self._orders))
+        turned = unit_vector(np.multiply.outer(np.asarray(degrees, float), self._orders))
         rates = (1j * self._orders) ** np.arange(count)[:, None]
         forward, backward = self.forward[self._orders - 1] * rates, self.backward[self._orders - 1] * rates.conj()
         # either sense by itself, so that what is mirrored cancels to the last digit

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
+from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.search import Extremes
 from kurbel.solver.balance.best import Least, in_planes, least, shafts
 from kurbel.solver.balance.circles import Circles
-from kurbel.solver.balance.free import Free
-from kurbel.solver.balance.products import Products, of_throws
+from kurbel.solver.balance.free import Free, Products, of_book, of_throws
 from kurbel.solver.balance.rolling import rolling_moment, swirls
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Columns, Results, passed_on
@@ -49,7 +49,10 @@ class MachineBalance(Results):
     """The key values of the whole machine over a turn; `at(degrees)` gives the columns.
 
     Attributes are named by the ids of the key values, in SI; one that the machine does not have is None. Raises
-    UsageError where nothing moves that a free force could come from.
+    UsageError where nothing moves that a free force could come from, and where a place of a weight is missing.
+
+    z_0: place in m from where moments are taken; wheels: of the counterweights in the wheels of a locomotive, none of
+    another machine; counterweights: those of the machine file.
     """
 
     command = "balance"
@@ -66,6 +69,8 @@ class MachineBalance(Results):
             if throw.mechanism.quick_return:
                 raise UsageError(f"{throw.name}: the masses of what drives a ram back quickly are not known")
         self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
+        self.counterweights = tuple(counterweights_of(machine, self.throws))
 
     @property
     def answering(self) -> tuple[Any, ...]:
@@ -95,30 +100,8 @@ class MachineBalance(Results):
     # what moves, all of it over ω²
 
     @cached_property
-    def z_0(self) -> float | None:
-        """Place in m from where moments are taken: the one given, or the middle of the outer cylinders."""
-        return middle_of(self.machine)
-
-    @cached_property
-    def wheels(self) -> tuple[float, ...]:
-        """Places in m of the counterweights in the wheels of a locomotive; of another machine none."""
-        return wheels_of(self.machine)
-
-    @property
-    def loose_counterweights(self) -> tuple[Weight, ...]:
-        """The counterweights of which nobody told where they stand, beside throws of which it is known."""
-        return tuple(one for one in self.counterweights if one.place is None)
-
-    @cached_property
-    def counterweights(self) -> tuple[Weight, ...]:
-        """The counterweights of the machine file."""
-        return tuple(counterweights_of(self.machine, self.throws))
-
-    @cached_property
     def _throws_alone(self) -> Products:
-        found = of_throws(self.throws)
-        assert found
-        return found
+        return of_throws(self.throws)
 
     @cached_property
     def bare(self) -> Free:
@@ -138,8 +121,9 @@ class MachineBalance(Results):
     @cached_property
     def book(self) -> Free | None:
         """The same by the acceleration of first order, R 291; None where the book has none for a mechanism."""
-        found = of_throws(self.throws, book=True)
-        return found and Free.of(found.with_weights(self._given), self.z_0)
+        if any(of_book(one.mechanism, CrankAngle.of(0.0)) is None for one in self.throws):
+            return None
+        return Free.of(of_throws(self.throws, of_book).with_weights(self._given), self.z_0)
 
     @property
     def cycle(self) -> float:

@@ -31,5 +31,4 @@ def _swirl(state: State) -> Any:
     """Return dH/dt = m e b in N m, less the couple of an exact rod, which swings against the crank."""
     drive = state.drive
     moment = state.b * (drive.mass * drive.mechanism.offset)
-    rod, rod_angle = drive.rod, drive.mechanism.rod_angle(state.angle)
-    return moment - rod.couple(rod_angle, state.angle) if rod and rod_angle else moment
+    return moment - drive.rod.couple(state.rod_angle, state.angle) if drive.rod else moment

@@ -50,11 +50,11 @@ class Bearing(Results):
     contact = 180.0
     of_rod = False
 
-    def __init__(self, name: str, followed: Sequence[Following], size: Size, speed: float | None) -> None:
+    def __init__(self, name: str, followed: Sequence[Following], size: Size) -> None:
         self.name = name
         self.followed = tuple(followed)
         self.size = size
-        self.omega = None if speed is None else 2 * math.pi * speed
+        self.omega = followed[0].drive.omega
 
     @abstractmethod
     def loads(self, degrees: Array, within: Array) -> Loads:
@@ -154,20 +154,13 @@ class Bearing(Results):
 
     def _unloaded(self, frame: str) -> Unloaded | None:
         """Return the arc of the surface that stands still in a frame; None where it is loaded nowhere."""
-        points = [self._curves[name] for name in (frame, "load")]
-        degrees = np.concatenate([one.degrees for one in points])
-        within = np.concatenate([one.within for one in points])
-        order = np.lexsort((degrees, within))
-        degrees, within = degrees[order], within[order]
-        found = self._evaluate(degrees, within)
-        loaded = found["load"].value > _NO_LOAD * self.load_max.value
-        if not loaded.any():
+        curve = self._curves[frame]
+        loads = self._evaluate(curve.degrees, curve.within)["load"].value
+        loaded = np.flatnonzero(loads > _NO_LOAD * self.load_max.value)
+        if not len(loaded):
             return None
-        beside = loaded[1:] & loaded[:-1] & (within[1:] == within[:-1])
-        kept = np.flatnonzero(loaded)
-        # neighbours among the loaded ones were neighbours before
-        joined = beside[kept[:-1]] & (np.diff(kept) == 1)
-        return unloaded(found[frame].value[kept] + self.contact, joined)
+        joined = (np.diff(loaded) == 1) & (np.diff(curve.row[loaded]) == 0)
+        return unloaded(curve.value[loaded] + self.contact, joined)
 
     @cached_property
     def _of_journal(self) -> Unloaded | None:

@@ -17,7 +17,7 @@ from kurbel.solver.cylinder.following import Following
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.pins import on_crosshead_pin, on_pin
 from kurbel.solver.shaft.line import ShaftLine, Throw, shaft_obstacle
-from kurbel.solver.shaft.statics import Vector, norm, turned
+from kurbel.solver.shaft.statics import Vector, norm
 
 
 class RodPin(Bearing):
@@ -30,9 +30,8 @@ class RodPin(Bearing):
     of_rod = True
 
     def __init__(self, name: str, followed: Following, size: Size, pin: str) -> None:
-        machine = followed.drive.machine
-        super().__init__(name, (followed,), size, machine.speed)
-        self._pin, self._turns = pin, machine.revolutions
+        super().__init__(name, (followed,), size)
+        self._pin, self._turns = pin, followed.drive.machine.revolutions
         self.journal = "throw" if pin == "crank_pin" else "engine"
 
     def loads(self, degrees: Array, within: Array) -> Loads:
@@ -69,29 +68,29 @@ class MainBearing(Bearing):
     def __init__(self, name: str, number: int, line: ShaftLine, followed: Sequence[Following], size: Size) -> None:
         self._throws = tuple(throw for throw in line.throws if number in (throw.A, throw.B))
         own = [followed[index] for throw in self._throws for index in throw.cylinders]
-        super().__init__(name, own, size, line.machine.speed)
+        super().__init__(name, own, size)
         self._number = number
         self._line = line
         self._of_cylinder = followed
 
     def loads(self, degrees: Array, within: Array) -> Loads:
         """Return the load; see `Bearing`."""
-        throw = Plane.of_throw(self._force(degrees, within, rubbed=True))
+        throw = self._force(degrees, within, rubbed=True)
         angle = CrankAngle.of(degrees).jets
         return Loads({"throw": throw, "engine": throw.turned(angle.cos, angle.sin)})
 
-    def _force(self, degrees: Array, within: Array, rubbed: bool) -> Vector:
+    def _force(self, degrees: Array, within: Array, rubbed: bool) -> Plane:
         """Return the force in N in the frame of crank 1; rubbed: with what the friction of the pins does to it."""
         found = [self._of_throw(throw, degrees, within, rubbed) for throw in self._throws]
-        return Vector(*(sum(parts[1:], parts[0]) for parts in zip(*found)))
+        return Plane(*map(sum, zip(*found)))
 
-    def _of_throw(self, throw: Throw, degrees: Array, within: Array, rubbed: bool) -> Vector:
+    def _of_throw(self, throw: Throw, degrees: Array, within: Array, rubbed: bool) -> Plane:
         every = [self._of_cylinder[index].jets_at(degrees, within) for index in throw.cylinders]
         pins = [on_pin(one if rubbed else one.unrubbed) for one in every if one.drive.has_force]
         none = np.zeros_like(degrees)
-        pin = Vector(*(sum(parts, none) for parts in zip(*pins))) if pins else Vector(none, none)
+        pin = Vector(*map(sum, zip(Vector(none, none), *pins)))
         both = self._line.carried(throw, pin, every[0].drive.cylinder, every[0].angle)
-        return turned(both[0] if self._number == throw.A else both[1], throw.angle)
+        return Plane.of_throw(both[0] if self._number == throw.A else both[1]).turned_by(throw.angle)
 
     @cached_property
     def work_rubbing(self) -> float | None:
@@ -147,10 +146,10 @@ class ShaftBearings:
             of = f" of {one.drive.name}" if several else ""
             yield RodPin(f"crank pin{of}", one, self._pin_size(number), "crank_pin")
             yield RodPin(f"crosshead pin{of}", one, _crosshead_size(one), "crosshead_pin")
-        line = self.line
-        for number in range(line.bearings) if line else ():
-            name = f"bearing {'AB'[number] if line.bearings == 2 else number + 1}"  # type: ignore[union-attr]
-            yield MainBearing(name, number, line, followed, self._journal_size())  # type: ignore[arg-type]
+        if self.line:
+            names = "AB" if self.line.bearings == 2 else range(1, self.line.bearings + 1)
+            for number, name in enumerate(names):
+                yield MainBearing(f"bearing {name}", number, self.line, followed, self._journal_size())
 
     def _pin_size(self, number: int) -> Size:
         """Return the size of a crank pin; rods side by side on one pin have equal parts of its length."""

@@ -59,7 +59,7 @@ class State:
         """Return a column that the mechanism offers; None for one that only others do."""
         offer = next((one for one in self.drive.mechanism.OFFERS if one.quantity.id == id), None)
         if offer is None:
-            if id.startswith("_") or id not in by_id(every_quantity().all_columns):
+            if id.startswith("_") or id not in by_id(*every_quantity().all_columns):
                 raise AttributeError(f"no column is called {id}")
             return None
         times = [getattr(self, name) for name in offer.times]

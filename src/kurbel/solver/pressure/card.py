@@ -10,7 +10,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle, within_cycle
-from kurbel.machine.angle_points import CYCLES
+from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.indicator import STROKES, Card, Line
 from kurbel.machine.rectangle import Rectangle
 from kurbel.mechanisms import fan

@@ -19,10 +19,9 @@ _FEWEST = 5
 
 
 class Supposed(NamedTuple):
-    """What a trace would be if it were read otherwise: put so many degrees later, times a factor, raised by Pa."""
+    """What a trace would be if it were read otherwise: put so many degrees later, raised by Pa."""
 
     later: float = 0.0
-    factor: float = 1.0
     raised: float = 0.0
 
 
@@ -46,7 +45,7 @@ def exponent(pressure: "TracePressure", stretch: tuple[float, float], supposed: 
         return None
     after = from_dead_centre(pressure) + supposed.later
     inside = (after >= stretch[0]) & (after <= stretch[1])
-    figures = pressure.pressures[inside] * supposed.factor + setting.lift + supposed.raised
+    figures = pressure.pressures[inside] + setting.lift + supposed.raised
     if len(figures) < _FEWEST or not (figures > 0).all():
         return None
     volumes = np.log(stroke_fraction(pressure, after[inside]) + clearance)

@@ -13,11 +13,11 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.solver.shaft.statics import FreeBody, Vector, flywheel_weight
-from kurbel.solver.shaft.weights import OwnThrow, counterweights_of, unit_vector
+from kurbel.solver.shaft.weights import OwnThrow, counterweights_of
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft

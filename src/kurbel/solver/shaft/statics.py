@@ -79,20 +79,6 @@ def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> 
     return weight_in_throw(shaft.flywheel_mass * GRAVITY, angle, inclination)
 
 
-def turned(force: Vector, degrees: float) -> Vector:
-    """Return a force in the frame of one throw as it is in that of another, which stands `degrees` behind it.
-
-    Outward and in the sense of rotation, −D + iT is a complex number, and this its product with e^{iθ}.
-
-    >>> turned(Vector(-1.0, 0.0), 90.0)
-    Vector(D=0.0, T=1.0)
-    """
-    if not degrees:
-        return force
-    angle = CrankAngle.of(degrees)
-    return Vector(force.D * angle.cos + force.T * angle.sin, force.T * angle.cos - force.D * angle.sin)
-
-
 def norm(first: Any, second: Any) -> Any:
     """Return √(x² + y²); a jet that vanishes gets the slope 0, where the root has a kink and no slope."""
     square = first * first + second * second

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 
@@ -45,20 +45,10 @@ class OwnThrow:
         product = mass * self.mechanism.crank * unit_vector(self.bank - self.late)
         return Weight(product, 1, self.place, self.number)
 
-    def against(self, share: float) -> Weight:
-        """Return the counterweight of what turns, and of a share of what goes to and fro."""
-        return self.weight(-(self.rotating + share * self.mass))
-
     def carrying(self, one: "Counterweight", beside: float | None) -> Weight:
         """Return a counterweight whose angle counts from this throw; beside: its place where none is given."""
         product = one.product * unit_vector(self.bank - self.late + one.angle)
         return Weight(product, 1, beside if one.axial_position is None else one.axial_position, self.number)
-
-
-def unit_vector(degrees: float) -> complex:
-    """Return e^{iφ} of an angle in degrees, reduced exactly."""
-    angle = CrankAngle.of(degrees)
-    return complex(angle.cos, angle.sin)
 
 
 def middle_of(machine: Machine) -> float | None:
@@ -96,7 +86,7 @@ def _given(
         return
     planes = given.planes or wheels
     for throw in throws:
-        weight = throw.against(given.share)
+        weight = throw.weight(-(throw.rotating + given.share * throw.mass))
         yield from levered(weight, planes, throw.name) if planes else (weight,)
 
 

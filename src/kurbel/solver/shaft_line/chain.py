@@ -1,7 +1,12 @@
-"""A chain of masses on pieces of shaft, as numbers: J θ̈ + C θ̇ + K θ = M."""
+"""A chain of masses on pieces of shaft, J θ̈ + C θ̇ + K θ = M, and what torques of certain orders make of it.
+
+(K (1 + iη) + iνω C − (νω)² J) θ = M has three diagonals. It is taken apart for all orders and speeds at once, the
+larger of two rows first.
+"""
 
 from collections.abc import Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -9,6 +14,8 @@ from kurbel.arrays import Array, ComplexArray
 from kurbel.frozen import frozen
 from kurbel.machine.shaft_line import ShaftLine
 
+_AT_ONCE = 2048
+"""Orders at speeds that are solved together: what the nearest memory holds."""
 _ARRAYS = ("inertias", "stiffnesses", "piece_damping", "mass_damping", "loss")
 
 
@@ -36,22 +43,23 @@ class Chain:
 
     @cached_property
     def twists(self) -> Array:
-        """The matrix (pieces, n) by which angles become twists: that before a piece less that after it."""
-        count = len(self.inertias)
-        first = -1 if self.ground == "before" else 0
-        matrix = np.zeros((len(self.stiffnesses), count))
-        for piece in range(len(self.stiffnesses)):
-            for mass, sign in ((piece + first, 1.0), (piece + first + 1, -1.0)):
-                if 0 <= mass < count:
-                    matrix[piece, mass] = sign
-        return matrix
+        """The matrix (pieces, n) by which angles become twists."""
+        return np.asarray(self.twisted(np.eye(len(self.inertias))))
 
-    def twisted(self, angles: ComplexArray) -> ComplexArray:
-        """Return the twists (pieces, …) that angles of the masses (n, …) make; see `twists`."""
-        still = np.zeros_like(angles[:1])
-        first, last = [still] * (self.ground == "before"), [still] * (self.ground == "after")
-        held = np.concatenate((*first, angles, *last)) if self.ground else angles
-        return np.asarray(held[:-1] - held[1:])
+    def twisted(self, angles: Any) -> Any:
+        """Return the twists (pieces, …) that angles of the masses (n, …) make: that before a piece less that after."""
+        held = np.pad(angles, (self.fixed, *((0, 0),) * (angles.ndim - 1))) if self.ground else angles
+        return held[:-1] - held[1:]
+
+    @property
+    def fixed(self) -> tuple[int, int]:
+        """1 for an end that is fixed, before the first mass and after the last one, else 0."""
+        return int(self.ground == "before"), int(self.ground == "after")
+
+    @property
+    def between(self) -> slice:
+        """Which of the pieces lie between two masses."""
+        return slice(self.fixed[0], self.fixed[0] + len(self.inertias) - 1)
 
     @property
     def damped(self) -> bool:
@@ -63,3 +71,60 @@ class Chain:
         ground = {"before": "after", "after": "before"}.get(self.ground, "")
         turned = {name: getattr(self, name)[::-1] for name in _ARRAYS}
         return Chain(**turned, ground=ground)
+
+
+def responding(chain: Chain, frequencies: Array, torques: ComplexArray, held: Array | float = 0.0) -> ComplexArray:
+    """Return the angles (n, …) in rad of the masses under torques (n, …) in N m at angular frequencies νω (…) in rad/s.
+
+    held: damping of the masses beside their own, (n, …) in N m s/rad. Without any damping a resonance has no answer: it
+    is not finite.
+    """
+    shape, flat = torques.shape, frequencies.ravel()
+    sides, held = (np.broadcast_to(one, shape).reshape(shape[0], -1) for one in (torques, held))
+    parts = (slice(start, start + _AT_ONCE) for start in range(0, max(1, len(flat)), _AT_ONCE))
+    each = [_responding(chain, flat[part], sides[:, part], held[:, part]) for part in parts]
+    return np.concatenate(each, axis=1).reshape(shape)
+
+
+def _responding(chain: Chain, frequencies: Array, torques: ComplexArray, held: Array) -> ComplexArray:
+    """Return the angles (n, m) at frequencies (m,)."""
+    spring, damping = _springs(chain, frequencies), chain.mass_damping[:, None] + held
+    own = -np.multiply.outer(chain.inertias, frequencies**2) + 1j * damping * frequencies
+    before, after = chain.fixed
+    beside = np.pad(spring, ((1 - before, 1 - after), (0, 0)))
+    return _three_diagonals(own + beside[:-1] + beside[1:], -spring[chain.between], torques)
+
+
+def twisting(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
+    """Return the torques (pieces, …) in N m in springs and dampers of the pieces; angles (n, …): see `responding`."""
+    return np.asarray(_springs(chain, frequencies) * chain.twisted(angles))
+
+
+def _springs(chain: Chain, frequencies: Array) -> ComplexArray:
+    """Return k (1 + iη) + iνω d of the pieces, (pieces, …)."""
+    still = (chain.stiffnesses * (1 + 1j * chain.loss)).reshape(-1, *(1,) * frequencies.ndim)
+    return np.asarray(still + 1j * np.multiply.outer(chain.piece_damping, frequencies))
+
+
+def _three_diagonals(own: ComplexArray, beside: ComplexArray, sides: ComplexArray) -> ComplexArray:
+    """Return x (n, m) with beside_{i−1} x_{i−1} + own_i x_i + beside_i x_{i+1} = sides_i."""
+    count, width = own.shape
+    # of each row that is done with: the factors of x_i, x_{i+1}, x_{i+2}, and its right side
+    done = np.zeros((count, 4, width), dtype=complex)
+    row, lower = np.zeros((2, 4, width), dtype=complex)
+    row[0], row[3] = own[0], sides[0]
+    row[1] = beside[0] if count > 1 else 0.0
+    for index in range(1, count):
+        lower[0], lower[1], lower[3] = beside[index - 1], own[index], sides[index]
+        lower[2] = beside[index] if index + 1 < count else 0.0
+        swap = np.abs(lower[0]) > np.abs(row[0])
+        above = np.where(swap, lower, row)
+        below = np.where(swap, row, lower)
+        done[index - 1] = above
+        row[[0, 1, 3]] = below[1:] - below[0] / above[0] * above[1:]
+    done[-1] = row
+    found = np.zeros((count + 2, width), dtype=complex)
+    for index in range(count - 1, -1, -1):
+        first, second, third, right = done[index]
+        found[index] = (right - second * found[index + 1] - third * found[index + 2]) / first
+    return np.asarray(found[:-2])

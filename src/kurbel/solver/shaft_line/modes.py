@@ -7,6 +7,7 @@ k differ by rounding. A symmetric eigenproblem would lose the low modes of a cha
 """
 
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -78,30 +79,10 @@ class Modes:
 
     def _below(self, omegas: Array) -> Array:
         """Return how many elastic modes lie below each ω (m,)."""
-        stiffness, last = self._line.stiffnesses, self._behind(omegas)
+        stiffness, last = self._line.stiffnesses, _behind(self._line, omegas)
         quotients = 1 - last[: len(stiffness)] / stiffness[:, None]
         negative = (quotients < 0).sum(axis=0)
         return np.asarray(negative if self.chain.ground else negative + (last[-1] > 0) - 1)
-
-    def _behind(self, omegas: Array, backward: bool = False) -> Array:
-        """Return r (n, m): the torque behind a mass over its angle, ω² J of it included, going along at ω (m,).
-
-        backward: going the other way, from the fixed end where there is one.
-        """
-        inertias, stiffnesses = self._line.inertias, self._line.stiffnesses
-        squares = omegas * omegas
-        if backward:
-            inertias, stiffnesses = inertias[::-1], stiffnesses[::-1]
-        found = np.empty((len(inertias), len(omegas)))
-        held = backward and bool(self.chain.ground)
-        carried = np.full(len(omegas), -stiffnesses[0]) if held else np.zeros(len(omegas))
-        between = stiffnesses[1:] if held else stiffnesses
-        for index, inertia in enumerate(inertias):
-            found[index] = carried + squares * inertia
-            if index + 1 < len(inertias):
-                quotient = 1 - found[index] / between[index]
-                carried = found[index] / np.where(quotient == 0, _NOTHING, quotient)
-        return found[::-1] if backward else found
 
     def holzer(self, mode: int) -> Holzer:
         """Return the table of a mode, counted from 0.
@@ -110,7 +91,7 @@ class Modes:
         """
         omega = np.array([self.omegas[mode]])
         inertias, stiffnesses = self._line.inertias, self._line.stiffnesses
-        behind, before = self._behind(omega)[:, 0], self._behind(omega, backward=True)[:, 0]
+        behind, before = _behind(self._line, omega)[:, 0], _behind(self._line.reversed(), omega)[::-1, 0]
         own = omega[0] ** 2 * inertias
         gap = behind + before - own
         meet = int(np.argmin(np.abs(gap) / inertias))
@@ -130,15 +111,21 @@ class Modes:
 
     def nodes(self, mode: int) -> tuple[tuple[int, float], ...]:
         """Return where a mode stands still: the mass before, and the share of the way to the next one."""
-        angles = self.holzer(mode).angles
-        found = []
-        for index in range(len(angles) - 1):
-            if angles[index] * angles[index + 1] < 0:
-                found.append((index, float(angles[index] / (angles[index] - angles[index + 1]))))
-            elif angles[index] == 0:
-                found.append((index, 0.0))
-        return tuple(found)
+        beside = enumerate(pairwise(self.holzer(mode).angles.tolist()))
+        return tuple((mass, a / (a - b)) for mass, (a, b) in beside if a * b < 0 or a == 0 != b)
 
 
-def _not_zero(quotient: float) -> float:
-    return quotient or _NOTHING
+def _behind(chain: Chain, omegas: Array) -> Array:
+    """Return r (n, m): the torque behind a mass over its angle, ω² J of it included, going along at ω (m,)."""
+    squares, between = omegas * omegas, chain.stiffnesses[chain.between]
+    found = np.empty((len(chain.inertias), len(omegas)))
+    carried = np.full(len(omegas), -chain.stiffnesses[0] if chain.ground == "before" else 0.0)
+    for index, inertia in enumerate(chain.inertias):
+        found[index] = carried + squares * inertia
+        if index < len(between):
+            carried = found[index] / _not_zero(1 - found[index] / between[index])
+    return found
+
+
+def _not_zero(quotient: Array) -> Array:
+    return np.where(quotient == 0, _NOTHING, quotient)

@@ -1,7 +1,7 @@
 """The strength of one crankshaft over the whole cycle, and where each of its parts is strained most (G)."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property, partial
 from typing import Any, NamedTuple
 
@@ -193,23 +193,24 @@ class CrankshaftStrength(Results):
 
     def sigma_dc(self, part: str) -> Extreme | None:
         """Return the largest combined stress of a part in Pa in the dead centre; None for one that is not examined."""
-        return _worst(part, self.at_dead_centre)
+        return _highest(Extreme(one.combined, one.degrees) for one in self.at_dead_centre if one.place.part == part)
 
     def sigma_max(self, part: str) -> Extreme | None:
         """Return the largest combined stress of a part in Pa over the cycle, and its crank angle."""
-        return _worst(part, self.at_worst)
+        return _highest(self._of_part("combined", part))
 
     def mises_max(self, part: str) -> Extreme | None:
         """Return the largest stress of a part after von Mises in Pa over the cycle, and its crank angle."""
-        indices = [index for index, place in enumerate(self.places) if place.part == part]
-        found = (self._extremes[f"von Mises {index}"] for index in indices)
-        return max(found, key=lambda extreme: extreme.value, default=None)
+        return _highest(self._of_part("von Mises", part))
+
+    def _of_part(self, stress: str, part: str) -> Iterator[Extreme]:
+        """Yield the largest of a stress over the cycle at every place of a part."""
+        yield from (self._extremes[f"{stress} {i}"] for i, place in enumerate(self.places) if place.part == part)
 
     def safety(self, part: str) -> Extreme | None:
         """Return k_b over the largest combined stress of a part, dead centre and cycle; None without k_b or stress."""
         allowable = self.shaft.allowable_bending
-        found = (one for one in (self.sigma_dc(part), self.sigma_max(part)) if one)
-        worst = max(found, key=lambda extreme: extreme.value, default=None)
+        worst = _highest(one for one in (self.sigma_dc(part), self.sigma_max(part)) if one)
         return Extreme(allowable / worst.value, worst.degrees) if allowable and worst and worst.value else None
 
     # bearings
@@ -229,34 +230,30 @@ class CrankshaftStrength(Results):
         On the pin that of the rod force alone, as G has it for its bounds on p_m v.
         """
         size = self._size(bearing)
-        if size is None:
-            return None
-        return self._mean_loads[bearing] / size[0] / size[1]
+        return self._mean_loads[bearing] / size[0] / size[1] if size else None
 
     @cached_property
     def _mean_loads(self) -> dict[str, float]:
         """Means over time in N of the force of the rod on the pin, and of the forces on both bearings."""
-        found = integral(self._grid, self._loads) / math.radians(self.forces.drive.cycle)
-        return dict(zip(("pin", "A", "B"), found.tolist(), strict=True))
 
-    def _loads(self, pieces: Pieces) -> Array:
-        state = State(self.forces.drive, CrankAngle.at_nodes(pieces))
-        body = self._running(state)
-        return np.stack([np.hypot(*force) for force in ((state.D, state.T), body.A, body.B)])
+        def loads(pieces: Pieces) -> Array:
+            state = State(self.forces.drive, CrankAngle.at_nodes(pieces))
+            body = self._running(state)
+            return np.stack([np.hypot(*force) for force in ((state.D, state.T), body.A, body.B)])
+
+        found = integral(self._grid, loads) / math.radians(self.forces.drive.cycle)
+        return dict(zip(("pin", "A", "B"), found.tolist(), strict=True))
 
     def pressure_velocity(self, bearing: str) -> float | None:
         """Return k = p_m v in W/m² with the surface speed v = π d n (G); None without a speed of rotation."""
         pressure, speed, size = self.pressure_mean(bearing), self.machine.speed, self._size(bearing)
-        if pressure is None or speed is None or size is None:
-            return None
-        return pressure * math.pi * size[0] * speed
+        return None if pressure is None or speed is None or size is None else pressure * math.pi * size[0] * speed
 
     def _size(self, bearing: str) -> tuple[float, float] | None:
-        shaft = self.shaft
+        shaft, diameter, length = self.shaft, self.shaft.journal_diameter, self.shaft.journal_length
         if bearing == "pin":
             return shaft.pin_diameter, shaft.pin_length
-        given = shaft.journal_diameter, shaft.journal_length
-        return None if given[0] is None or given[1] is None else (given[0], given[1])
+        return None if diameter is None or length is None else (diameter, length)
 
     @cached_property
     def pin_pressure_dc(self) -> float:
@@ -294,6 +291,5 @@ def _number(value: Any) -> float:
     return float(np.asarray(value).ravel()[0])
 
 
-def _worst(part: str, strained: tuple[Strained, ...]) -> Extreme | None:
-    found = (Extreme(one.combined, one.degrees) for one in strained if one.place.part == part)
+def _highest(found: Iterable[Extreme]) -> Extreme | None:
     return max(found, key=lambda extreme: extreme.value, default=None)

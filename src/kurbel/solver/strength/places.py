@@ -30,12 +30,11 @@ from kurbel.solver.strength.sections import (
     bach,
     bach_factor,
     direct_stress,
-    narrow_face_torsion,
+    face_torsion,
     rectangle_bending,
     round_bending,
     round_torsion,
     von_mises,
-    wide_face_torsion,
 )
 
 PARTS = ("pin", "web_A", "web_B", "journal_A", "journal_B")
@@ -121,13 +120,13 @@ def _web_places(part: str, alpha: float, loads_of: Callable[[FreeBody], WebLoads
         t, w, loads = body.shaft.web_thickness, body.shaft.web_width, loads_of(body)
         direct = direct_stress(loads.force, t, w)
         bending = abs(rectangle_bending(loads.in_plane, t, w))
-        return Stresses(direct, bending, None, abs(wide_face_torsion(loads.twist, t, w)), abs(direct) + bending)
+        return Stresses(direct, bending, None, abs(face_torsion(loads.twist, t, w)), abs(direct) + bending)
 
     def narrow(body: FreeBody) -> Stresses:
         t, w, loads = body.shaft.web_thickness, body.shaft.web_width, loads_of(body)
         direct = direct_stress(loads.force, t, w)
         bending = rectangle_bending(loads.out_of_plane, w, t)
-        return Stresses(direct, None, bending, abs(narrow_face_torsion(loads.twist, t, w)), abs(direct) + bending)
+        return Stresses(direct, None, bending, abs(face_torsion(loads.twist, w, t)), abs(direct) + bending)
 
     def corner(body: FreeBody) -> Stresses:
         face, side = wide(body), narrow(body)

@@ -32,21 +32,14 @@ def rectangle_bending(moment: Any, depth: float, breadth: float) -> Any:
     return 6 * moment / breadth / depth / depth
 
 
-def wide_face_torsion(moment: Any, thickness: float, width: float) -> Any:
-    """Return τ = (9/2) M/(t² w) in Pa at the middle of the wide face, where it is largest; t < w.
+def face_torsion(moment: Any, depth: float, breadth: float) -> Any:
+    """Return τ = (9/2) M/(b h²) in Pa at the middle of the two faces of a rectangle that stand h apart.
 
-    moment in N m, thickness and width in m. Bach's rounded factor: de Saint-Venant's own is 4.81 for a square and 3 for
-    a strip, 4.07 for w = 2t. Source: G, webs, "auf Drehung".
+    moment in N m, depth and breadth in m: at the wide faces, where it is largest, h is the shorter side; at the narrow
+    ones the longer one. Bach's rounded factor: de Saint-Venant's own is 4.81 for a square and 3 for a strip, 4.07 for
+    sides of 1 and 2. Source: G, webs, "auf Drehung".
     """
-    return 4.5 * moment / thickness / thickness / width
-
-
-def narrow_face_torsion(moment: Any, thickness: float, width: float) -> Any:
-    """Return τ = (9/2) M/(t w²) in Pa at the middle of the narrow face: t/w of that at the wide one (Bach).
-
-    moment in N m, thickness and width in m.
-    """
-    return 4.5 * moment / thickness / width / width
+    return 4.5 * moment / depth / depth / breadth
 
 
 def round_bending(moment: Any, diameter: float) -> Any:

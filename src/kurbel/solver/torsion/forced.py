@@ -9,8 +9,7 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray, Flags
 from kurbel.machine.shaft_line import ShaftLine
 from kurbel.numerics.waves import crests
-from kurbel.solver.shaft_line.chain import Chain
-from kurbel.solver.shaft_line.response import responding, twisting
+from kurbel.solver.shaft_line.chain import Chain, responding, twisting
 from kurbel.solver.turning.harmonics import MachineOrders, Spectrum, spectrum
 from kurbel.solver.turning.speed_lines import speed_law
 
@@ -82,9 +81,8 @@ class Vibration:
 
     @cached_property
     def _held(self) -> Array:
-        """Slope of the load, which takes the same mean torque at every speed, so that it goes with 1/ω; (n, s, k)."""
-        slope = np.multiply.outer(self.acting.load_slope, self.acting.omega / self.omegas)
-        return np.asarray(slope[..., None] * np.ones(len(self.acting.orders)))
+        """Slope of the load, which takes the same mean torque at every speed, so that it goes with 1/ω; (n, s, 1)."""
+        return np.asarray(np.multiply.outer(self.acting.load_slope, self.acting.omega / self.omegas)[..., None])
 
     @cached_property
     def driving(self) -> ComplexArray:
@@ -117,20 +115,11 @@ class Vibration:
         return np.asarray(reached[: len(self._ratios)] / self._ratios)
 
     @cached_property
-    def waves(self) -> list[int]:
-        """The orders as waves to a cycle."""
-        return [round(float(order) / self.step) for order in self.acting.orders]
-
-    @cached_property
-    def step(self) -> float:
-        """Of which all orders are whole multiples: 1, or ½ where one of them is a half."""
-        return 1.0 if not (self.acting.orders % 1).any() else 0.5
-
-    @cached_property
     def crests(self) -> tuple[Array, Array]:
         """Largest and smallest torque in the pieces beside their mean in N m, (pieces, s) each."""
-        flat = self.torques.reshape(-1, len(self.acting.orders))
-        high, low = crests(self.waves, flat)
+        orders = self.acting.orders
+        cycle = 2 if (orders % 1).any() else 1  # turns to which all of them are whole waves
+        high, low = crests([round(cycle * order) for order in orders.tolist()], self.torques.reshape(-1, len(orders)))
         return high.reshape(self.torques.shape[:2]), low.reshape(self.torques.shape[:2])
 
     @cached_property
@@ -152,12 +141,6 @@ class Vibration:
     def over(self, piece: int, degrees: Array) -> Array:
         """Return the torque in a piece in N m at crank angles (n,) in degrees, at the first of the speeds."""
         return Spectrum(self.means[piece], self.acting.orders, self.torques[piece, 0]).at(degrees)
-
-    @cached_property
-    def power(self) -> Array:
-        """Mean power in W that the orders of the torques feed into the vibration, (s,)."""
-        speeds = 1j * self._frequencies * self.angles
-        return np.asarray((self.driving * speeds.conj()).real.sum(axis=(0, 2)) / 2)
 
     @cached_property
     def loss(self) -> Array:

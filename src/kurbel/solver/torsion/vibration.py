@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
@@ -19,7 +20,7 @@ from kurbel.solver.shaft_line.modes import Holzer, Modes
 from kurbel.solver.torsion.forced import Excitation, Vibration, excitation, stress
 from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.turning.effort import CylinderEffort, reduced_inertia
-from kurbel.solver.turning.harmonics import HIGHEST, MachineOrders, every_order, phases
+from kurbel.solver.turning.harmonics import HIGHEST, MachineOrders, every_order
 from kurbel.solver.turning.machine_effort import MachineEffort, MovingInertia
 
 NEAR = 0.1
@@ -142,7 +143,7 @@ class ShaftVibration(Results):
         at = {name: float(angles[i]) for i, mass in enumerate(self.line.masses) for name in mass.cylinders}
         cranks = [(at[one.name], one.crank_position) for one in self.machine.cylinders]
         amplitudes, positions = np.array(cranks or [(float(angles[0]), 0.0)]).T
-        sums = np.abs(phases(self.orders, positions) @ amplitudes)
+        sums = np.abs(unit_vector(np.outer(self.orders, positions)) @ amplitudes)
         return np.where(sums > _PRESENT * np.abs(amplitudes).sum(), sums, 0.0)
 
     def _shares(self, angles: Array, sums: Array) -> Array:

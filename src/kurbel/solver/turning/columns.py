@@ -9,12 +9,10 @@ from kurbel.arrays import Array
 from kurbel.numerics.jet import Jet
 from kurbel.numerics.search import Sampled
 from kurbel.solver.figures import Columns
-from kurbel.solver.turning.machine_effort import MachineEffort
-from kurbel.solver.turning.speed import SpeedLine
-from kurbel.solver.turning.torques import Sum, Torque
+from kurbel.solver.turning.torques import Sum
 
 if TYPE_CHECKING:
-    from kurbel.solver.turning.coupling import ElasticCoupling
+    from kurbel.solver.turning.flywheel import MachineTurning
 
 
 OF_SPEED = ("omega", "alpha", "M_coupling")
@@ -22,47 +20,47 @@ OF_SPEED = ("omega", "alpha", "M_coupling")
 
 
 class TurningCurves:
-    """The whole machine at crank angles (n,) in degrees, on the sides of jumps that hold `within`.
+    """The whole machine at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
 
-    crank: radius of crank 1 in m, None without one.
-    """
+    def __init__(self, turning: "MachineTurning", phi: Array, within: Array) -> None:
+        self._turning, self._turned, self._phi, self._within = turning, turning.turned, phi, within
 
-    def __init__(self, turned: MachineEffort, crank: float | None, phi: Array, within: Array) -> None:
-        self._turned, self._crank, self._phi, self._within = turned, crank, phi, within
-
-    def columns(self, speed: "SpeedLine | ElasticCoupling | None") -> Columns:
+    def columns(self) -> Columns:
         """Return the columns."""
-        own = {id: partial(self._value, id) for id in ("M", "M_load", "T", "T_inertia")}
-        of_speed = {id: partial(self._of_speed, speed, id) for id in OF_SPEED}
-        return Columns(self._phi, {**own, "E": lambda: self._turned.excess.at(self._phi), **of_speed})
+        ids = ("M", "M_load", "T", "T_inertia", "E", *OF_SPEED)
+        return Columns(self._phi, {id: partial(self._value, id) for id in ids})
 
     def _value(self, column: str) -> Array | None:
         found = self.curve(column)
-        return found and np.asarray(found.value)
-
-    def _of_speed(self, speed: "SpeedLine | ElasticCoupling | None", column: str) -> Array | None:
-        angles = np.mod(self._phi, self._turned.cycle)
-        found = speed.curves(angles, angles).get(column) if speed else None
         return None if found is None else found.value
 
     def curve(self, column: str) -> Sampled | None:
-        """Return a column of the torques, or their work, with its slope by φ; None for one left out."""
-        if column == "M_load":
-            return Sampled.of(self._torque(self._turned.excess.load), self._phi.shape)
+        """Return a column with its slope by φ; None for one left out."""
+        if column in OF_SPEED:
+            return self._of_speed.get(column)
         if column == "E":
-            return Sampled(self._turned.excess.at(self._phi), self._torque(self._turned.excess.torque).value)
-        arm, torque = 1.0 if column == "M" else self._crank, self._inertia if column == "T_inertia" else self._effort
-        return None if arm is None or torque is None else Sampled(torque.value / arm, torque.slope / arm)
-
-    def _torque(self, torque: Torque) -> Jet:
-        return torque.torque(self._phi, self._within)
+            return Sampled(self._turned.excess.at(self._phi), (self._effort - self._load).value)
+        torque = {"M_load": "_load", "T_inertia": "_inertia"}.get(column, "_effort")
+        found, arm = getattr(self, torque), self._turning.crank if column.startswith("T") else 1.0
+        return None if found is None or arm is None else Sampled.of(found / arm, self._phi.shape)
 
     @cached_property
     def _effort(self) -> Jet:
-        return self._torque(self._turned.effort)
+        return self._turned.effort.torque(self._phi, self._within)
+
+    @cached_property
+    def _load(self) -> Jet:
+        return self._turned.excess.load.torque(self._phi, self._within)
 
     @cached_property
     def _inertia(self) -> Jet | None:
         """The torque of the inertia forces, with its share of the losses."""
-        masses = self._turned.masses
-        return self._torque(Sum(*((self._turned.efficiency, mass) for mass in masses))) if masses else None
+        parts = [(self._turned.efficiency, mass) for mass in self._turned.masses]
+        return Sum(*parts).torque(self._phi, self._within) if parts else None
+
+    @cached_property
+    def _of_speed(self) -> dict[str, Sampled]:
+        """What the speed line tells, which knows the angles of one cycle."""
+        speed, cycle = self._turning.speed, self._turned.cycle
+        turn = cycle * np.floor(self._within / cycle)
+        return speed.curves(self._phi - turn, self._within - turn) if speed else {}

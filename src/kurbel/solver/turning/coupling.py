@@ -16,11 +16,10 @@ from kurbel.numerics.collocation import Periodic, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import Extremes, Sampled, extremes
-from kurbel.solver.shaft_line.chain import Chain
+from kurbel.solver.shaft_line.chain import Chain, responding, twisting
 from kurbel.solver.shaft_line.modes import Modes
 from kurbel.solver.shaft_line.periodic import ChainEquation, Rise
-from kurbel.solver.shaft_line.response import responding, twisting
-from kurbel.solver.turning.excess import Excess
+from kurbel.solver.turning.excess import Excess, torque_extremes
 from kurbel.solver.turning.harmonics import spectrum
 from kurbel.solver.turning.speed import SpeedLaw
 from kurbel.solver.turning.torques import Sum
@@ -230,11 +229,7 @@ class ElasticCoupling:
         own, driven = self.shaft.inertia, self.coupling.inertia
         rigid = Sum((driven / (own + driven), self._excess.effort), (own / (own + driven), self._excess.load))
         grid = self._excess.grid
-
-        def evaluate(degrees: Array, within: Array) -> dict[str, Sampled]:
-            return {"torque": Sampled.of(rigid.torque(degrees, within), degrees.shape)}
-
-        found = extremes(grid, evaluate(grid.degrees, grid.within), evaluate)["torque"]
+        found = torque_extremes(rigid, grid, rigid.torque(grid.degrees, grid.within))
         swing = found.largest.value - found.smallest.value
         torque = self._extremes["torque"]
         return (torque.largest.value - torque.smallest.value) / swing if swing else None

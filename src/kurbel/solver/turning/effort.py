@@ -84,19 +84,15 @@ def inertia_torque(state: State) -> Any:
 
     That is −m x′ x″ ω², less the couple of an exact rod times ψ′.
     """
-    drive = state.drive
-    torque = state.slope * state.curvature * (-drive.mass * (drive.omega or 0.0) ** 2)
-    rod, rod_angle = drive.rod, drive.mechanism.rod_angle(state.angle)
-    if rod is None or rod_angle is None:
+    rod = state.drive.rod
+    torque = state.slope * state.curvature * (-state.drive.mass * (state.drive.omega or 0.0) ** 2)
+    if rod is None:
         return torque
-    return torque - rod.couple(rod_angle, state.angle) * rod.swing_slope(rod_angle, state.angle)
+    return torque - rod.couple(state.rod_angle, state.angle) * rod.swing_slope(state.rod_angle, state.angle)
 
 
 def reduced_inertia(state: State) -> Any:
     """Return J = m x′² + … in kg m²: what the moving masses, connecting rods included, add to that of the shaft."""
-    drive = state.drive
-    inertia = state.slope * state.slope * drive.mass + drive.pin_inertia
-    rod, rod_angle = drive.rod, drive.mechanism.rod_angle(state.angle)
-    if rod is None or rod_angle is None:
-        return inertia
-    return inertia + rod.reduced_inertia(rod_angle, state.angle)
+    rod = state.drive.rod
+    inertia = state.slope * state.slope * state.drive.mass + state.drive.pin_inertia
+    return inertia + rod.reduced_inertia(state.rod_angle, state.angle) if rod else inertia

@@ -4,7 +4,6 @@ One sampling of both torques on the grid of their common pieces serves the mean,
 """
 
 import math
-from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -17,7 +16,7 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import Jet
 from kurbel.numerics.piecewise import Piecewise
-from kurbel.numerics.search import Evaluate, Extremes, Sampled, extremes, zeros
+from kurbel.numerics.search import Extremes, Sampled, extremes, zeros
 from kurbel.solver.turning.torques import Sum, Torque, Uniform
 
 _ROUNDING = 1e-13
@@ -77,7 +76,8 @@ class Excess:
         # an effort that equals the resistance over a while differs from it by rounding only
         size = max(abs(extreme.value) for extreme in self.effort_extremes)
         sampled = Sampled.of(self._sampled, self.grid.degrees.shape)
-        return tuple(zeros(self.grid, {"M": sampled}, _evaluated(self.line.at), size)["M"].tolist())
+        found = zeros(self.grid, {"M": sampled}, lambda *at: {"M": Sampled.of(self.line.at(*at), at[0].shape)}, size)
+        return tuple(found["M"].tolist())
 
     def at(self, degrees: Array) -> Array:
         """Return E in J at crank angles (…,) in degrees, counted from φ = 0; an angle's E hangs on no other one."""
@@ -103,29 +103,19 @@ class Excess:
         return tuple(high - low for low, high in pairwise([*heights, *heights[:1]]))
 
     @cached_property
-    def _summits(self) -> tuple[int, int]:
-        """Which crossings have the largest and the smallest E, the first ones where several are equal."""
+    def extremes(self) -> Extremes | None:
+        """Largest and smallest E in J with their crank angles, the first of equal ones; None where E is the same."""
+        if not self.crossings:
+            return None
         heights = self._heights
         level = 16 * np.finfo(float).eps * (np.abs(heights).max() + np.abs(self.lobes).max())
-        return int(np.argmax(heights >= heights.max() - level)), int(np.argmax(heights <= heights.min() + level))
-
-    @property
-    def largest(self) -> Extreme | None:
-        """Largest E in J and its crank angle in degrees; None where it is always the same."""
-        return self._height_at(self._summits[0]) if self.crossings else None
-
-    @property
-    def smallest(self) -> Extreme | None:
-        """Smallest E in J and its crank angle in degrees; None where it is always the same."""
-        return self._height_at(self._summits[1]) if self.crossings else None
-
-    def _height_at(self, crossing: int) -> Extreme:
-        return Extreme(float(self._heights[crossing]), self.crossings[crossing])
+        reached = np.argmax(heights >= heights.max() - level), np.argmax(heights <= heights.min() + level)
+        return Extremes(*(Extreme(float(heights[k]), self.crossings[k]) for k in reached))
 
     @cached_property
     def dE(self) -> float:
         """ΔE in J, the largest swing of the excess work."""
-        return self.largest.value - self.smallest.value if self.largest and self.smallest else 0.0
+        return self.extremes.largest.value - self.extremes.smallest.value if self.extremes else 0.0
 
 
 def torque_extremes(torque: Sum, grid: Grid, sampled: Jet) -> Extremes:
@@ -145,7 +135,3 @@ class _Evaluated:
 
     def __call__(self, degrees: Array, within: Any) -> dict[str, Sampled]:
         return {"M": Sampled.of(self._torque.torque(degrees, within), degrees.shape)}
-
-
-def _evaluated(torque: Callable[[Array, Array], Jet]) -> Evaluate:
-    return lambda degrees, within: {"M": Sampled.of(torque(degrees, within), degrees.shape)}

@@ -22,7 +22,6 @@ from kurbel.solver.turning.speed import SpeedLine
 from kurbel.solver.turning.speed_lines import RIGID_ABOVE, SpeedLines, speed_law, turning
 
 if TYPE_CHECKING:
-    from kurbel.machine.flywheel import Rim
     from kurbel.numerics.where import Where
     from kurbel.solver.turning.coupling import ElasticCoupling
 
@@ -44,6 +43,8 @@ class MachineTurning(Results):
         self.omega = self.turned.omega
         self.crank = machine.cylinders[0].mechanism.crank if machine.cylinders else None
         self.brake = Brake(machine, cylinders)
+        wheel = machine.flywheel
+        self._given, self._wanted, self._rim = (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
         self._lines = SpeedLines(self.turned, self.omega) if self.omega else None
 
     command = "flywheel"
@@ -54,7 +55,7 @@ class MachineTurning(Results):
         return (self, *((self.elastic,) if self.elastic else ()), self.brake)
 
     def _columns(self, phi: Array, within: Array) -> Columns:
-        return TurningCurves(self.turned, self.crank, phi, within).columns(self.speed)
+        return TurningCurves(self, phi, within).columns()
 
     @property
     def breaks(self) -> Array:
@@ -65,14 +66,10 @@ class MachineTurning(Results):
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         from kurbel.numerics.where import where
 
-        of_speed = self.speed if column in OF_SPEED else None
-        grid = of_speed.grid if of_speed else self.excess.grid
-
         def sampled(degrees: Array, within: Array) -> Any:
-            if column in OF_SPEED:
-                return of_speed and of_speed.curves(degrees, within).get(column)
-            return TurningCurves(self.turned, self.crank, degrees, within).curve(column)
+            return TurningCurves(self, degrees, within).curve(column)
 
+        grid = self.speed.grid if column in OF_SPEED and self.speed else self.excess.grid
         samples = sampled(grid.degrees, grid.within)
         return None if samples is None else where(grid, samples, sampled, value)
 
@@ -116,8 +113,9 @@ class MachineTurning(Results):
     phi_crossing = passed_on("excess", "crossings", "Crank angles in degrees at which T crosses W.")
     lobes = passed_on("excess", "lobes", "Work in J of the lobes between the crossings.")
     dE = passed_on("excess", "dE", "ΔE in J.")
-    E_max = passed_on("excess", "largest", "Largest excess work in J since angle 0; None where there is none.")
-    E_min = passed_on("excess", "smallest", "Smallest excess work in J since angle 0.")
+    _heights = passed_on("excess", "extremes", "Largest and smallest excess work in J; None where there is none.")
+    E_max = passed_on("_heights", "largest", "Largest excess work in J since angle 0; None where there is none.")
+    E_min = passed_on("_heights", "smallest", "Smallest excess work in J since angle 0.")
 
     @property
     def energy_fluctuation(self) -> float | None:
@@ -125,10 +123,6 @@ class MachineTurning(Results):
         return self.dE / self.work_shaft if self.work_shaft > 0 else None
 
     # flywheel
-
-    @property
-    def _wanted(self) -> float | None:
-        return self.machine.flywheel.fluctuation if self.machine.flywheel else None
 
     @cached_property
     def _needed_in_all(self) -> float | None:
@@ -144,14 +138,6 @@ class MachineTurning(Results):
     def GD2_needed(self) -> float | None:
         """GD² = 4 J for the wanted δ, in kg m²."""
         return None if self.J_needed is None else 4 * self.J_needed
-
-    @property
-    def _given(self) -> float | None:
-        return self.machine.flywheel.inertia if self.machine.flywheel else None
-
-    @property
-    def _rim(self) -> "Rim | None":
-        return self.machine.flywheel.rim if self.machine.flywheel else None
 
     @property
     def rim_section(self) -> float | None:

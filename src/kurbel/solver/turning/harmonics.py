@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import unit_vector
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.numerics.gauss import GAUSS
 from kurbel.numerics.grid import Pieces
@@ -43,13 +43,11 @@ class Spectrum(NamedTuple):
     orders: Array
     amplitudes: ComplexArray
 
-    def times(self, factor: float) -> "Spectrum":
-        """Return that of the torque times a factor."""
-        return self._replace(mean=factor * self.mean, amplitudes=factor * self.amplitudes)
-
-    def plus(self, other: "Spectrum") -> "Spectrum":
-        """Return that of the sum with a torque of the same orders."""
-        return self._replace(mean=self.mean + other.mean, amplitudes=self.amplitudes + other.amplitudes)
+    @classmethod
+    def summed(cls, *parts: tuple[float, "Spectrum"]) -> "Spectrum":
+        """Return that of a sum of torques of the same orders, each with a factor."""
+        amplitudes = sum(factor * one.amplitudes for factor, one in parts)
+        return cls(sum(factor * one.mean for factor, one in parts), parts[0][1].orders, np.asarray(amplitudes))
 
     def cleared(self, size: float) -> "Spectrum":
         """Return it with 0 for what is rounding beside torques of this size in N m, in phase or a quarter behind."""
@@ -61,8 +59,7 @@ class Spectrum(NamedTuple):
 
     def turned(self, degrees: float) -> "Spectrum":
         """Return that of the torque put earlier by an angle."""
-        turn = CrankAngle.of(self.orders * degrees)
-        return self._replace(amplitudes=self.amplitudes * (turn.cos + 1j * np.asarray(turn.sin)))
+        return self._replace(amplitudes=self.amplitudes * unit_vector(self.orders * degrees))
 
     @property
     def size(self) -> float:
@@ -71,8 +68,7 @@ class Spectrum(NamedTuple):
 
     def at(self, degrees: Array) -> Array:
         """Return the sum of the mean and these orders in N m at crank angles (k,) in degrees."""
-        turned = np.radians(np.mod(np.multiply.outer(degrees, self.orders), 360.0))
-        return np.asarray(self.mean + np.cos(turned) @ self.amplitudes.real - np.sin(turned) @ self.amplitudes.imag)
+        return np.asarray(self.mean + (unit_vector(np.multiply.outer(degrees, self.orders)) @ self.amplitudes).real)
 
 
 def spectrum(torque: Torque, orders: Array) -> Spectrum:
@@ -112,7 +108,7 @@ class Orders(NamedTuple):
 
     def at_speed(self, ratio: float) -> Spectrum:
         """Return both together at a speed, over the nominal one."""
-        return self.gas if self.inertia is None else self.gas.plus(self.inertia.times(ratio**2))
+        return Spectrum.summed((1.0, self.gas), *([(ratio**2, self.inertia)] if self.inertia else []))
 
     @property
     def size(self) -> float:
@@ -123,29 +119,18 @@ class Orders(NamedTuple):
         """Return both, each changed."""
         return Orders(change(self.gas), self.inertia and change(self.inertia))
 
-    def plus(self, other: "Orders") -> "Orders":
-        """Return the orders of two torques together."""
-        one, two = self.inertia, other.inertia
-        return Orders(self.gas.plus(other.gas), one.plus(two) if one and two else one or two)
-
 
 class CylinderOrders:
-    """The orders of the torque of one cylinder, without the losses of the machine.
+    """The orders of the torque of one cylinder, without the losses of the machine; own: over its own crank angle."""
 
-    in_machine: over the angle of crank 1; own: over that of its own crank.
-    """
+    def __init__(self, forces: CylinderForces, own: Orders) -> None:
+        self.forces, self.own = forces, own
 
-    def __init__(self, forces: CylinderForces, in_machine: Orders, own: Orders) -> None:
-        self.forces = forces
-        self.in_machine = in_machine
-        self.own = own
-
-    def at_throw_of(self, other: CylinderForces) -> "CylinderOrders":
-        """Return those of another cylinder that works alike, wherever its crank stands."""
-        if other is self.forces:
-            return self
-        behind = other.drive.cylinder.crank_position
-        return CylinderOrders(other, self.own.each(lambda one: one.turned(-behind)), self.own)
+    @cached_property
+    def in_machine(self) -> Orders:
+        """Those over the angle of crank 1."""
+        behind = self.forces.drive.cylinder.crank_position
+        return self.own.each(lambda one: one.turned(-behind))
 
     @cached_property
     def area(self) -> float | None:
@@ -170,17 +155,16 @@ class MachineOrders:
         """Those of every cylinder in which a force acts; one is asked for all that work alike."""
         found: dict[str, CylinderOrders] = {}
         for group in gathered(self.turned.of_cylinders, _alike):
-            first = self._of(*group[0])
-            found |= {part.forces.drive.name: first.at_throw_of(part.forces) for part in group}
+            own = self._own(*group[0])
+            found |= {part.forces.drive.name: CylinderOrders(part.forces, own) for part in group}
         return tuple(found[part.forces.drive.name] for part in self.turned.of_cylinders)
 
-    def _of(self, forces: CylinderForces, effort: Torque, inertia: Torque | None) -> CylinderOrders:
+    def _own(self, forces: CylinderForces, effort: Torque, inertia: Torque | None) -> Orders:
+        """Return the orders of a cylinder over its own crank angle."""
         rest = effort if inertia is None else Sum((1.0, effort), (-1.0, inertia))
-        of_masses = None if inertia is None else spectrum(inertia, self.orders)
-        found = Orders(spectrum(rest, self.orders), of_masses)
+        found = Orders(spectrum(rest, self.orders), None if inertia is None else spectrum(inertia, self.orders))
         size, behind = found.size, forces.drive.cylinder.crank_position
-        found = found.each(lambda one: one.cleared(size))
-        return CylinderOrders(forces, found, found.each(lambda one: one.turned(behind)))
+        return found.each(lambda one: one.turned(behind).cleared(size))
 
     @cached_property
     def machine(self) -> Orders:
@@ -188,11 +172,11 @@ class MachineOrders:
         if not self.turned.of_cylinders:
             known = spectrum(self.turned.effort, self.orders)
             return Orders(known.cleared(known.size), None)
-        total, *others = each = [one.in_machine for one in self.cylinders]
-        for other in others:
-            total = total.plus(other)
-        size = math.fsum(one.size for one in each)
-        return total.each(lambda one: one.cleared(size).times(self.turned.efficiency))
+        eta, each = self.turned.efficiency, [one.in_machine for one in self.cylinders]
+        gas = Spectrum.summed(*((eta, one.gas) for one in each))
+        inertia = [(eta, one.inertia) for one in each if one.inertia]
+        size = eta * math.fsum(one.size for one in each)
+        return Orders(gas, Spectrum.summed(*inertia) if inertia else None).each(lambda one: one.cleared(size))
 
     @property
     def M_mean(self) -> float:
@@ -218,10 +202,5 @@ class MachineOrders:
         positions = np.array([one.forces.drive.cylinder.crank_position for one in self.cylinders])
         if len(positions) < 2:
             return None
-        together = np.abs(phases(self.orders, positions).sum(axis=1)) >= (1 - _ALIKE) * len(positions)
+        together = np.abs(unit_vector(np.outer(self.orders, positions)).sum(axis=1)) >= (1 - _ALIKE) * len(positions)
         return tuple(self.orders[together].tolist())
-
-
-def phases(orders: Array, positions: Array) -> ComplexArray:
-    """Return e^{−iνβ} for orders (n,) and crank positions β (k,) in degrees, (n, k)."""
-    return np.asarray(np.exp(-1j * np.radians(np.mod(np.multiply.outer(orders, positions), 360.0))))

@@ -60,12 +60,11 @@ class MachineEffort:
     @cached_property
     def of_cylinders(self) -> tuple[Driving, ...]:
         """The torques of the cylinders, each by itself."""
-        moving = set(map(id, self._moving))
         return tuple(
             Driving(
                 forces,
                 CylinderEffort((forces,), self.cycle, _effort),
-                CylinderEffort((forces,), self.cycle, inertia_torque) if id(forces) in moving else None,
+                CylinderEffort((forces,), self.cycle, inertia_torque) if _moves(forces) else None,
             )
             for forces in self._driving
         )
@@ -82,15 +81,9 @@ class MachineEffort:
         return Sum(*((self.efficiency * factor, part) for factor, part in self._indicated.parts))
 
     @cached_property
-    def _moving(self) -> tuple[CylinderForces, ...]:
-        """The cylinders whose masses move at a known speed."""
-        driving = [forces for forces in self._driving if forces.drive.has_inertia]
-        return tuple(forces for forces in driving if forces.drive.mass or forces.drive.pin_inertia)
-
-    @cached_property
     def masses(self) -> tuple[CylinderEffort, ...]:
         """The torques of the moving masses of the cylinders."""
-        return efforts(self._moving, self.cycle, inertia_torque)
+        return efforts(filter(_moves, self._driving), self.cycle, inertia_torque)
 
     @cached_property
     def excess(self) -> Excess:
@@ -110,7 +103,12 @@ class MachineEffort:
     @cached_property
     def inertia(self) -> "MovingInertia":
         """What the moving masses add to the inertia of the shaft."""
-        return MovingInertia(efforts(self._moving, self.cycle, reduced_inertia), self.cycle)
+        return MovingInertia(efforts(filter(_moves, self._driving), self.cycle, reduced_inertia), self.cycle)
+
+
+def _moves(forces: CylinderForces) -> bool:
+    """Return whether masses of a cylinder move at a known speed."""
+    return forces.drive.has_inertia and bool(forces.drive.mass or forces.drive.pin_inertia)
 
 
 def _effort(state: State) -> Any:

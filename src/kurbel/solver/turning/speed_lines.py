@@ -9,10 +9,11 @@ import numpy as np
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.numerics.collocation import Standstill, Unsettled
-from kurbel.solver.turning.course import Course, Inertia
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed import (
     ConstantLoad,
+    Course,
+    Inertia,
     SpeedDependentLoad,
     SpeedLaw,
     SpeedLine,

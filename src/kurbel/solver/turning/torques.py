@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.crank_angle import unit_vector
 from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
 
@@ -73,19 +74,16 @@ class HarmonicTorque:
 
     def __init__(self, given: "Harmonics", cycle: float) -> None:
         self._mean = given.mean
-        self._orders, self._cos, self._sin = np.array(given.terms).T
+        self._orders, cos, sin = np.array(given.terms).T
+        self._amplitudes = cos - 1j * sin
         # the nodes of one piece resolve a quarter of the shortest period
         pieces = math.ceil(cycle / 90 * max(1.0, float(self._orders.max())))
         self.cuts = Cuts(np.linspace(0.0, cycle, pieces + 1))
 
     def torque(self, degrees: Array, within: Array) -> Jet:
         """Return the torque with its slope; see `Torque`."""
-        value, slope = np.full_like(degrees, self._mean), np.zeros_like(degrees)
-        for order, cos, sin in zip(self._orders, self._cos, self._sin):
-            turned = np.radians(np.mod(order * degrees, 360.0))
-            value += cos * np.cos(turned) + sin * np.sin(turned)
-            slope += order * (sin * np.cos(turned) - cos * np.sin(turned))
-        return Jet(value, slope)
+        waves = unit_vector(np.multiply.outer(degrees, self._orders)) * self._amplitudes
+        return Jet(self._mean + waves.real.sum(axis=-1), -(waves.imag * self._orders).sum(axis=-1))
 
 
 class Diagram:
