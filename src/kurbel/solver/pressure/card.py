@@ -22,7 +22,7 @@ from kurbel.solver.pressure.segments import Process, Processes, Segment, Stroke,
 
 
 class Held(NamedTuple):
-    """Of the segments that hold angles, each (n,): as `Segment`; rise of pressure in Pa over the whole stroke, angles."""
+    """Of segments that hold angles, each (n,): as `Segment`; rise of pressure in Pa over the whole stroke; angles."""
 
     z: Array
     p: Array
