@@ -159,7 +159,7 @@ def _crossing(grid: Grid, rows: Rows) -> Brackets:
     before, after = rows.slope[:, :-1], rows.slope[:, 1:]
     # a zero at a node counts for the interval that it ends, so that it is found once
     once = (((before < 0) & (after >= 0)) | ((before > 0) & (after <= 0))) & rows.worth
-    return _between(grid, rows, *np.nonzero(once))
+    return _between(grid, rows, *_set(once))
 
 
 def _dips(grid: Grid, rows: Rows) -> tuple[Brackets, Array]:
@@ -171,13 +171,19 @@ def _dips(grid: Grid, rows: Rows) -> tuple[Brackets, Array]:
     ends = (part[:, side] for part in (rows.slope, bends) for side in (slice(-1), slice(1, None)))
     low, high, bend, next_bend = ends
     toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0) & rows.worth
-    places, nodes = np.nonzero(toward)
+    places, nodes = _set(toward)
     low, high, bend, next_bend = (part[places, nodes] for part in (low, high, bend, next_bend))
     width = grid.half_widths[rows.piece[places]] * grid.gaps[nodes]
     lowest = low + bend * (high - low - next_bend * width) / (bend - next_bend)
     beyond = lowest * low <= 0
     share = bend / (bend - next_bend)
     return _between(grid, rows, places[beyond], nodes[beyond]), share[beyond]
+
+
+def _set(flags: Flags) -> tuple[Indices, Indices]:
+    """Return in which rows and at which nodes flags (n, nodes) are set, which lie node by node in memory."""
+    nodes, places = np.divmod(np.flatnonzero(flags.T), len(flags))
+    return places, nodes
 
 
 def _between(grid: Grid, rows: Rows, places: Indices, nodes: Indices) -> Brackets:

@@ -122,8 +122,8 @@ def _curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, rows: R
         beside = np.broadcast_to(rows.worth, (len(mine), len(grid.gaps)))[mine]
         kept[rows.piece[mine], :-1] |= beside
         kept[rows.piece[mine], 1:] |= beside
-        row, node = np.nonzero(kept)
         nodes, own = len(grid.nodes), owner == number
+        row, node = np.divmod(np.flatnonzero(kept), nodes)
         into = np.searchsorted(row * nodes + node, piece[own] * nodes + turns.node[own]) + 1
         at_nodes = grid.degrees[row, node], row, sampled.value[row, node]
         degrees, row, value, turning = _inserted(at_nodes, into, (turns.degrees[own], piece[own], turns.value[own]))

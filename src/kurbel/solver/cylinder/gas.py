@@ -63,12 +63,8 @@ class PistonGas:
         """
         mean = (self.piston.head_area + self.piston.crank_area) / 2
         at_head, at_crank = (mean, mean) if alike else (self.piston.head_area, self.piston.crank_area)
-        force: Any = 0.0
-        if self.head:
-            force = force + at_head * pressure(self.head)
-        if self.crank:
-            force = force - at_crank * pressure(self.crank)
-        return force
+        force: Any = at_head * pressure(self.head) if self.head else 0.0
+        return force - at_crank * pressure(self.crank) if self.crank else force
 
     @cached_property
     def works(self) -> tuple[Any, Any]:

@@ -1,7 +1,7 @@
 """Everything that can be said of one cylinder at given crank angles, each quantity computed when it is asked for."""
 
 from functools import cached_property, reduce
-from operator import mul
+from operator import add, mul
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -165,7 +165,7 @@ class State:
     @cached_property
     def P_gas(self) -> Any:
         """Force of gas, steam or water on all pistons in N, R 296."""
-        return sum(gas.force(self.pressure) for gas in self.drive.gas) if self.drive.gas else None
+        return reduce(add, (gas.force(self.pressure) for gas in self.drive.gas)) if self.drive.gas else None
 
     @property
     def P_gas_book(self) -> Any:

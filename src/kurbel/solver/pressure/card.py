@@ -22,9 +22,12 @@ from kurbel.solver.pressure.segments import Process, Processes, Segment, Stroke,
 
 
 class Held(NamedTuple):
-    """Segments that hold angles, each (n,): rise of pressure in Pa over the whole stroke, and angles of their ends."""
+    """Of segments that hold angles, each (n,): as `Segment`; rise of pressure in Pa over the whole stroke; angles."""
 
-    segment: Segment
+    z: Array
+    p: Array
+    next_z: Array
+    exponent: Array
     gradient: Array
     begins: Array
     ends: Array
@@ -45,7 +48,9 @@ class ProcessPressure:
         self._places = segments_over(processes, setting)
         self.starts = self._places.starts
         table = self._places.table
-        self._gradients = (table.next_p - table.p) / (table.next_z - table.z)
+        gradients = (table.next_p - table.p) / (table.next_z - table.z)
+        ends = self._places.angles, self._places.ends
+        self._lines = np.stack((table.z, table.p, table.next_z, table.exponent, gradients, *ends))
         self._polytropic = bool(table.exponent.any())
         self._variant: Indices | None = None
 
@@ -64,32 +69,31 @@ class ProcessPressure:
     def held(self, within: Array) -> Held:
         """Return the segments that hold angles (n,) in degrees."""
         segment = self._places.holding(within_cycle(within, self.setting.cycle), self._variant)
-        table = Segment(*(part[segment] for part in self._places.table))
-        return Held(table, self._gradients[segment], self._places.angles[segment], self._places.ends[segment])
+        return Held(*self._lines.take(segment, axis=1))
 
     def __call__(self, x: Any, angle: CrankAngle, held: Held) -> Any:
         """Return the gauge pressure in Pa at displacements x (n,) in m, on the segments that are held."""
         share = x / self._stroke if self.setting.head_end else 1 - x / self._stroke
         self._put_corners(getattr(share, "value", share), angle.degrees, held)
-        straight = (held.segment.p - self.setting.base) + held.gradient * (share - held.segment.z)
-        return self._curved(straight, share, held.segment) if self._polytropic else straight
+        straight = (held.p - self.setting.base) + held.gradient * (share - held.z)
+        return self._curved(straight, share, held) if self._polytropic else straight
 
     def _put_corners(self, share: Array, degrees: Array, held: Held) -> None:
         """Make stroke fractions at corners those of the card: their angles are rounded, lines may be steep."""
         # of a piece of a grid only the first and the last node may stand at a corner
         at = np.s_[:, :: degrees.shape[1] - 1] if held.begins.shape != degrees.shape else np.s_[:]
         turned = within_cycle(degrees[at], self.setting.cycle)
-        for corner, z in ((held.ends, held.segment.next_z), (held.begins, held.segment.z)):
+        for corner, z in ((held.ends, held.next_z), (held.begins, held.z)):
             met = np.abs(turned - corner) <= _ROUNDING
             share[at] = np.where(met, z, share[at])
 
-    def _curved(self, straight: Any, share: Any, segment: Segment) -> Any:
+    def _curved(self, straight: Any, share: Any, held: Held) -> Any:
         """Return P (V/V′)^n less the ambient on polytropic segments, and the straight value elsewhere."""
-        exponents, clearance = segment.exponent, self._clearance
+        exponents, clearance = held.exponent, self._clearance
         curved = exponents != 0  # what is straight may begin without any volume
         # beside a dead centre rounding may put x a hair outside the stroke; the clearance keeps the volume positive
-        swelling = _chosen(curved, share + clearance, 1.0) / np.where(curved, segment.z + clearance, 1.0)
-        power = (segment.p + self._lift) * swelling**-exponents - self.setting.ambient
+        swelling = _chosen(curved, share + clearance, 1.0) / np.where(curved, held.z + clearance, 1.0)
+        power = (held.p + self._lift) * swelling**-exponents - self.setting.ambient
         return _chosen(curved, power, straight)
 
     @cached_property
