@@ -63,7 +63,7 @@ def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
         assert f"{key}.{name} (cylinder 1): {name} is too large to compute with" in str(found.error)
 
 
-@pytest.mark.parametrize("path", shipped("marine-diesel", "gas-engine", "coupled-blower"))
+@pytest.mark.parametrize("path", shipped("marine-diesel", "gas-engine"))
 def test_check_shows_the_warnings_of_every_command(path: Path) -> None:
     case = case_of(path.stem)
     shown = {

@@ -55,7 +55,7 @@ def test_good_noisy_cycles_are_not_accused(tmp_path: Path) -> None:
         file = written(tmp_path, angles, (each - lift).T)
         for keys in ("", ", compression_ratio: 15"):
             assert notes_of(machine_text(file, f", pressure_columns: 2-61{keys}", pressures)) == []
-            for column in range(2, 62, 20):
+            for column in (2, 61):
                 assert notes_of(machine_text(file, f", pressure_column: {column}{keys}", pressures)) == []
 
 

@@ -127,7 +127,7 @@ def test_marching_says_what_went_wrong() -> None:
 def test_scipy_agrees(speed: tuple[marching.SpeedProblem, np.ndarray]) -> None:
     pytest.importorskip("scipy")
     problem, truth = speed
-    march = marching.scipy_march(problem, "LSODA", 1e-6, 12)
+    march = marching.scipy_march(problem, "LSODA", 1e-6, 8)
     assert march.omega == pytest.approx(truth, rel=1e-4)
 
 

@@ -147,7 +147,7 @@ def friction_work(oracle: Oracle, low: mpmath.mpf, high: mpmath.mpf) -> mpmath.m
 LOCKING = [(1.12, 0.49), (1.1181, 0.5), (1.001, 0.04), (3.0, 2.7)]
 
 
-@pytest.mark.parametrize(("ratio", "f"), few(LOCKING, [LOCKING[0], LOCKING[3]]))
+@pytest.mark.parametrize(("ratio", "f"), few(LOCKING, [LOCKING[1]]))
 def test_friction_work_of_a_driven_machine_near_self_locking(ratio: float, f: float) -> None:
     """The integrand has a pole just off the real axis; the way to locking, cos ψ − f sin ψ, keeps so many digits."""
     driven = Constant.from_keys(expansion=0.0, compression=5e5)
@@ -174,7 +174,7 @@ def test_friction_work_of_a_driven_machine_near_self_locking(ratio: float, f: fl
 CLIMBED = [(lam, column) for lam in (0.2, 0.6, 0.95) for column in ("P", "S", "N", "T")]
 
 
-@pytest.mark.parametrize(("lam", "column"), few(CLIMBED, [(0.6, "N"), (0.2, "P")]))
+@pytest.mark.parametrize(("lam", "column"), few(CLIMBED, [(0.6, "N")]))
 def test_extremes(lam: float, column: str) -> None:
     """Brute force over 20,000 angles finds the hill, high precision climbs it."""
     forces = machine(lam)

@@ -224,7 +224,7 @@ def test_longer_chains_over_the_angle_have_the_same_orders(ground: str) -> None:
         first, last = (one.effort.torque(degrees, within).value - one.mean for one in efforts)
         return np.stack((first, np.zeros_like(first), last))
 
-    equation = ChainEquation(chain, omega, 4.0, driving)
+    equation = ChainEquation(chain, omega, driving)
     motion = equation.solved(Cuts.joined([one.effort.cuts for one in efforts]).grid().breaks)
 
     class InPiece:

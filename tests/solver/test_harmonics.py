@@ -256,3 +256,9 @@ def test_without_a_speed_there_is_no_inertia() -> None:
     assert (found.machine.whole.amplitudes == found.machine.gas.amplitudes).all()
     with pytest.raises(UsageError, match="no force acts"):
         orders_of(Machine((steam(pistons=(), masses=None),)))
+
+
+def test_the_mean_torque_of_masses_alone_is_zero() -> None:
+    """∮ m x′ x″ dφ = 0: it is the mean torque of the flywheel's page, where its rounding was told as a torque here."""
+    case = Case(load(CONFIGS / "boxer.yaml"))
+    assert case.harmonics().M_mean == case.flywheel.M_mean == 0.0

@@ -96,7 +96,7 @@ class Binder:
         self.machine = read_machine(begun, self._reading)
         self.kinds: list[str] = []
         """Of the numbers that stand under the keys, '' of words."""
-        self._slots: list[_Slot] = []
+        self._slots: dict[tuple[int, str], _Slot] = {}
         for number, key in enumerate(keys):
             self._place(number, read_override(f"{key}=0").path, births)
         self._steps = self._planned(births)
@@ -107,17 +107,14 @@ class Binder:
         self.kinds.append(owner.form.keys[name].form.kind)
         for birth in births:
             if _reads(birth, name) and birth.mapping.get(name) is owner.mapping.get(name):
-                slot = next((one for one in self._slots if one.birth is birth and one.name == name), None)
-                if slot is None:
-                    slot = _Slot(birth, name, [])
-                    self._slots.append(slot)
+                slot = self._slots.setdefault((id(birth), name), _Slot(birth, name, []))
                 slot.varied.append((number, path[len(owner.path) + 1 :]))
 
     def _planned(self, births: list[Birth]) -> list[_Step]:
         steps: list[_Step] = []
         anew: set[int] = set()
         for birth in births:
-            own = [(number, slot.name) for number, slot in enumerate(self._slots) if slot.birth is birth]
+            own = [(number, slot.name) for number, slot in enumerate(self._slots.values()) if slot.birth is birth]
             inner = [key for key, value in birth.values.items() if anew.intersection(map(id, _parts(value)))]
             if own or inner:
                 anew.add(id(birth.born))
@@ -127,7 +124,7 @@ class Binder:
     def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
         """Return the machines of rows of texts, those of one kind in one record, and why the other rows make none."""
         found = Bound([], {})
-        columns = [slot.column(rows, self._reading.folder) for slot in self._slots]
+        columns = [slot.column(rows, self._reading.folder) for slot in self._slots.values()]
         read: _Part = {}
         for row, values in enumerate(zip(*columns)):
             if failed := next((one for one in values if isinstance(one, Unbound)), None):

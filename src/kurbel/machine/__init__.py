@@ -53,12 +53,11 @@ FORMAT = 1
 STANDARD_ATMOSPHERE = 101325.0
 
 
-def _key_values() -> tuple[dict[str, Quantity], tuple[str, ...]]:
+def _key_values() -> dict[str, Quantity]:
     from kurbel.declared.quantity import by_id
     from kurbel.mechanisms import every_quantity
 
-    known = by_id(*every_quantity().all_key_values)
-    return known, tuple(id for id, quantity in known.items() if quantity.listed)
+    return by_id(*every_quantity().all_key_values)
 
 
 def _names(cylinders: Sequence[Cylinder]) -> list[str]:

@@ -37,12 +37,6 @@ def _order_fault(key: str, high: float, low_name: str, low: float) -> list[Fault
     return [Fault((key,), f"{show(high, 'pressure')} is not above the {low_name} pressure ({show(low, 'pressure')})")]
 
 
-def _order_fault_of(values: Mapping[str, Any], key: str, lower: str) -> list[Fault]:
-    """Return the fault of two pressures, if both are there and could be read."""
-    high, low = values.get(key, REFUSED), values.get(lower, REFUSED)
-    return [] if high is REFUSED or low is REFUSED else _order_fault(key, high, lower, low)
-
-
 def after_polytrope(pressure: float, volume: float, next_volume: float, exponent: float) -> float:
     """Return P (V/V′)^n: the pressure after a change of volume along P V^n = const; P absolute, V in any unit.
 
@@ -64,8 +58,28 @@ def _vacuum_fault(lift: float, **pressures: float | None) -> str:
     return ""
 
 
+class _TwoStroke(Described):
+    """What the cards of machines of two strokes share: two pressures, one above the other."""
+
+    cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
+    higher: ClassVar[str]
+    lower: ClassVar[str]
+
+    @classmethod
+    def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
+        """Return what is wrong with the pressures, whether the other keys could be read or not."""
+        high, low = values.get(cls.higher, REFUSED), values.get(cls.lower, REFUSED)
+        return [] if high is REFUSED or low is REFUSED else _order_fault(cls.higher, high, cls.lower, low)
+
+    def fault_in(self, cycle: str, lift: float) -> str:
+        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
+        if cycle != "two-stroke":
+            return f"a {type(self).__name__.lower()} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
+        return _vacuum_fault(lift, **{key: getattr(self, key) for key in self.KEYS if key in (self.higher, self.lower)})
+
+
 @frozen
-class Steam(Described):
+class Steam(_TwoStroke):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression.
 
     Pressures in Pa; cut_off, release, compression: fractions of the stroke at which admission ends, exhaust opens, and
@@ -80,7 +94,7 @@ class Steam(Described):
     compression: float = 0.0
     exponent: float = 1.0
 
-    cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
+    higher, lower = "admission", "exhaust"
     KEYS: ClassVar[Keys] = {
         "admission": _pressure("Pressure while steam is admitted"),
         "exhaust": _pressure("Pressure while steam leaves"),
@@ -93,11 +107,6 @@ class Steam(Described):
         "exponent": _exponent("Exponent of expansion and compression", "1, the hyperbola"),
     }
 
-    @staticmethod
-    def faults_of_keys(values: Mapping[str, Any]) -> list[Fault]:
-        """Return what is wrong with the pressures, whether the other keys could be read or not."""
-        return _order_fault_of(values, "admission", "exhaust")
-
     def __post_init__(self) -> None:
         faults = self.faults_of_keys(vars(self))
         if self.release < self.cut_off:
@@ -109,13 +118,9 @@ class Steam(Described):
             faults.append(Fault(("clearance",), message))
         refuse(*faults)
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
-        return _two_stroke_only("steam", cycle) or _vacuum_fault(lift, admission=self.admission, exhaust=self.exhaust)
-
 
 @frozen
-class Compressor(Described):
+class Compressor(_TwoStroke):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance. Pressures in Pa."""
 
     suction: float
@@ -123,7 +128,7 @@ class Compressor(Described):
     clearance: float
     exponent: float = AIR_EXPONENT
 
-    cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
+    higher, lower = "delivery", "suction"
     KEYS: ClassVar[Keys] = {
         "suction": _pressure("Pressure while the chamber fills"),
         "delivery": _pressure("Pressure while the chamber empties")._replace(also=("discharge",)),
@@ -131,23 +136,13 @@ class Compressor(Described):
         "exponent": _exponent("Exponent of compression and expansion", "1.4, air"),
     }
 
-    @staticmethod
-    def faults_of_keys(values: Mapping[str, Any]) -> list[Fault]:
-        """Return what is wrong with the pressures, whether the other keys could be read or not."""
-        return _order_fault_of(values, "delivery", "suction")
-
     def __post_init__(self) -> None:
         refuse(*self.faults_of_keys(vars(self)))
 
     def fault_in(self, cycle: str, lift: float) -> str:
         """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
-        fault = _two_stroke_only("compressor", cycle) or _vacuum_fault(
-            lift, suction=self.suction, delivery=self.delivery
-        )
-        if fault:
+        if (fault := super().fault_in(cycle, lift)) or not self.clearance:
             return fault
-        if not self.clearance:
-            return ""
         top = after_polytrope(self.suction + lift, 1 + self.clearance, self.clearance, self.exponent) - lift
         if self.delivery < top:
             return ""
@@ -268,10 +263,6 @@ def _no_exhaust_stroke(exhaust: float | None, cycle: str) -> str:
     if exhaust is None or cycle == "four-stroke":
         return ""
     return "exhaust: a two-stroke engine has no exhaust stroke; leave it out, or write 'cycle: four-stroke' at the top"
-
-
-def _two_stroke_only(card: str, cycle: str) -> str:
-    return "" if cycle == "two-stroke" else f"a {card} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
 
 
 IdealCard = Union[Steam, Compressor, Otto, Diesel]

@@ -6,6 +6,7 @@ import os
 import re
 import warnings
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -90,32 +91,27 @@ def _table(text: str, columns: Columns) -> Array:
 
     Kept, since designs that vary what is said of a trace have one text in common.
     """
-    try:
-        found = _loaded(columns.tidied(text), columns)
-    except ValueError:
-        found = _of_familiar(familiar(text), columns)
+    found = _loaded(text, columns)
+    if found is None:
+        found = _loaded(familiar(text), columns)
+    if found is None:
+        raise RuleError(_first_fault(familiar(text), columns))
     found.flags.writeable = False
     return found
 
 
-def _of_familiar(text: str, columns: Columns) -> Array:
-    try:
-        return _loaded(columns.tidied(text), columns)
-    except ValueError:
-        raise RuleError(_first_fault(text, columns)) from None
-
-
-def _loaded(text: str, columns: Columns) -> Array:
-    with warnings.catch_warnings():
+def _loaded(text: str, columns: Columns) -> Array | None:
+    with warnings.catch_warnings(), suppress(ValueError):
         warnings.simplefilter("ignore")  # an empty file, of which a message of ours speaks
         return np.loadtxt(
-            io.StringIO(text),
+            io.StringIO(columns.tidied(text)),
             delimiter=columns.between,
             skiprows=columns.skip_rows,
             usecols=tuple(column - 1 for column in columns.wanted),
             ndmin=2,
             max_rows=MOST_NUMBERS // len(columns.wanted) + 1,
         )
+    return None
 
 
 def _figure_lines(text: str, columns: Columns) -> Iterator[tuple[int, str]]:

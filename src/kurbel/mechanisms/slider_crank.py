@@ -8,7 +8,6 @@ from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Number, Physical, positive
 from kurbel.declared.keys import Key, Keys
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
 from kurbel.frozen import frozen
@@ -28,25 +27,19 @@ CRANK_KEYS: Keys = {
 """The size of the crank, shared by the mechanisms that can be given by their stroke."""
 
 
-def _book(id: str, symbol: str, kind: str, text: str) -> Quantity:
-    return on_request(f"{id}_book", symbol, kind, f"{text}, first order in λ", after=id)
+def _book(id: str, kind: str, text: str, formula: Callable[[Any, Any, Any], Any], *times: str) -> Offer:
+    """Return what the books have in place of a column, by their formula for R = 1."""
+    quantity = on_request(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", after=id)
+    return Offer(quantity, lambda one, angle: one.of_book(angle, formula), times)
 
 
+_DISPLACEMENT = "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)"
+_VELOCITY = "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)"
+_ACCELERATION = "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)"
 ROD_OFFERS = (
-    Offer(
-        _book("x", "x_0", "length", "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)"),
-        lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_displacement(a.sin, a.cos, lam)),
-    ),
-    Offer(
-        _book("c", "c_0", "velocity", "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)"),
-        lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_velocity(a.sin, a.cos, lam)),
-        ("omega",),
-    ),
-    Offer(
-        _book("b", "b_0", "acceleration", "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)"),
-        lambda one, angle: one.of_book(angle, lambda a, lam: formulas.first_order_acceleration(a.sin, a.cos, lam)),
-        ("omega", "omega"),
-    ),
+    _book("x", "length", _DISPLACEMENT, formulas.first_order_displacement),
+    _book("c", "velocity", _VELOCITY, formulas.first_order_velocity, "omega"),
+    _book("b", "acceleration", _ACCELERATION, formulas.first_order_acceleration, "omega", "omega"),
     Offer(
         on_request("psi_dot", "ψ̇", "angular_velocity", "Angular velocity of the rod, dψ/dt", after="b"),
         lambda one, angle: -one.coupler_at(angle).slope,
@@ -257,9 +250,9 @@ class SliderCrank(Mechanism):
         bend = self.lam * (angle.cos * angle.cos) / (cos_psi * cos_psi * cos_psi)
         return self.crank * (angle.cos - angle.sin * sin_psi / cos_psi + bend)
 
-    def of_book(self, angle: CrankAngle, factor: Callable[[CrankAngle, float], Any]) -> Any | None:
-        """Return R times an approximation of the book for the angle and λ, in m; None with an offset."""
-        return self.crank * factor(angle, self.lam) if self._straight else None
+    def of_book(self, angle: CrankAngle, formula: Callable[[Any, Any, Any], Any]) -> Any | None:
+        """Return R times what a formula of the book has for sin φ, cos φ and λ, in m; None with an offset."""
+        return self.crank * formula(angle.sin, angle.cos, self.lam) if self._straight else None
 
     def radial(self, angle: CrankAngle) -> Any:
         """Return D/P = cos(φ+ψ)/cos ψ, R 302."""

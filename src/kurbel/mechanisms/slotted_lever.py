@@ -293,10 +293,10 @@ class SlottedLever(Mechanism):
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
         """Name the forces of a link, the lever, and the pin where its size is not given."""
-        if not self.slides:
-            return ("ram", "no lever given"), ("inertia of the lever", "kurbel takes masses on the ram only")
-        link = () if self._forked else (("S, N", "the forces of the link on the ram are not computed"),)
         lever = ("inertia of the lever", "kurbel takes masses on the ram only")
+        if not self.slides:
+            return ("ram", "no lever given"), lever
+        link = () if self._forked else (("S, N", "the forces of the link on the ram are not computed"),)
         return (*link, lever) if self.pin_diameter is not None else (*link, lever, NO_PIN)
 
     def block_slope(self, angle: CrankAngle) -> Any:

@@ -113,7 +113,7 @@ class Cycles(Grid):
 
 
 def cycles_of_turns(landmarks: Iterable[Any], cycle: float, jumps: Iterable[Any], count: int) -> Cycles:
-    """Return the cycles (360 or 720 deg) of so many variants, cut at landmarks of every turn, in pieces up to 36° wide.
+    """Return the cycles (360 or 720 deg) of so many variants, cut at landmarks of every turn, in pieces up to 36°.
 
     landmarks: floats, or arrays (v,), nan where a variant has none; jumps: further angles in the cycle, (n,) or
     `Flat`.

@@ -286,6 +286,12 @@ def _cycle(*angles: Array) -> Array:
     return np.append(kept[kept < end - SAME], end)
 
 
+def cut_equally(breaks: Array, parts: Indices) -> Array:
+    """Return the breaks (n + 1,) of pieces of which each is cut into so many equal parts (n,)."""
+    ends = np.append(0, parts.cumsum())
+    return np.interp(np.arange(ends[-1] + 1), ends, breaks)
+
+
 def ascending(angles: Array, apart: float = 0.0) -> Array:
     """Return the angles (n,) in degrees sorted, without those that are no more than `apart` beyond the one before.
 

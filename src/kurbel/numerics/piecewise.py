@@ -25,9 +25,8 @@ class Piecewise:
 
     def _place(self, degrees: Array, within: Array) -> tuple[Indices, Array]:
         """Return the pieces that hold `within`, and where the angles lie in them, on −1 … 1."""
-        breaks = self._grid.breaks
-        piece = np.clip(np.searchsorted(breaks, within, side="right") - 1, 0, len(breaks) - 2)
-        low, high = breaks[piece], breaks[piece + 1]
+        piece = self._grid.piece_at(within, None)
+        low, high = self._grid.low[piece], self._grid.high[piece]
         return piece, np.clip(2 * (degrees - low) / (high - low) - 1, -1.0, 1.0)
 
     def at(self, degrees: Array, within: Array) -> Jet:

@@ -3,7 +3,7 @@
 import re
 from abc import abstractmethod
 from collections import Counter
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from kurbel.declared.forms.scalars import Number, Physical
@@ -15,8 +15,8 @@ from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
 from kurbel.near_words import did_you_mean
 
-Known = Callable[[], tuple[dict[str, "Quantity"], Collection[str]]]
-"""Returns the key values by id, and the ids of those that are lists; asked only where a machine names some."""
+Known = Callable[[], dict[str, "Quantity"]]
+"""Returns the key values by id; asked only where a machine names some."""
 
 
 class Bound(float):
@@ -64,14 +64,14 @@ class _Figures(Form):
         return self.figure(Number() if quantity.kind == "ratio" else Physical(quantity.kind))
 
     def schema(self, definitions: Schema) -> Schema:
-        known, lists = self.known()
+        known = self.known()
         # a symbol of several, or of one and the id of another, names none
         named = Counter(name for one in known.values() for name in {one.id, one.symbol, one.ascii_symbol})
         properties = {
             name: {**self._figure_of(quantity).schema(definitions), "description": quantity.text}
             for id, quantity in known.items()
             for name in (id, quantity.symbol, quantity.ascii_symbol)
-            if id not in lists and (name == id or named[name] == 1)
+            if not quantity.listed and (name == id or named[name] == 1)
         }
         return {"type": "object", "additionalProperties": False, "properties": properties}
 
@@ -79,10 +79,10 @@ class _Figures(Form):
         """Read every figure by the form of its quantity."""
         if not isinstance(value, dict):  # an empty one, as --set limits={} writes it, takes off those of the file
             refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
-        known, lists = self.known()
+        known = self.known()
         found: dict[str, Any] = {}
         for name, figure in value.items():
-            id, wrong = self._meant(name, known, lists)
+            id, wrong = self._meant(name, known)
             if id in found:
                 wrong = f"'{shown(name)}' is the symbol of {id}, which is given already; leave one of them out"
             if wrong:
@@ -92,17 +92,15 @@ class _Figures(Form):
                 found[id] = read if read is REFUSED else self.named(read, figure, name)
         return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
 
-    def _meant(self, name: str, known: dict[str, Quantity], lists: Collection[str]) -> tuple[str, str]:
+    def _meant(self, name: str, known: dict[str, Quantity]) -> tuple[str, str]:
         """Return the id that a name stands for, and what is wrong with it."""
         found = called(name, known.values())
         if not found:
-            hint = (
-                did_you_mean(name, tuple(id for id in known if id not in lists))
-                or f"; known are {', '.join([*known][:6])}, …"
-            )
-            return "", f"unknown key value '{shown(name)}'{hint}"
-        listed = f"'{name}' is a list of values; no {self.what} can be put on it" if found[0] in lists else ""
-        return found[0], ambiguity(name, found) or listed
+            hint = did_you_mean(name, tuple(id for id, one in known.items() if not one.listed))
+            some = f"; known are {', '.join([*known][:6])}, …"
+            return "", f"unknown key value '{shown(name)}'{hint or some}"
+        wrong = f"'{name}' is a list of values; no {self.what} can be put on it" if known[found[0]].listed else ""
+        return found[0], ambiguity(name, found) or wrong
 
 
 class Limits(_Figures):

@@ -7,7 +7,7 @@ from typing import Any, NoReturn
 from kurbel.declared.forms.scalars import Choice, reference
 from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, contradictions, none_of, required
 from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, glued_hint, kind_of
-from kurbel.errors import Fault, Path, RuleError, refused
+from kurbel.errors import Path, RuleError, refused
 from kurbel.near_words import near
 from kurbel.numerics.arithmetic import is_number
 
@@ -109,7 +109,10 @@ class Record(Form):
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
         """Return the faults of the record as those of its mapping."""
-        return RuleError(*(self._flat(fault, mapping) for fault in error.faults))
+        faults = error.faults
+        for key in self.keys.values():
+            faults = tuple(key.form.flat(fault, mapping) for fault in faults)
+        return RuleError(*faults)
 
     def _born(self, reading: Reading, values: Tree, path: Path) -> Any:
         """Make the record, or note what it has to say of single keys where others could not be read."""
@@ -128,11 +131,6 @@ class Record(Form):
         except ArithmeticError:
             refused(_TOO_EXTREME)
         return born if _finite(born, values) else refused(_TOO_EXTREME)
-
-    def _flat(self, fault: Fault, mapping: Tree) -> Fault:
-        for key in self.keys.values():
-            fault = key.form.flat(fault, mapping)
-        return fault
 
     def _unknown(
         self, reading: Reading, mapping: Tree, unknown: list[str], known: tuple[str, ...], path: Path

@@ -6,6 +6,7 @@ All masses move nearly uniformly: d/dt = ω_n d/dφ. With the torque T = S + d (
 
 import math
 from collections.abc import Callable
+from copy import copy
 from functools import cached_property
 from typing import NamedTuple
 
@@ -14,7 +15,9 @@ import numpy as np
 from kurbel.arrays import Array, Indices
 from kurbel.numerics.collocation import Periodic, periodic
 from kurbel.numerics.elements import Elements
+from kurbel.numerics.grid import cut_equally
 from kurbel.solver.shaft_line.chain import Chain
+from kurbel.solver.shaft_line.modes import Modes
 
 _SWING = 120.0
 """Degrees of a natural oscillation that one element may hold at first, …"""
@@ -38,17 +41,15 @@ class ChainEquation:
     """
 
     def __init__(
-        self,
-        chain: Chain,
-        omega: float,
-        order: float,
-        driving: Callable[[Array, Array], Array],
-        rise: Rise | None = None,
-        eased: float = 0.0,
+        self, chain: Chain, omega: float, driving: Callable[[Array, Array], Array], rise: Rise | None = None
     ) -> None:
-        self.chain, self.omega, self.order, self.driving, self.rise = chain, omega, order, driving, rise
-        self.noise = 0.0
-        self._more = eased
+        self.chain, self.omega, self.driving, self.rise = chain, omega, driving, rise
+        self.noise = self._more = 0.0
+
+    @cached_property
+    def order(self) -> float:
+        """The largest natural order."""
+        return float(Modes(self.chain).omegas[-1]) / self.omega
 
     @cached_property
     def speeds(self) -> Array:
@@ -110,7 +111,9 @@ class ChainEquation:
 
     def eased(self, by: float) -> "ChainEquation":
         """See `collocation.Equation`: the load minds the speed as if its mass had so much more J ω_n², in N m."""
-        return ChainEquation(self.chain, self.omega, self.order, self.driving, self.rise, by)
+        tamer = copy(self)
+        tamer._more = by
+        return tamer
 
     def parts(self, breaks: Array) -> Indices:
         """Return into how many elements each piece of the cycle between the breaks in degrees is cut at first."""
@@ -121,10 +124,7 @@ class ChainEquation:
 
         A load that does not mind the speed leaves the mean speed open: it is the nominal one.
         """
-        parts = self.parts(breaks)
-        cuts = [low + step * np.arange(n) / n for low, step, n in zip(breaks[:-1], np.diff(breaks), parts)]
-        elements = Elements.over(np.append(np.concatenate(cuts), breaks[-1]))
-        found = periodic(self, elements, len(self.matrix))
+        found = periodic(self, Elements.over(cut_equally(breaks, self.parts(breaks))), len(self.matrix))
         if self.rise is None and not self.chain.mass_damping.any() and not self.chain.ground:
             pieces = len(self.chain.stiffnesses)
             width = np.radians(found.elements.width)

@@ -1,7 +1,7 @@
 """The strength of one crankshaft over the whole cycle, and where each of its parts is strained most (G)."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from functools import cached_property, partial
 from typing import Any, NamedTuple
 
@@ -193,19 +193,15 @@ class CrankshaftStrength(Results):
 
     def sigma_dc(self, part: str) -> Extreme | None:
         """Return the largest combined stress of a part in Pa in the dead centre; None for one that is not examined."""
-        return _highest(Extreme(one.combined, one.degrees) for one in self.at_dead_centre if one.place.part == part)
+        return _worst(part, self.at_dead_centre)
 
     def sigma_max(self, part: str) -> Extreme | None:
         """Return the largest combined stress of a part in Pa over the cycle, and its crank angle."""
-        return _highest(self._of_part("combined", part))
+        return _worst(part, self.at_worst)
 
     def mises_max(self, part: str) -> Extreme | None:
         """Return the largest stress of a part after von Mises in Pa over the cycle, and its crank angle."""
-        return _highest(self._of_part("von Mises", part))
-
-    def _of_part(self, stress: str, part: str) -> Iterator[Extreme]:
-        """Yield the largest of a stress over the cycle at every place of a part."""
-        yield from (self._extremes[f"{stress} {i}"] for i, place in enumerate(self.places) if place.part == part)
+        return _highest(self._extremes[f"von Mises {i}"] for i, place in enumerate(self.places) if place.part == part)
 
     def safety(self, part: str) -> Extreme | None:
         """Return k_b over the largest combined stress of a part, dead centre and cycle; None without k_b or stress."""
@@ -289,6 +285,10 @@ def _strained(place: Place, degrees: float, body: FreeBody) -> Strained:
 
 def _number(value: Any) -> float:
     return float(np.asarray(value).ravel()[0])
+
+
+def _worst(part: str, strained: tuple[Strained, ...]) -> Extreme | None:
+    return _highest(Extreme(one.combined, one.degrees) for one in strained if one.place.part == part)
 
 
 def _highest(found: Iterable[Extreme]) -> Extreme | None:

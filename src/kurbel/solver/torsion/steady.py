@@ -15,7 +15,6 @@ from kurbel.numerics.elements import STAGES
 from kurbel.numerics.grid import Cuts, Grid
 from kurbel.numerics.search import Sampled, extremes
 from kurbel.solver.shaft_line.chain import Chain
-from kurbel.solver.shaft_line.modes import Modes
 from kurbel.solver.shaft_line.periodic import ChainEquation, Rise
 from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.machine_effort import MachineEffort
@@ -55,9 +54,9 @@ class SteadyMotion:
         self._ratios = np.array([piece.ratio for piece in line.pieces])
         self._acting = {mass: Excess(torque) for mass, torque in acting(turned, line).items()}
         omega = turned.omega or 0.0
-        order, law = float(Modes(chain).omegas[-1]) / omega, speed_law(turned)
+        law = speed_law(turned)
         rise = Rise(line.load % len(line.masses), law) if law else None
-        self._equation = ChainEquation(chain, omega, order, self._driving, rise)
+        self._equation = ChainEquation(chain, omega, self._driving, rise)
         breaks = Cuts.joined([one.effort.cuts for one in self._acting.values()]).grid().breaks
         elements = max(self._equation.parts(breaks).sum(), _FEWEST)
         if elements * (STAGES * len(self._equation.matrix)) ** 3 > _MOST_WORK:

@@ -17,7 +17,6 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import Extremes, Sampled, extremes
 from kurbel.solver.shaft_line.chain import Chain, responding, twisting
-from kurbel.solver.shaft_line.modes import Modes
 from kurbel.solver.shaft_line.periodic import ChainEquation, Rise
 from kurbel.solver.turning.excess import Excess, torque_extremes
 from kurbel.solver.turning.harmonics import spectrum
@@ -37,6 +36,7 @@ _ENDLESS = 1e9
 def coupled(coupling: Coupling, inertia: float) -> Chain:
     """Return the chain of two masses; inertia: J₁ in kg m² on the side of the cranks.
 
+    >>> from kurbel.solver.shaft_line.modes import Modes
     >>> [round(float(one), 12) for one in Modes(coupled(Coupling(stiffness=100.0, inertia=2.0), 2.0)).omegas]
     [0.0, 10.0]
     """
@@ -90,10 +90,10 @@ class ElasticCoupling:
         self._excess = excess
         self.cycle = excess.cycle
         self.chain = coupled(coupling, shaft.inertia)
-        self.natural_order = float(Modes(self.chain).omegas[1]) / shaft.omega
-        self._refuse_resonance()
         rise = Rise(1, shaft.law) if shaft.law else None
-        self._equation = ChainEquation(self.chain, shaft.omega, self.natural_order, self._driving, rise)
+        self._equation = ChainEquation(self.chain, shaft.omega, self._driving, rise)
+        self.natural_order = self._equation.order
+        self._refuse_resonance()
         self._passing, self._speed = self._equation.passing[0], float(self._equation.speeds[0])
         self.motion = self._solved()
 

@@ -108,7 +108,7 @@ class Excess:
         if not self.crossings:
             return None
         heights = self._heights
-        level = 16 * np.finfo(float).eps * (np.abs(heights).max() + np.abs(self.lobes).max())
+        level = 16 * np.finfo(float).eps * self._to_and_fro
         reached = np.argmax(heights >= heights.max() - level), np.argmax(heights <= heights.min() + level)
         return Extremes(*(Extreme(float(heights[k]), self.crossings[k]) for k in reached))
 

@@ -14,8 +14,7 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import unit_vector
 from kurbel.machine.alike import gathered, work_alike
-from kurbel.numerics.gauss import GAUSS
-from kurbel.numerics.grid import Pieces
+from kurbel.numerics.grid import Grid, cut_equally
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.turning.machine_effort import Driving, MachineEffort
 from kurbel.solver.turning.torques import Sum, Torque
@@ -78,21 +77,14 @@ def spectrum(torque: Torque, orders: Array) -> Spectrum:
     >>> float(abs(spectrum(Uniform(5.0, 360.0), np.array([1.0])).amplitudes[0])) < 1e-14
     True
     """
-    pieces = _resolving(torque.cuts.grid().breaks, float(orders.max(initial=1.0)))
-    weights = pieces.half_widths[:, None] * pieces.weights / math.radians(float(pieces.high[-1]))
-    shares = torque.torque(pieces.degrees, pieces.within).value * weights
-    waves = (np.exp(-1j * np.radians(np.mod(order * pieces.degrees, 360.0))) for order in orders)
+    breaks = torque.cuts.grid().breaks
+    parts = np.ceil(np.radians(np.diff(breaks)) * (orders.max(initial=1.0) / _RESOLVED)).astype(int).clip(1)
+    grid = Grid(cut_equally(breaks, parts))
+    shares = torque.torque(grid.degrees, grid.within).value * grid.half_widths[:, None] * grid.weights
+    shares /= math.radians(grid.cycle)
+    waves = (np.exp(-1j * np.radians(np.mod(order * grid.degrees, 360.0))) for order in orders)
     amplitudes = np.array([2 * (shares * wave).sum() for wave in waves], dtype=complex)
     return Spectrum(float(shares.sum()), orders, amplitudes)
-
-
-def _resolving(breaks: Array, highest: float) -> Pieces:
-    """Return the pieces between the breaks, cut until they resolve the highest order."""
-    width = np.diff(breaks)
-    parts = np.ceil(np.radians(width) * (highest / _RESOLVED)).astype(int).clip(1)
-    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-    low = np.repeat(breaks[:-1], parts) + np.repeat(width / parts, parts) * number
-    return Pieces(low, np.append(low[1:], breaks[-1]), GAUSS)
 
 
 class Orders(NamedTuple):
@@ -181,7 +173,7 @@ class MachineOrders:
     @property
     def M_mean(self) -> float:
         """Mean torque in N m."""
-        return self.machine.whole.mean
+        return self.turned.excess.mean
 
     @cached_property
     def swing(self) -> float:
