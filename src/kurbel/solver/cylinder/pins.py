@@ -62,7 +62,7 @@ class Rubbing(NamedTuple):
 
 
 _NEAR = 0.5
-"""Radians off the real axis beyond which a pole is no matter to a piece of 45°."""
+"""Radians off the real axis beyond which a pole is no matter to a piece of 36°."""
 
 
 class PinFriction:
