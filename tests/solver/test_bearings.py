@@ -183,6 +183,20 @@ def test_no_load_has_no_direction_and_no_unloaded_arc() -> None:
     assert (pin.unloaded_arc, pin.unloaded_arc_shell) == (None, None)
 
 
+def test_an_unloaded_arc_beside_a_load_that_vanishes() -> None:
+    """Where the gas holds up the masses, before and after the dead centre, the load of this pin turns by half a turn."""
+    text = "{speed: 650 rpm, cycle: two-stroke, crank: 33 mm, rod: 93 mm, bore: 276 mm, " + (
+        "masses: {reciprocating: 54 kg, rotating: 42 kg}, indicator: {head_end: 25.7 bar, crank_end: mirrored}}"
+    )
+    pin = Case(loads(text)).bearings.parts[0]
+    weak = pin.load_min.degrees
+    assert pin.load_min.value < 1e-6 * pin.load_max.value
+    toward = weak - np.geomspace(weak, 1e-9, 20_001)
+    between = np.concatenate((toward, np.linspace(weak + 1e-9, 180, 20_001)))
+    turned = np.unwrap(pin.at(np.concatenate((between, 360 - between[::-1]))).load_throw, period=360)
+    assert pin.unloaded_arc == pytest.approx(360 - 120 - np.ptp(turned), abs=1e-6)
+
+
 def test_unloaded_arcs_against_many_samples() -> None:
     """Of the gas engine, by marking every hundredth of a degree that any of 36 000 loads reaches."""
     for part in Case(loads(ENGINE)).bearings.parts:

@@ -14,6 +14,7 @@ from kurbel.numerics.grid import Cuts, Grid, Pieces, integral
 from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
 from kurbel.solver.bearings.directions import Plane, Unloaded, unloaded
 from kurbel.solver.cylinder.following import Following
+from kurbel.solver.cylinder.pins import bends_of_size
 from kurbel.solver.figures import Columns, Results, passed_on
 from kurbel.solver.shaft.statics import norm
 
@@ -90,15 +91,18 @@ class Bearing(Results):
 
     @cached_property
     def _grid(self) -> Grid:
-        """The cycle in smooth pieces, cut also where a component of the load is zero: its size may bend there."""
+        """The cycle in smooth pieces, cut also where a component of the load is zero and where its size bends."""
         grid = Cuts.joined([one.cuts for one in self.followed]).grid()
 
+        def load(degrees: Array, within: Array) -> list[tuple[Sampled, Sampled]]:
+            along, across = next(iter(self.loads(degrees, within).frames.values()))
+            return [(Sampled.of(along, degrees.shape), Sampled.of(across, degrees.shape))]
+
         def components(degrees: Array, within: Array) -> dict[str, Sampled]:
-            first = next(iter(self.loads(degrees, within).frames.values()))
-            return {str(number): Sampled.of(part, degrees.shape) for number, part in enumerate(first)}
+            return dict(zip(("along", "across"), *load(degrees, within)))
 
         found = zeros(grid, components(grid.degrees, grid.within), components)
-        return grid.split_at(np.concatenate(tuple(found.values())))
+        return grid.split_at(np.concatenate((*found.values(), bends_of_size(grid, load))))
 
     @cached_property
     def _curves(self) -> dict[str, Curve]:

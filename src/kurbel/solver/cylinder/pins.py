@@ -7,6 +7,7 @@ friction: what it changes in them is of second order in f, as with the friction 
 """
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -89,23 +90,8 @@ class PinFriction:
         return [(Sampled.of(force.D, degrees.shape), Sampled.of(force.T, degrees.shape)) for force in forces]
 
     def bends(self, grid: Grid) -> Array:
-        """Return crank angles (n,) in degrees, ever denser toward those at which a force that rubs all but vanishes.
-
-        Beside the smallest size of F the size √(F·F) has a pole off the real axis, where F + F′ Δφ is square to itself.
-        """
-
-        def squares(degrees: Array, within: Array) -> dict[str, Sampled]:
-            return {str(number): _square(*force) for number, force in enumerate(self._forces(degrees, within))}
-
-        found: list[float] = []
-        for number, curve in enumerate(curves(grid, squares(grid.degrees, grid.within), squares).values()):
-            degrees, within = curve.peaks
-            (x, dx), (y, dy) = self._forces(degrees, within)[number]
-            with np.errstate(all="ignore"):
-                beside = np.hypot(x, y) / np.hypot(dx, dy)
-            for one in np.flatnonzero(beside < _NEAR).tolist():
-                found += (float(degrees[one]), *fan(float(degrees[one]), math.degrees(beside[one])))
-        return np.asarray(np.mod(found, self._drive.cycle))
+        """Return crank angles (n,) in degrees at which the size of a force that rubs bends."""
+        return bends_of_size(grid, self._forces)
 
     def moments(self, state: "State") -> Rubbing:
         """Return the moments under the forces of a state without this friction."""
@@ -134,6 +120,29 @@ class PinFriction:
         pin = Vector(*(force * count for force in on_pin(state)))
         found = self._line.carried(throw, pin, own, state.angle)
         return tuple(Vector(force.D / count, force.T / count) for force in found)
+
+
+def bends_of_size(grid: Grid, forces: Callable[[Array, Array], list[tuple[Sampled, Sampled]]]) -> Array:
+    """Return crank angles (n,) in degrees, ever denser toward those at which a force, one of several, all but vanishes.
+
+    Beside the smallest size of F the size √(F·F) has a pole off the real axis, where F + F′ Δφ is square to itself. The
+    direction of F has it, too: it turns about within as narrow an angle.
+
+    forces: their components at crank angles (n,) in degrees, on the sides of jumps that hold `within` (n,).
+    """
+
+    def squares(degrees: Array, within: Array) -> dict[str, Sampled]:
+        return {str(number): _square(*force) for number, force in enumerate(forces(degrees, within))}
+
+    found: list[float] = []
+    for number, curve in enumerate(curves(grid, squares(grid.degrees, grid.within), squares).values()):
+        degrees, within = curve.peaks
+        (x, dx), (y, dy) = forces(degrees, within)[number]
+        with np.errstate(all="ignore"):
+            beside = np.hypot(x, y) / np.hypot(dx, dy)
+        for one in np.flatnonzero(beside < _NEAR).tolist():
+            found += (float(degrees[one]), *fan(float(degrees[one]), math.degrees(beside[one])))
+    return np.asarray(np.mod(found, grid.breaks[-1]))
 
 
 def on_pin(state: "State") -> Vector:
