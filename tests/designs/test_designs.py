@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+import kurbel
 from kurbel.designs.plan import Plan, read_input, shard
 from kurbel.designs.sampling import _digits, latin_hypercube, sobol
 from kurbel.errors import UsageError
@@ -105,3 +108,14 @@ def test_a_latin_hypercube_has_one_point_in_every_strip() -> None:
     assert all((np.sort(np.floor(100 * column)) == np.arange(100)).all() for column in points.T)
     assert (points == latin_hypercube(100, 4, 1)).all()
     assert (points != latin_hypercube(100, 4, 2)).any()
+
+
+def test_a_text_varies_in_the_folder_that_it_was_read_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its name stands for the file in messages alone, a folder in it is none of its traces."""
+    monkeypatch.chdir(tmp_path)
+    Path("trace.csv").write_text("".join(f"{angle},{5 + angle % 7}\n" for angle in range(0, 361, 10)))
+    trace = "trace: {file: trace.csv, unit: bar}"
+    text = f"{{crank: 0.2 m, rod_ratio: 5, bore: 0.1 m, indicator: {{head_end: {{{trace}}}}}}}"
+    machine = kurbel.loads(text, name="elsewhere/machine.yaml")
+    found = kurbel.sweep(machine, {"bore": [0.1, 0.2]}, ["P_max"])
+    assert found["P_max"][1] == pytest.approx(4 * found["P_max"][0], rel=1e-12)

@@ -12,7 +12,7 @@ from kurbel.machine import Machine
 from kurbel.machine.side_by_side import Kinds, side_by_side
 from kurbel.machine.variants import Lot
 from kurbel.numerics.cycles import Unlike
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.guide_load import GuideLoad
 from kurbel.solver.cylinder.motion import Motion
@@ -153,5 +153,5 @@ def _listed(value: Any, count: int) -> Sequence[Any]:
 
 def _is_finite(value: Any) -> Any:
     """Return whether a value, or that of every machine, can be told."""
-    number = value.value if isinstance(value, Extreme) else value
+    number = number_of(value)
     return number is None or isinstance(number, tuple) or np.isfinite(number)

@@ -12,7 +12,7 @@ from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import number_of
 from kurbel.solver.case import Case
 
 SIDE_BY_SIDE = ("forces", "motion")
@@ -104,7 +104,7 @@ def _checked(subject: Any, quantity: Quantity) -> Any:
     from kurbel.report.shown import too_large
 
     value = subject.answer(quantity) if subject else None
-    number = value.value if isinstance(value, Extreme) else value
+    number = number_of(value)
     if number is not None and not np.isfinite(number).all():
         raise too_large(quantity)
     return value

@@ -10,7 +10,7 @@ from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.report.alike import grouped, together
 from kurbel.report.notes import Solved
 
@@ -186,4 +186,4 @@ def _values(case: "Case", name: str) -> Iterator[Found]:
             quantity = subject.lists.key_values(command).get(name)
             value = quantity and subject.answer(quantity)
             if isinstance(value, (Extreme, float)):
-                yield subject.name, value.value if isinstance(value, Extreme) else value
+                yield subject.name, number_of(value)

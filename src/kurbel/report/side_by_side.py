@@ -11,7 +11,7 @@ import numpy as np
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.errors import KurbelError
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import number_of
 from kurbel.report.alike import grouped, together
 from kurbel.report.document import Document, Grid, Pair, Section
 from kurbel.report.frame import Subject, subjects_of
@@ -98,7 +98,7 @@ def _values(subject: Subject | None, command: str) -> dict[Quantity, float]:
         found: dict[Quantity, Any] = dict(subject.key_values(command)) if subject else {}
     except KurbelError:
         return {}
-    numbers = {one: value.value if isinstance(value, Extreme) else value for one, value in found.items()}
+    numbers = {one: number_of(value) for one, value in found.items()}
     return {one: value for one, value in numbers.items() if isinstance(value, (int, float)) and not one.residual}
 
 

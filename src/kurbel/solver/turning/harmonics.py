@@ -49,12 +49,10 @@ class Spectrum(NamedTuple):
         return cls(sum(factor * one.mean for factor, one in parts), parts[0][1].orders, np.asarray(amplitudes))
 
     def cleared(self, size: float) -> "Spectrum":
-        """Return it with 0 for what is rounding beside torques of this size in N m, in phase or a quarter behind."""
-        cos, sin = (
-            np.where(np.abs(part) > _ROUNDING * size, part, 0.0)
-            for part in (self.amplitudes.real, self.amplitudes.imag)
-        )
-        return self._replace(amplitudes=cos + 1j * sin)
+        """Return it with 0 for what is rounding beside torques of this size in N m: the mean, cosines, and sines."""
+        parts = self.mean, self.amplitudes.real, self.amplitudes.imag
+        mean, cos, sin = (np.where(np.abs(part) > _ROUNDING * size, part, 0.0) for part in parts)
+        return Spectrum(float(mean), self.orders, cos + 1j * sin)
 
     def turned(self, degrees: float) -> "Spectrum":
         """Return that of the torque put earlier by an angle."""
