@@ -2,14 +2,18 @@
 
 import math
 
+import mpmath
 import numpy as np
 import pytest
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
-from kurbel.numerics.grid import Grid
+from kurbel.numerics.cycles import Flat, cycles_of_turns, located
+from kurbel.numerics.gauss import LOBATTO_10
+from kurbel.numerics.grid import Cuts, Grid
 from machines import one_cylinder
 from representative import case_of
 
@@ -42,3 +46,33 @@ def test_an_integral_does_not_hang_on_how_its_values_lie_in_memory() -> None:
     values = np.exp(np.sin(np.radians(grid.degrees)))
     assert grid.integral(np.ascontiguousarray(values)) == grid.integral(np.asfortranarray(values))
     assert grid.integral(values) == pytest.approx(2 * math.pi * float(np.i0(1.0)), rel=1e-15)  # a Bessel function
+
+
+@pytest.mark.parametrize("ratio", [1.0001, 1.01, 1.1, 1.3, 1.8, 2.0, 2.6, 3.0, 6.0])
+def test_ten_nodes_integrate_what_has_a_pole_beside_90_degrees(ratio: float) -> None:
+    """∮ cos ψ dφ = 4 E(λ) and ∮ dφ/cos ψ = 4 K(λ), complete elliptic integrals of λ = R/L."""
+    rod = SliderCrank(1.0, ratio)
+    grid = Cuts.of_turns(rod.cuts(), 360.0).grid(LOBATTO_10)
+    assert np.diff(grid.breaks).max() <= 36 + 1e-9
+    _, cos_psi = rod.rod_angle(CrankAngle.at_nodes(grid))
+    with mpmath.workdps(30):
+        square = 1 / mpmath.mpf(ratio) ** 2
+        exact = [4 * float(one(square)) for one in (mpmath.ellipe, mpmath.ellipk)]
+    assert [grid.integral(one) for one in (cos_psi, 1 / cos_psi)] == pytest.approx(exact, rel=1e-15)
+
+
+def test_a_cycle_is_cut_only_where_no_corner_is_near() -> None:
+    """Corners each 30° need no other cut; from 90° to 180° three equal pieces are narrow enough."""
+    corners = np.array([30.0, 60.0, 90.0])
+    breaks = [0, 30, 60, 90, 120, 150, 180, 216, 252, 288, 324]
+    assert Cuts.of_turns((0.0, 180.0), 360.0, [corners]).grid().breaks.tolist() == pytest.approx([*breaks, 360])
+    many = cycles_of_turns((0.0, np.array([180.0, 180.0])), 360.0, [Flat.alike(corners, 2)], 2)
+    assert many.low.tolist() == pytest.approx(breaks * 2)
+
+
+def test_places_among_variants_are_those_of_each_alone() -> None:
+    """Before the first number of a variant stands its last one, as numbers do that repeat after a cycle."""
+    table = Flat(np.array([0, 0, 1, 2, 2]), np.array([10.0, 20.0, 5.0, 0.0, 300.0]))
+    asked = [(0, 9.0, 1), (0, 10.0, 0), (0, 350.0, 1), (1, 4.0, 2), (1, 5.0, 2), (2, 0.0, 3), (2, 299.9, 3)]
+    variant, values, places = map(np.array, zip(*asked))
+    assert located(table, variant, values).tolist() == places.tolist()

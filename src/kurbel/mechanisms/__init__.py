@@ -275,13 +275,14 @@ def fan(centre: Any, width: Any) -> tuple[Any, ...]:
     exact, and without any where the bend is wide. Of arrays, angles of which some have fewer are nan there.
 
     >>> fan(180.0, 20.0)
-    (180.0, 170.0, 190.0, 162.5, 197.5, 149.375, 210.625)
+    (180.0, 170.0, 190.0, 162.5, 197.5, 149.375, 210.625, 126.40625, 233.59375)
     >>> fan(180.0, 80.0)
     ()
     """
     angles: list[Any] = []
     width = 0.5 * width
-    while some(narrow := (width > 0) & (width < 36)):
+    bends = (width > 0) & (width < 36)
+    while some(narrow := bends & (width < 84)):  # then pieces of 36 are as narrow
         apart = where(narrow, width, float("nan"))
         angles = angles or [centre + 0.0 * apart]
         angles += [centre - apart, centre + apart]

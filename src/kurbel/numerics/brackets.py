@@ -87,24 +87,18 @@ class Brackets(NamedTuple):
         return cls(*map(np.concatenate, zip(*parts, strict=True)))
 
 
-class Ranges(NamedTuple):
-    """Largest and smallest values at the nodes of pieces, and what those between may differ by, (quantities, pieces).
+def _ranges(grid: Grid, samples: Iterable[Sampled]) -> tuple[Array, Array, Array]:
+    """Return largest and smallest values at the nodes of pieces, and what those between may differ by from these.
 
-    Slope times width is four times what a parabola with these slopes rises above its ends.
+    Each is (quantities, pieces). Slope times width is four times what a parabola with these slopes rises above its
+    ends.
     """
-
-    high: Array
-    low: Array
-    reach: Array
-
-    @classmethod
-    def of(cls, grid: Grid, samples: Sequence[Sampled]) -> "Ranges":
-        high, low = (
-            np.stack([one.value.max(axis=1) for one in samples]),
-            np.stack([one.value.min(axis=1) for one in samples]),
-        )
-        steepest = np.stack([np.maximum(one.slope.max(axis=1), -one.slope.min(axis=1)) for one in samples])
-        return cls(high, low, steepest * (grid.half_widths * grid.gaps.max()))
+    found = [
+        (value.max(axis=1), value.min(axis=1), np.maximum(slope.max(axis=1), -slope.min(axis=1)))
+        for value, slope in samples
+    ]
+    high, low, steepest = map(np.stack, zip(*found))
+    return high, low, steepest * (grid.half_widths * grid.gaps.max())
 
 
 _FLAT = 32 * np.finfo(float).eps
@@ -115,7 +109,7 @@ REPEATED = 64 * np.finfo(float).eps
 
 def may_be_extreme(grid: Grid, samples: Sequence[Sampled]) -> Rows:
     """Return where quantities may pass all nodes of their variant; of each at least one row."""
-    high, low, reach = Ranges.of(grid, samples)
+    high, low, reach = _ranges(grid, samples)
     top, bottom = np.maximum.reduceat(high, grid.first, axis=1), np.minimum.reduceat(low, grid.first, axis=1)
     slack = REPEATED * np.maximum(np.abs(top), np.abs(bottom))
     within = (high + reach < grid.of_each(top - slack)) & (low - reach > grid.of_each(bottom + slack))
@@ -136,7 +130,7 @@ def everywhere(grid: Grid, samples: Sequence[Sampled]) -> Rows:
 
 def may_be_zero(grid: Grid, samples: Sequence[Sampled]) -> Rows:
     """Return where quantities may reach zero, and turn back or not."""
-    high, low, reach = Ranges.of(grid, samples)
+    high, low, reach = _ranges(grid, samples)
     rows = Rows.of(samples, (low <= reach) & (high >= -reach))
     before, after, rise = rows.between_nodes(grid)
     return rows._replace(worth=np.minimum(np.abs(before), np.abs(after)) <= rise)
