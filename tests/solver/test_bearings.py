@@ -184,7 +184,7 @@ def test_no_load_has_no_direction_and_no_unloaded_arc() -> None:
 
 
 def test_an_unloaded_arc_beside_a_load_that_vanishes() -> None:
-    """Where the gas holds up the masses, before and after the dead centre, the load of this pin turns by half a turn."""
+    """Where the gas holds up the masses, before and after a dead centre, the load of this pin turns by half a turn."""
     text = "{speed: 650 rpm, cycle: two-stroke, crank: 33 mm, rod: 93 mm, bore: 276 mm, " + (
         "masses: {reciprocating: 54 kg, rotating: 42 kg}, indicator: {head_end: 25.7 bar, crank_end: mirrored}}"
     )
