@@ -13,7 +13,7 @@ from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.variants import taken
 from kurbel.mechanisms import fan
-from kurbel.numerics.arithmetic import some, sqrt, where
+from kurbel.numerics.arithmetic import arcsin, some, sqrt, where
 from kurbel.numerics.gauss import LOBATTO_10
 from kurbel.numerics.grid import Cuts, Grid, Pieces
 from kurbel.solver.cylinder.inside import Inside
@@ -253,7 +253,8 @@ class Drive:
     def _near_locking(self) -> Iterator[Any]:
         """Yield angles, ever denser, round those at which a driven crosshead comes nearest to locking itself.
 
-        There 1/(cos ψ − f |sin ψ|) of D 3 has a pole beside the real axis, at √(2 left/((tan ψ + f) λ)) from it.
+        There 1/(cos ψ − f |sin ψ|) of D 3 has a pole beside the real axis, at √(2 left/((tan ψ + f) λ)) from it. Of one
+        that would lock, that of 1/(cos ψ + f |sin ψ|) is real: behind the dead centre, where |sin ψ| bends.
         """
         for centre in (90.0, 270.0) if self.rubs else ():
             sin_psi, cos_psi = self.mechanism.rod_angle(CrankAngle.of(centre)) or (0.0, 1.0)
@@ -262,3 +263,8 @@ class Drive:
             if some(near):
                 bend = (abs(sin_psi) / cos_psi + self.crosshead_friction) * self.mechanism.lam
                 yield from fan(centre, sqrt(where(near, 2 * left, 0.0) / where(near, bend, 1.0)) * (180 / math.pi))
+            locks = left < 0
+            if some(locks):
+                sin_locked = 1 / sqrt(1 + self.crosshead_friction * self.crosshead_friction)
+                behind = arcsin(where(locks, sin_locked, 0.0) / where(locks, abs(sin_psi), 1.0))
+                yield from fan(centre - 90.0, behind * (180 / math.pi))
