@@ -239,7 +239,7 @@ class MachineTurning(Results):
         message = f"{with_this} no speed line is found that repeats under this load"
         if isinstance(stop, Standstill):
             message = (
-                f"the machine stops near φ = {stop.degrees:.4g}°: {with_this} its kinetic energy does not carry it over"
+                f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy does not carry it over"
             )
         enough = lines.enough(flywheel, stop.enough)
         if enough is None:
