@@ -52,6 +52,16 @@ def test_rows_are_what_forces_tells_of_each() -> None:
         assert one["failure"] is None
 
 
+def test_without_a_cylinder_rows_are_what_flywheel_tells(tmp_path: Path) -> None:
+    """T = 9 + 5 cos 2φ N m: ΔE = 5 N m, W = 18π J; a machine without key values of `forces` was a fault of kurbel."""
+    machine = tmp_path / "effort.yaml"
+    machine.write_text("{speed: 1 1/s, effort: {unit: N m, mean: 9, harmonics: [[2, 5, 0]]}}", encoding="utf-8")
+    for one, speed in zip(rows("--vary", "speed=1,2 1/s", file=str(machine)), (1, 2), strict=True):
+        assert one["dE_J"] == pytest.approx(5, rel=1e-13)
+        assert one["work_shaft_J"] == pytest.approx(18 * np.pi, rel=1e-13)
+        assert one["power_shaft_W"] == pytest.approx(18 * np.pi * speed, rel=1e-13)
+
+
 def test_a_row_that_fails_stays_with_its_reason() -> None:
     found = rows("--vary", "rod_ratio=0.5,2", "--columns", "T_max")
     assert found[0]["T_max_N"] is None

@@ -42,7 +42,9 @@ def subjects(case: Case, command: str) -> Iterable[Any]:
 
 
 def asked_answers(machine: Machine, names: Sequence[str]) -> tuple[Answer, ...]:
-    """Return the key values that are asked for by id or symbol, of every cylinder that has them; none: all of `forces`.
+    """Return the key values that are asked for by id or symbol, of every cylinder that has them; none: the usual ones.
+
+    Those are all of `forces`; of a machine without a cylinder, whose turning effort is given, all of `flywheel`.
 
     Raises UsageError for one that there is not, or that this machine has not.
     """
@@ -55,10 +57,11 @@ def asked_answers(machine: Machine, names: Sequence[str]) -> tuple[Answer, ...]:
 
 
 def _usual(case: Case) -> Iterator[Answer]:
-    for subject in subjects(case, "forces"):
-        for quantity, _ in subject.key_values("forces"):
+    command = "forces" if case.machine.cylinders else "flywheel"
+    for subject in subjects(case, command):
+        for quantity, _ in subject.key_values(command):
             if not quantity.residual:
-                yield Answer(quantity, "forces", subject.name)
+                yield Answer(quantity, command, subject.name)
 
 
 def _named(case: Case, name: str) -> list[Answer]:
