@@ -17,8 +17,10 @@ def main() -> NoReturn:
     # matrices of twelve rows are no work for many: threads cost their making, and wait for each other in a sweep
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
-        from kurbel.cli import kurbel
+        from kurbel.late_patterns import late_patterns
 
+        with late_patterns():
+            from kurbel.cli import kurbel
         kurbel.main()
     except KeyboardInterrupt:
         _end(130)

@@ -10,7 +10,7 @@ from typing import Any
 from kurbel.declared.kinds import MOST_POINTS
 from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, shown
 from kurbel.errors import Fault, Path, Step
-from kurbel.machine_file.late_patterns import late_patterns
+from kurbel.late_patterns import late_patterns
 
 DEPTH_LIMIT = 32
 _LIKE = "; a cylinder may be 'like: NAME' of another"

@@ -1,4 +1,4 @@
-"""yaml is imported without compiling what libyaml does not need; whoever needs it finds it whole."""
+"""Regular expressions of others are compiled when they are needed; whoever needs one finds it whole."""
 
 import re
 import subprocess
@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from kurbel.machine_file.late_patterns import LatePattern, late_patterns
+from kurbel.late_patterns import LatePattern, late_patterns
 
 _BOTH_WAYS = """
 import datetime, kurbel, yaml
