@@ -2,7 +2,7 @@
 
 yaml compiles ten for its reader in Python and for the types that it would guess, and one of them, a set of characters,
 takes longer than any machine file takes to be read; libyaml, which reads here, needs none. What click imports compiles
-a dozen for the wrapping of help and for translations. A run needs a few of them all.
+a dozen more, most of them to tell by which system Python runs. A run needs a few of them all.
 """
 
 import re
