@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -182,6 +183,26 @@ def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
     text = file.read_text()
     assert text.endswith("\n")
     assert all(line.count(",") == 3 for line in text.splitlines())
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="signals cannot wait on this system")
+def test_an_interrupt_while_processes_start_is_heard(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It was overlooked then, as those processes are to overlook it, and the sweep went on to its end."""
+
+    def submit(pool: ProcessPoolExecutor, *task: object) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        inherited.append(signal.pthread_sigmask(signal.SIG_BLOCK, ()))
+
+    inherited = list[set[int]]()
+    monkeypatch.setattr(ProcessPoolExecutor, "submit", submit)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            list(workers.rows_of(swept("rod_ratio=3:6:0.1", "stroke"), range(31), 2))
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert [signal.SIGINT in one for one in inherited] == [True]
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
 def test_rows_that_are_answered_one_after_another_are_handed_over_early() -> None:

@@ -64,12 +64,15 @@ def _processes(jobs: int) -> Iterator[Callable[..., Any]]:
     pool = ProcessPoolExecutor(jobs, get_context("spawn"))
 
     def submit(*task: Any) -> Any:
-        # an interrupt is for this process alone: those that are started here inherit that they are to overlook it
-        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        # an interrupt is for this process alone: those that are started here inherit that it waits for ever; one
+        # that comes meanwhile is heard afterwards
+        if not hasattr(signal, "pthread_sigmask"):
+            return pool.submit(*task)
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
         try:
             return pool.submit(*task)
         finally:
-            signal.signal(signal.SIGINT, before)
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
     try:
         yield submit
