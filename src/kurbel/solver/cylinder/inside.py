@@ -52,7 +52,7 @@ class Inside:
         def at(*each: Any) -> Any:
             return np.concatenate(each)[place, 0]
 
-        found = cls(drive, CrankAngle(*map(at, *(one.angle for one in parts))), parts[0].rubs)
+        found = cls(drive, CrankAngle(*map(at, *(one.angle[:3] for one in parts))), parts[0].rubs)
         found.direction = at(*(one.direction for one in parts))
         sides, lines = zip(*((one._side, one.gas_line) for one in parts))
         found._side = None if any(one is None for one in sides) else at(*sides)
@@ -82,7 +82,7 @@ class Inside:
         """Find how the force of the gas rises, where it is straight; state: one that is asked for."""
         if self.gas_line is None and all(gas.straight for gas in self.drive.gas):
             inside = self._state(state)
-            force = inside.force_of_gas(Jet(inside.z, 1.0), self.angle)
+            force = inside.force_of_gas(Jet(inside.z, 1.0), self.angle.degrees)
             self.gas_line = GasLine(force.value, force.slope, inside.z)
 
     def guide_side(self, state: "State") -> Array:
