@@ -13,7 +13,7 @@ from kurbel.mechanisms import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.jet import Jet, once_each
 from kurbel.solver.cylinder import chamber, guide, rod_point
-from kurbel.solver.cylinder.inside import Inside
+from kurbel.solver.cylinder.inside import GasLine, Inside
 from kurbel.solver.cylinder.rod_load import rod_load
 
 if TYPE_CHECKING:
@@ -173,19 +173,19 @@ class State:
         if not self.drive.gas:
             return None
         at_nodes = self.phi.shape != self.inside.angle.degrees.shape
-        if at_nodes:
-            self.inside.find_gas_line(self)
+        if at_nodes and self.inside.gas_line is None and all(gas.straight for gas in self.drive.gas):
+            begin = _value(self.z)[:, :1]
+            force = self._force_of_gas(Jet(begin, 1.0), self.phi[:, :1])
+            self.inside.gas_line = GasLine(force.value, force.slope, begin)
         line = self.inside.gas_line
         if line is None:
-            return self.force_of_gas(self.z, self.phi)
+            return self._force_of_gas(self.z, self.phi)
         force = (self.z - line.z) * line.rise + line.force
-        if at_nodes:
-            # at the corners of the cards, which are ends of pieces, the force is that of the cards
-            ends = np.s_[:, :: self.phi.shape[1] - 1]
-            _value(force)[ends] = self.force_of_gas(_value(self.z)[ends], self.phi[ends])
+        if at_nodes:  # pieces may end, as they may begin, at a corner of a card, where the force is that of the card
+            _value(force)[:, -1:] = self._force_of_gas(_value(self.z)[:, -1:], self.phi[:, -1:])
         return force
 
-    def force_of_gas(self, z: Any, degrees: Array) -> Any:
+    def _force_of_gas(self, z: Any, degrees: Array) -> Any:
         """Return the force of the gas on all pistons in N at these shares of the stroke and crank angles in degrees."""
         return reduce(add, (gas.force(lambda end: end(z, degrees, self.inside.held(end))) for gas in self.drive.gas))
 
