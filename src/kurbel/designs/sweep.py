@@ -17,7 +17,7 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot
 
-CHUNK = 200
+CHUNK = 1000
 """Rows that are computed together: what memory holds at once, and what a run computes anew that begins amid them."""
 _FIRST = 20
 """Rows of the first chunk, so that a reader sees something at once."""
