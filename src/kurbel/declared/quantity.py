@@ -75,6 +75,11 @@ class Quantity(NamedTuple):
         text = self.text.replace("Gauge", "Absolute").replace("gauge", "absolute")
         return self._replace(text=text, mark="abs") if self.gauge else self
 
+    def of_ram(self) -> "Quantity":
+        """Return the quantity of a machine that drives a ram and has no piston."""
+        text = self.text.replace("piston force", "force along the stroke line").replace("piston speed", "ram speed")
+        return self._replace(text=text)
+
     def marked(self, unit: str) -> str:
         """Return the unit as it is shown."""
         return f"{unit} {self.mark}".rstrip()
