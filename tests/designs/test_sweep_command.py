@@ -363,6 +363,13 @@ def test_what_varies_stands_in_the_unit_of_its_size(tmp_path: Path) -> None:
     ]
 
 
+def test_the_largest_and_the_smallest_stand_in_one_unit() -> None:
+    """600 N stood beside −6 kN; alone it has the unit of its own size."""
+    shaper = str(CONFIGS / "shaper.yaml")
+    for columns, units in (("P_0,max,P_0,min", ["mm", "kN", "kN"]), ("P_0,max", ["mm", "N"])):
+        assert run("--vary", "crank=300 mm", "--columns", columns, file=shaper).stdout.splitlines()[1].split() == units
+
+
 def test_two_points_are_no_range() -> None:
     result = run("--vary", "rod=1800mm..2000mm", "--columns", "b_max")
     assert result.exit_code == 2

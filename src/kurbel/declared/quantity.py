@@ -66,6 +66,18 @@ class Quantity(NamedTuple):
         """The symbol for an output that cannot show Greek letters."""
         return self.plain or self.symbol.translate(_PLAIN)
 
+    @property
+    def family(self) -> str:
+        """What its largest, smallest and mean value have in common: their column, or their id but for its end.
+
+        >>> force = Quantity("F_pin", "F_z", "force", "Force on the pin", called="force")
+        >>> force.extreme("smallest", "min", ("forces",)).family, Quantity("wear_mean", "f N c_m", "power", "").family
+        ('F_pin', 'wear')
+        """
+        name = self.asks[1] if len(self.asks) > 1 else self.id
+        stem, _, end = name.rpartition("_")
+        return stem if end in ("max", "min", "peak", "mean") else name
+
     def is_noise(self, value: float) -> bool:
         """Whether this value is a residual of rounding alone."""
         return self.residual and abs(value) < 10.0**NOISE_POWER

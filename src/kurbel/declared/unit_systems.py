@@ -1,12 +1,15 @@
 """Unit systems: in which unit people read a value that kurbel holds in its base."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.kinds import KINDS
 from kurbel.declared.units import unit_factor
+
+if TYPE_CHECKING:
+    from kurbel.declared.quantity import Quantity
 
 SYSTEMS: dict[str, dict[str, Any]] = {
     system: {name: getattr(kind, system) or kind.si for name, kind in KINDS.items()}
@@ -41,6 +44,15 @@ def shown_unit(kind: str, system: str, largest: float = 0.0) -> str:
         return units
     fitting = [unit for unit in units[1:] if abs(largest) >= _taken_from(unit, kind)]
     return fitting[-1] if fitting else str(units[0])
+
+
+def units_of(sized: "Sequence[tuple[Quantity, float]]", system: str) -> list[str]:
+    """Return the units in which a system shows quantities of these sizes in SI; those of one family have one unit."""
+    largest: dict[tuple[str, str], float] = {}
+    for quantity, size in sized:
+        family = quantity.kind, quantity.family
+        largest[family] = max(size, largest.get(family, 0.0))
+    return [shown_unit(quantity.kind, system, largest[quantity.kind, quantity.family]) for quantity, _ in sized]
 
 
 def _taken_from(unit: str, kind: str) -> float:

@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI, convert, shown_unit
+from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder
@@ -16,7 +16,7 @@ from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot
-from kurbel.numerics.extreme import Extreme, number_of
+from kurbel.numerics.extreme import Extreme, number_of, size_of
 
 CHUNK = 200
 """Rows that are computed together: what memory holds at once, and what a run computes anew that begins amid them."""
@@ -126,10 +126,9 @@ class Sweep:
         if self.spec.system == "si":
             return tuple(SI[one.quantity.kind] for one in self.asked)
         first = answers_of([Lot(self._binder.machine, (0,))], self.asked)[0]
-        sizes = [0.0] * len(self.asked) if isinstance(first, str) else map(_size, first)
-        return tuple(
-            shown_unit(one.quantity.kind, self.spec.system, size) for one, size in zip(self.asked, sizes, strict=True)
-        )
+        sizes = [0.0] * len(self.asked) if isinstance(first, str) else map(size_of, first)
+        quantities = (one.quantity for one in self.asked)
+        return tuple(units_of(list(zip(quantities, sizes, strict=True)), self.spec.system))
 
     def chunk(self, company: range, wanted: range) -> list[Row]:
         """Return the wanted rows of a chunk, counted from 0."""
@@ -234,11 +233,6 @@ def _in_unit(number: Any, kind: str, unit: str) -> Any:
     if isinstance(number, tuple):
         return tuple(convert(part, kind, unit) + 0.0 for part in number)
     return None if number is None else convert(number, kind, unit) + 0.0
-
-
-def _size(value: Any) -> float:
-    number = number_of(value)
-    return max(map(abs, number), default=0.0) if isinstance(number, tuple) else abs(number or 0.0)
 
 
 def _limit_answers(machine: Machine) -> Iterable[tuple[Answer, float]]:
