@@ -11,7 +11,7 @@ from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, asked_answers, subjects
-from kurbel.designs.plan import Input, Plan, read_input
+from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
@@ -31,8 +31,8 @@ _STARTS = 100
 class Spec(NamedTuple):
     """All that a sweep is made of, in texts, so that any process can make it anew.
 
-    vary: `KEY=…` each; given: inputs beside these. columns: ids or symbols; with_angles: beside extremes the angle
-    where each stands; system: of units; the others: see `Plan`.
+    vary: `KEY=…` each, or several that go together; given: inputs beside these. columns: ids or symbols; with_angles:
+    beside extremes the angle where each stands; system: of units; the others: see `Plan`.
     """
 
     origin: Origin
@@ -77,8 +77,8 @@ class Sweep:
 
     def __init__(self, spec: Spec) -> None:
         self.spec = spec
-        inputs = [*map(read_input, spec.vary), *spec.given]
-        self.plan = Plan(inputs, spec.side_by_side, spec.sample, spec.seed, spec.sobol)
+        axes = [*map(read_axis, spec.vary), *((one,) for one in spec.given)]
+        self.plan = Plan(axes, spec.side_by_side, spec.sample, spec.seed, spec.sobol)
         self.rows = self.plan.rows
         self._binder = self._started()
         machine = self._binder.machine
