@@ -202,8 +202,8 @@ def test_an_interrupt_while_processes_start_is_heard(monkeypatch: pytest.MonkeyP
     """It was overlooked then, as those processes are to overlook it, and the sweep went on to its end."""
 
     def submit(pool: ProcessPoolExecutor, *task: object) -> None:
-        os.kill(os.getpid(), signal.SIGINT)
         inherited.append(signal.pthread_sigmask(signal.SIG_BLOCK, ()))
+        os.kill(os.getpid(), signal.SIGINT)  # a thread that does not wait may hear it at once
 
     inherited = list[set[int]]()
     monkeypatch.setattr(ProcessPoolExecutor, "submit", submit)

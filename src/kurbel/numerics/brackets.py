@@ -32,7 +32,8 @@ class Sampled(NamedTuple):
 Evaluate = Callable[["Array", "Array"], "dict[str, Sampled]"]
 """Quantities at any (degrees, within), each (n,). Of many variants it has `of(variant (n,))`: the same of those.
 
-It may have `inside(within)`: what it takes in their place, so that what all angles in a piece share is found once.
+It may have `inside(grid, piece (n,))`: what it takes in place of `within`, so that what all angles in a piece share is
+found once.
 """
 
 
@@ -190,9 +191,7 @@ def at_brackets(grid: Grid, rows: Rows, brackets: Brackets, evaluate: Evaluate) 
     """Return what gives values and slopes of the quantities of brackets (n,) at angles (n,) in degrees inside them."""
     owner, piece = rows.owner[brackets.place], rows.piece[brackets.place]
     asked: Any = evaluate if grid.variant is None else evaluate.of(grid.variant[piece])  # type: ignore[attr-defined]
-    within: Any = grid.within[piece, 0]
-    if hasattr(asked, "inside"):
-        within = asked.inside(within)
+    within: Any = asked.inside(grid, piece) if hasattr(asked, "inside") else grid.within[piece, 0]
 
     def at(degrees: Array) -> Sampled:
         every = zip(*asked(degrees, within).values())

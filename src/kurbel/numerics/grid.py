@@ -227,7 +227,7 @@ class Cuts(NamedTuple):
     """Where a cycle is cut into smooth pieces, both in degrees from 0 to its end.
 
     smooth: ascending, so dense toward a pole beside the real axis that on every piece, none being wider than 36°, the
-    polynomial through sixteen points is exact, and the integral of that through ten. jumps: further angles at which
+    polynomial through sixteen points is exact, and the integral of that through nine. jumps: further angles at which
     something bends or jumps, be they thousands.
     """
 

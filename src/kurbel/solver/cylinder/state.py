@@ -135,7 +135,7 @@ class State:
         """Rod angle in degrees."""
         return None if self.rod_angle is None else bearing(*self.rod_angle)
 
-    @property
+    @cached_property
     def z(self) -> Any:
         """What of the stroke, or of the swing, is passed from the inner dead centre; of what turns on, None."""
         one = self.drive.mechanism
@@ -148,7 +148,7 @@ class State:
 
     def pressure(self, end: "Pressure") -> Any:
         """Return the gauge pressure in Pa at an end of a piston."""
-        return end(self.way, self.angle, self.inside.held(end))
+        return end(self.z, self.angle, self.inside.held(end))
 
     @cached_property
     def p_head(self) -> Any:
@@ -165,7 +165,25 @@ class State:
     @cached_property
     def P_gas(self) -> Any:
         """Force of gas, steam or water on all pistons in N, R 296."""
-        return reduce(add, (gas.force(self.pressure) for gas in self.drive.gas)) if self.drive.gas else None
+        if not self.drive.gas:
+            return None
+        at_nodes = self.phi.shape != self.inside.angle.degrees.shape
+        if at_nodes:
+            self.inside.find_gas_line(self)
+        line = self.inside.gas_line
+        if line is None:
+            return self.force_of_gas(self.z, self.angle)
+        force = (self.z - line.z) * line.rise + line.force
+        if at_nodes:
+            # at the corners of the cards, which are ends of pieces, the force is that of the cards
+            ends = np.s_[:, :: self.phi.shape[1] - 1]
+            z, force_there = (getattr(one, "value", one) for one in (self.z, force))
+            force_there[ends] = self.force_of_gas(z[ends], CrankAngle(*(part[ends] for part in self._plain)))
+        return force
+
+    def force_of_gas(self, z: Any, angle: CrankAngle) -> Any:
+        """Return the force of the gas on all pistons in N at these shares of the stroke and crank angles."""
+        return reduce(add, (gas.force(lambda end: end(z, angle, self.inside.held(end))) for gas in self.drive.gas))
 
     @property
     def P_gas_book(self) -> Any:

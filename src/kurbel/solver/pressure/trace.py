@@ -52,6 +52,8 @@ class TracePressure:
     the trace counts them, gauge or absolute; pressures: their mean (n,). starts, bends: as `Pressure` says.
     """
 
+    straight = False
+
     def __init__(self, trace: Trace, setting: Setting) -> None:
         self.trace = trace.over(setting.cycle)
         self.setting = setting
@@ -78,10 +80,10 @@ class TracePressure:
         since = np.mod(turned - self.starts[segment], self.setting.cycle)
         return Held(within, since, self._segments.p[segment], self._gradients[segment])
 
-    def __call__(self, x: Any, angle: CrankAngle, held: Held) -> Any:
+    def __call__(self, z: Any, angle: CrankAngle, held: Held) -> Any:
         """Return the gauge pressure in Pa at crank angles (n,), on the segments that are held."""
         value = held.p + held.gradient * (held.since + (angle.degrees - held.within))
-        return Jet(value, held.gradient * (180 / math.pi)) if isinstance(x, Jet) else value
+        return Jet(value, held.gradient * (180 / math.pi)) if isinstance(z, Jet) else value
 
     def taken(self, index: Indices) -> "TracePressure":
         """Return itself: a trace is of one machine."""
