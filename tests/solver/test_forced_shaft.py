@@ -341,6 +341,13 @@ def test_the_mean_torque_goes_to_the_load() -> None:
     assert [one.M_shaft_mean for one in held.pieces] == pytest.approx([-10.0, 0.0], abs=1e-14)
 
 
+@pytest.mark.parametrize("torques", [(7.1, 3.3, 7.1), (0.3, -0.3, 0.3)])
+def test_the_mean_torque_is_one_number_in_every_command(torques: tuple[float, ...]) -> None:
+    """5.2 stood beside 5.200000000000001: `torsion` summed it anew."""
+    case = Case(machine_of(effort=Effort((0.0, 130.0, 360.0), torques)))
+    assert case.torsion.pieces[0].M_shaft_mean == case.harmonics().M_mean == case.flywheel.M_mean
+
+
 def test_crests_against_many_samples() -> None:
     draw = np.random.default_rng(2)
     waves = [1, 2, 3, 7, 24]

@@ -53,7 +53,7 @@ def excitation(found: MachineOrders, line: ShaftLine) -> Excitation:
         if one.in_machine.inertia:
             inertia[place] += one.in_machine.inertia.amplitudes
     if not found.cylinders:
-        gas[0], means[0] = found.machine.gas.amplitudes, found.machine.gas.mean
+        gas[0], means[0] = found.machine.gas.amplitudes, turned.excess.mean
     if turned.machine.load and turned.machine.load.diagram:
         gas[line.load] -= spectrum(turned.excess.load, found.orders).amplitudes
     law, slopes = speed_law(turned), np.zeros(len(line.masses))
