@@ -10,7 +10,7 @@ import pytest
 from kurbel.mechanisms import fan
 from kurbel.numerics.gauss import LOBATTO_9
 from kurbel.numerics.grid import Cuts, Grid
-from kurbel.numerics.search import Evaluate, Sampled, extremes, zeros
+from kurbel.numerics.search import Evaluate, OnNodes, Polynomials, Sampled, extremes, zeros
 from representative import case_of
 
 GRID = Grid(np.arange(0.0, 361.0, 45.0), LOBATTO_9)
@@ -31,8 +31,8 @@ def waves(degrees: np.ndarray, within: np.ndarray) -> dict[str, Sampled]:
     return {"sine": Sampled(sin, cos), "grown": Sampled(sin * growth, (cos - sin * np.sin(phi)) * growth)}
 
 
-def on_nodes(function: Evaluate) -> dict[str, Sampled]:
-    return {name: Sampled.on(GRID, one.value) for name, one in function(GRID.degrees, GRID.within).items()}
+def on_nodes(function: Evaluate) -> dict[str, OnNodes]:
+    return {name: Polynomials.of(GRID, one.value) for name, one in function(GRID.degrees, GRID.within).items()}
 
 
 def test_extremes_between_nodes_take_one_evaluation_or_two() -> None:

@@ -3,13 +3,10 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from kurbel.declared.kinds import KINDS
 from kurbel.declared.units import unit_factor
-
-if TYPE_CHECKING:
-    from kurbel.declared.quantity import Quantity
 
 SYSTEMS: dict[str, dict[str, Any]] = {
     system: {name: getattr(kind, system) or kind.si for name, kind in KINDS.items()}
@@ -46,13 +43,16 @@ def shown_unit(kind: str, system: str, largest: float = 0.0) -> str:
     return fitting[-1] if fitting else str(units[0])
 
 
-def units_of(sized: "Sequence[tuple[Quantity, float]]", system: str) -> list[str]:
-    """Return the units in which a system shows quantities of these sizes in SI; those of one family have one unit."""
+def units_of(sized: Sequence[tuple[str, str, float]], system: str) -> list[str]:
+    """Return the units of values of which kind, family and size in their base are given; a family has one unit.
+
+    >>> units_of([("force", "P", 600.0), ("force", "P", 6000.0), ("force", "T", 600.0)], "metric")
+    ['kN', 'kN', 'N']
+    """
     largest: dict[tuple[str, str], float] = {}
-    for quantity, size in sized:
-        family = quantity.kind, quantity.family
-        largest[family] = max(size, largest.get(family, 0.0))
-    return [shown_unit(quantity.kind, system, largest[quantity.kind, quantity.family]) for quantity, _ in sized]
+    for kind, family, size in sized:
+        largest[kind, family] = max(size, largest.get((kind, family), 0.0))
+    return [shown_unit(kind, system, largest[kind, family]) for kind, family, _ in sized]
 
 
 def _taken_from(unit: str, kind: str) -> float:

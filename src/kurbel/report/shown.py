@@ -96,7 +96,7 @@ def place_table(
 def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list[KeyValue]:
     """Return key values, the largest and the smallest of a column in one unit; found: as numbers in SI, or as below."""
     given = tuple(found)
-    units = units_of([(quantity, size_of(value)) for quantity, value in given], system)
+    units = units_of([(quantity.kind, quantity.family, size_of(value)) for quantity, value in given], system)
     return [_key_value(*one, unit) for one, unit in zip(given, units)]
 
 

@@ -85,7 +85,7 @@ def _had(found: Callable[[], Iterable[Item]]) -> list[Item]:
 def _rows(left: Subject | None, right: Subject | None, command: str, system: str) -> Iterator[tuple[str, ...]]:
     found = [_values(one, command) for one in (left, right)]
     told = {quantity: [one.get(quantity) for one in found] for quantity in (*found[0], *found[1])}
-    units = units_of([(one, max(map(size_of, values))) for one, values in told.items()], system)
+    units = units_of([(one.kind, one.family, max(map(size_of, values))) for one, values in told.items()], system)
     for (quantity, values), unit in zip(told.items(), units):
         texts = [_NONE if value is None else f"{convert(value, quantity.kind, unit):.5g}" for value in values]
         yield quantity.symbol, *texts, quantity.marked(unit), _difference(values), quantity.text

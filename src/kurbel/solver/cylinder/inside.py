@@ -8,7 +8,6 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
-from kurbel.numerics.jet import Jet
 
 if TYPE_CHECKING:
     from kurbel.solver.cylinder.drive import Drive
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class GasLine(NamedTuple):
-    """The force of the gas on pieces on which it is straight over the stroke, each of the shape of their angles.
+    """The force of the gas on pieces on which it is straight over the stroke, each (n,) or (n, 1).
 
     force: in N at a share z of the stroke; rise: of it over a whole stroke.
     """
@@ -39,8 +38,7 @@ class Inside:
         self.rubs = rubs
         self._held: dict[int, Any] = {}
         self._side: Array | None = None
-        self._own: State | None = None
-        self.gas_line: GasLine | None = None
+        self.gas_line: GasLine | None = None  # where a state at the nodes of the pieces has found it
 
     @classmethod
     def of_pieces(cls, drive: "Drive", parts: "Sequence[Inside]", place: Indices) -> "Inside":
@@ -52,7 +50,7 @@ class Inside:
         def at(*each: Any) -> Any:
             return np.concatenate(each)[place, 0]
 
-        found = cls(drive, CrankAngle(*map(at, *(one.angle for one in parts))), parts[0].rubs)
+        found = cls(drive, CrankAngle(*map(at, *(one.angle[:3] for one in parts))), parts[0].rubs)
         found.direction = at(*(one.direction for one in parts))
         sides, lines = zip(*((one._side, one.gas_line) for one in parts))
         found._side = None if any(one is None for one in sides) else at(*sides)
@@ -78,23 +76,9 @@ class Inside:
             self._held[id(end)] = end.held(self.angle.degrees)
         return self._held[id(end)]
 
-    def find_gas_line(self, state: "State") -> None:
-        """Find how the force of the gas rises, where it is straight; state: one that is asked for."""
-        if self.gas_line is None and all(gas.straight for gas in self.drive.gas):
-            inside = self._state(state)
-            force = inside.force_of_gas(Jet(inside.z, 1.0), self.angle)
-            self.gas_line = GasLine(force.value, force.slope, inside.z)
-
     def guide_side(self, state: "State") -> Array:
         """Return +1 where N ≥ 0, else −1; state: one that is asked for, which may be that at these very angles."""
         if self._side is None:
-            self._side = 2.0 * (self._state(state).guide_sense >= 0) - 1.0
+            inside = state if state.angle is self.angle else type(state)(self.drive, self.angle, self)
+            self._side = 2.0 * (inside.guide_sense >= 0) - 1.0
         return self._side
-
-    def _state(self, other: "State") -> "State":
-        """Return the state at these very angles, which the one that is asked for may be."""
-        if other.angle is self.angle:
-            return other
-        if self._own is None:
-            self._own = type(other)(self.drive, self.angle, self)
-        return self._own

@@ -17,7 +17,9 @@ from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import (
     Curve,
     Extremes,
+    Polynomials,
     Sampled,
+    Samples,
     curves,
     extremes,
     lasting,
@@ -60,9 +62,9 @@ class Quantities:
             return Inside(self.drive, CrankAngle.of(grid.within[piece, 0]))
         return Inside.of_pieces(self.drive, (self.known,), piece)
 
-    def on(self, grid: Grid, state: State | Assembled) -> dict[str, Sampled]:
+    def on(self, grid: Grid, state: State | Assembled) -> Samples:
         """Return them in the state at the nodes of a grid."""
-        return {name: Sampled.on(grid, getattr(state, name)) for name in self.names}
+        return {name: Polynomials.of(grid, getattr(state, name)) for name in self.names}
 
     def of(self, variant: Indices) -> "Quantities":
         """Return the same of these variants (n,)."""
@@ -95,7 +97,7 @@ class Searched:
         pins = self.drive.pin_friction
         if self.drive.rubs:
             sense = Quantities(self.drive, ("guide_sense",), known=samples.inside)
-            sampled = sense.on(grid, samples)
+            sampled: Samples = sense.on(grid, samples)
             if pins:
                 # what makes pins rub bends where N changes sides without them; only beside that true turns are exact
                 without = Quantities(self.drive, ("guide_sense",), rubs=False)

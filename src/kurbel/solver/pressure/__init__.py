@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.crank_angle import CrankAngle
 from kurbel.machine.variants import Chambers, count_of, taken
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.extreme import Extreme
@@ -77,8 +76,8 @@ class Pressure(Protocol):
         """Return what holds over the segments in which angles (n,) in degrees lie: each side of a jump has its own."""
         ...
 
-    def __call__(self, z: Any, angle: CrankAngle, held: Any) -> Any:
-        """Return the gauge pressure in Pa at crank angles (n,), where z (n,) of the stroke is passed.
+    def __call__(self, z: Any, degrees: Array, held: Any) -> Any:
+        """Return the gauge pressure in Pa at crank angles (n,) in degrees, where z (n,) of the stroke is passed.
 
         held: of the segment that is meant. With a jet for z the pressure is a jet too.
         """

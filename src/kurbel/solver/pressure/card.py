@@ -68,10 +68,10 @@ class ProcessPressure:
         segment = self._places.holding(within_cycle(within, self.setting.cycle), self._variant)
         return Held(*self._lines.take(segment, axis=1))
 
-    def __call__(self, z: Any, angle: CrankAngle, held: Held) -> Any:
+    def __call__(self, z: Any, degrees: Array, held: Held) -> Any:
         """Return the gauge pressure in Pa where z (n,) of the stroke is passed, on the segments that are held."""
         share = z + 0.0 if self.setting.head_end else 1 - z  # a new one
-        self._put_corners(getattr(share, "value", share), angle.degrees, held)
+        self._put_corners(getattr(share, "value", share), degrees, held)
         straight = (held.p - self.setting.base) + held.gradient * (share - held.z)
         return straight if self.straight else self._curved(straight, share, held)
 
