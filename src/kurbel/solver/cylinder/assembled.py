@@ -17,13 +17,14 @@ class Assembled:
     """
 
     def __init__(self, drive: Drive, grid: Grid, coarser: State, before: Grid) -> None:
-        there = before.piece_at(grid.low, grid.variant)
-        new = (before.low[there] != grid.low) | (before.high[there] != grid.high)
-        # of each piece the place among those of the coarser grid with the new ones after them
-        self._place = np.where(new, len(before.low) + np.cumsum(new) - 1, there)
+        self._there = before.piece_at(grid.low, grid.variant)
+        new = (before.low[self._there] != grid.low) | (before.high[self._there] != grid.high)
+        self._new = np.flatnonzero(new)
         self._coarser, self._finer = coarser, drive.on(grid.part(new))
         self._found: dict[str, Any] = {}
-        self.inside = Inside.of_pieces(drive, (coarser.inside, self._finer.inside), self._place[:, None])
+        # of each piece the place among those of the coarser grid with the new ones after them
+        place = np.where(new, len(before.low) + np.cumsum(new) - 1, self._there)
+        self.inside = Inside.of_pieces(drive, (coarser.inside, self._finer.inside), place[:, None])
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -35,4 +36,6 @@ class Assembled:
     def _joined(self, coarser: Any, finer: Any) -> Any:
         if coarser is None:
             return None
-        return np.concatenate((coarser.T, finer.T), axis=1).take(self._place, axis=1).T
+        joined = coarser.T.take(self._there, axis=1)  # node by node in memory
+        joined[:, self._new] = finer.T
+        return joined.T
