@@ -251,10 +251,11 @@ def roots(grid: Grid, rows: Rows, brackets: Brackets, evaluate: Evaluate, part: 
             return degrees, values
         own = brackets.at(left)
         found = at_brackets(grid, rows, own, evaluate)(degrees[left])
-        step = getattr(found, part) / rise[left]
+        steep = rise[left]  # where it is not, nothing tells how far to go
+        step = np.divide(getattr(found, part), steep, out=np.full_like(steep, np.nan), where=steep != 0)
         values[left] = found.value
         moved = np.clip(degrees[left] - step, own.low, own.high)
-        degrees[left] = np.where(np.isnan(moved), degrees[left], moved)  # no polynomial tells where a slope is none
+        degrees[left] = np.where(np.isnan(moved), degrees[left], moved)
         left = left[~(np.abs(step) <= short[left])]
     own = brackets.at(left)
     at = at_brackets(grid, rows, own, evaluate)
