@@ -32,7 +32,7 @@ def waves(degrees: np.ndarray, within: np.ndarray) -> dict[str, Sampled]:
 
 
 def on_nodes(function: Evaluate) -> dict[str, OnNodes]:
-    return {name: Polynomials.of(GRID, one.value) for name, one in function(GRID.degrees, GRID.within).items()}
+    return {name: Polynomials(GRID, one.value) for name, one in function(GRID.degrees, GRID.within).items()}
 
 
 def test_extremes_between_nodes_take_one_evaluation_or_two() -> None:

@@ -35,15 +35,11 @@ class Sampled(NamedTuple):
         return np.asarray(steepest * (grid.half_widths * grid.gaps.max()))
 
 
-class Polynomials(NamedTuple):
+class Polynomials:
     """Values of one quantity at the nodes of a grid, (pieces, nodes); the polynomials through them have its slopes."""
 
-    value: Array
-
-    @classmethod
-    def of(cls, grid: Grid, value: Any) -> "Polynomials":
-        """Return them of values at the nodes of a grid, or of what does not change."""
-        return cls(np.broadcast_to(value, grid.shape))
+    def __init__(self, grid: Grid, value: Any) -> None:
+        self.value: Array = np.broadcast_to(value, grid.shape)
 
     def on(self, grid: Grid, pieces: Indices) -> Sampled:
         """Return values and slopes at the nodes of these pieces (n,) of a grid."""
@@ -251,8 +247,8 @@ def roots(grid: Grid, rows: Rows, brackets: Brackets, evaluate: Evaluate, part: 
             return degrees, values
         own = brackets.at(left)
         found = at_brackets(grid, rows, own, evaluate)(degrees[left])
-        steep = rise[left]  # where it is not, nothing tells how far to go
-        step = np.divide(getattr(found, part), steep, out=np.full_like(steep, np.nan), where=steep != 0)
+        with np.errstate(all="ignore"):  # no polynomial tells where a slope is none
+            step = getattr(found, part) / rise[left]
         values[left] = found.value
         moved = np.clip(degrees[left] - step, own.low, own.high)
         degrees[left] = np.where(np.isnan(moved), degrees[left], moved)

@@ -260,34 +260,27 @@ def _told(grid: Grid, ends: _Ends, variants: slice) -> Extremes:
     return Extremes(*(Extreme(*(grid.told(one[variants]) for one in end)) for end in ends))
 
 
-class _Order(NamedTuple):
+class _Order:
     """How rows follow one another in the cycle: whose each is, of the quantities of every variant, and what is beside.
 
     whose: (n,); first: the first row of each of those, (v,); before, after: the rows of the pieces before and after,
     (n,), −1 where that piece is left out.
     """
 
-    whose: Indices
-    first: Indices
-    before: Indices
-    after: Indices
-
-    @classmethod
-    def of(cls, grid: Grid, rows: Rows) -> "_Order":
+    def __init__(self, grid: Grid, rows: Rows) -> None:
         variant, numbers = grid.number[rows.piece], np.arange(len(rows.piece))
-        whose = rows.owner * len(grid.first) + variant
-        first = np.flatnonzero(np.append(True, whose[1:] != whose[:-1]))
+        self.whose: Indices = rows.owner * len(grid.first) + variant
+        self.first = np.flatnonzero(np.append(True, self.whose[1:] != self.whose[:-1]))
         after = numbers + 1
-        after[np.append(first[1:], len(after)) - 1] = first
+        after[np.append(self.first[1:], len(after)) - 1] = self.first
         apart = (rows.piece[after] - rows.piece - 1) % grid.counts[variant] != 0
-        before = np.empty_like(after)
-        before[after] = np.where(apart, -1, numbers)
-        return cls(whose, first, before, np.where(apart, -1, after))
+        self.before, self.after = np.empty_like(after), np.where(apart, -1, after)
+        self.before[after] = np.where(apart, -1, numbers)
 
 
 def _ends(grid: Grid, rows: Rows, turns: Turns) -> _Ends:
     """Return the largest and smallest values of the quantities of every variant, each with the first of its angles."""
-    order = _Order.of(grid, rows)
+    order = _Order(grid, rows)
     mirrored = rows._replace(value=-rows.value), turns._replace(value=-turns.value)
     sides = [(*side, _highest(*side)) for side in ((rows, turns), mirrored)]
     best = [np.maximum.reduceat(highest, order.first) for _, _, highest in sides]

@@ -64,7 +64,7 @@ class Quantities:
 
     def on(self, grid: Grid, state: State | Assembled) -> Samples:
         """Return them in the state at the nodes of a grid."""
-        return {name: Polynomials.of(grid, getattr(state, name)) for name in self.names}
+        return {name: Polynomials(grid, getattr(state, name)) for name in self.names}
 
     def of(self, variant: Indices) -> "Quantities":
         """Return the same of these variants (n,)."""
