@@ -124,8 +124,8 @@ def _alone(found: Sequence[_Entry], system: str) -> Iterator[Column]:
 def _circles(balance: MachineBalance, square: float, compare: bool) -> Iterator[_Entry]:
     book = balance.book if compare else None
     for name, vector, first in (
-        ("F", balance.free.force, book and book.force),
-        ("M", balance.free.moment, book and book.moment),
+        ("F", balance.free.force, book.force if book else None),
+        ("M", balance.free.moment, book.moment if book else None),
     ):
         if vector is None:
             continue

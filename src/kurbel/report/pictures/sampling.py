@@ -2,11 +2,12 @@
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.frozen import frozen
 from kurbel.report.pictures.picture import Piece
 
 _WIDEST = 7.5  # degrees between two points at first: narrow enough that no wave hides between them
@@ -18,7 +19,8 @@ Values = Callable[["Array", "Array"], "Array"]
 """Several quantities (k, n) in SI at crank angles (n,) in degrees, on the sides of jumps that hold `within` (n,)."""
 
 
-class Samples(NamedTuple):
+@frozen
+class Samples:
     """Quantities (k, n) at crank angles (n,), the pieces between jumps and bends one after the other."""
 
     degrees: Array
