@@ -90,15 +90,15 @@ def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
     kept[[0, -1]] = True
     while True:
         ends = np.flatnonzero(kept)
-        spans = np.diff(ends)
-        start, chord = (np.repeat(each, spans) for each in (ends[:-1], np.diff(places[ends])))
+        starts, spans = ends[:-1], ends[1:] - ends[:-1]
+        start, chord = (np.repeat(each, spans) for each in (starts, places[ends[1:]] - places[starts]))
         far = _distances(places[: ends[-1]] - places[start], chord)
-        farthest = np.repeat(np.maximum.reduceat(far, ends[:-1]), spans)
+        farthest = np.repeat(np.maximum.reduceat(far, starts), spans)
         tops = np.flatnonzero((far == farthest) & (far > within))
         if not len(tops):
             return tuple(zip(x[kept].tolist(), y[kept].tolist()))
         # of several that lie equally far from a chord the first
-        kept[tops[np.diff(start[tops], prepend=-1) != 0]] = True
+        kept[tops[:1]] = kept[tops[1:][start[tops[1:]] != start[tops[:-1]]]] = True
 
 
 def _distances(reached: ComplexArray, chord: ComplexArray) -> Array:
