@@ -5,10 +5,9 @@ The tree is made of dict, list and texts. Numbers stay text: what a text means i
 
 import re
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 from kurbel.errors import Fault, Path, RuleError
-from kurbel.frozen import frozen
 
 Tree = dict[str, Any]
 FAULT_LIMIT = 100
@@ -34,8 +33,7 @@ class _Refused:
 REFUSED = _Refused()
 
 
-@frozen
-class Birth:
+class Birth(NamedTuple):
     """A record that was read: its form, the mapping at a path, the values of its keys, and what was made of them."""
 
     form: Any

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -33,7 +34,7 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
     compare = frame.compare
     (whole,) = subjects(case, compare)
     tables = tuple(_balance_tables(case.balance, frame.system, compare))
-    whole = whole._replace(place_tables=tables, at=None if orders_only or case.machine.speed is None else whole.at)
+    whole = replace(whole, place_tables=tables, at=None if orders_only or case.machine.speed is None else whole.at)
     return frame.report(case.machine, "Massenausgleich", (), whole, _notes(case.balance))
 
 

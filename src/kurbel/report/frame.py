@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from kurbel.solver.case import Case
 
 
-class Subject(NamedTuple):
+@frozen
+class Subject:
     """What a command speaks of: one cylinder, or the whole machine.
 
     results: what answers its key values, the first that knows one; at: takes crank angles (n,) in degrees and returns

@@ -6,7 +6,6 @@ from typing import NamedTuple, TypeVar, Union
 
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.frozen import frozen
 
 Value = Union[float, int, None]
 Item = TypeVar("Item")
@@ -117,8 +116,7 @@ class Input(NamedTuple):
     sha256: str | None
 
 
-@frozen
-class Provenance:
+class Provenance(NamedTuple):
     """What results were made from: files, what was set over the machine file, and the versions of the libraries."""
 
     inputs: Collection[Input]
