@@ -30,14 +30,14 @@ def frozen(record: type[Record]) -> type[Record]:
     names = tuple(one.name for one in own)
     defaults = {one.name: one.default for one in own if one.default is not MISSING}
     known = set(names)
-    required = known - defaults.keys()
     has_rules = hasattr(record, "__post_init__")
 
     def born(self: Any, *values: Any, **named: Any) -> None:
         given = dict(zip(names, values), **named)
-        if len(given) < len(values) + len(named) or not required <= given.keys() <= known:
+        held = defaults | given
+        if len(given) < len(values) + len(named) or held.keys() != known:
             raise TypeError(f"{record.__name__}{_Signature.of(record)} does not take {values} {named}")
-        vars(self).update(defaults | given)
+        vars(self).update(held)
         if has_rules:
             self.__post_init__()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import combinations, pairwise
 from pathlib import Path
 from xml.etree import ElementTree
@@ -182,7 +183,7 @@ def test_every_lobe_is_named_and_no_name_meets_another(name: str, lobes: int) ->
 
 def test_a_long_name_takes_several_lines() -> None:
     picture = drawn("shaper", "motion")[0]
-    laid = scene(picture._replace(machine=f"{'long name of a machine ' * 8}end"), Look())
+    laid = scene(replace(picture, machine=f"{'long name of a machine ' * 8}end"), Look())
     lines = [one.text for one in laid.items if isinstance(one, Text) and one.look == "h"]
     assert len(lines) == 3
     assert all(len(line) <= 85 for line in lines)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from unicodedata import combining, east_asian_width
 
 import pytest
 from hypothesis import given
@@ -12,7 +14,7 @@ from hypothesis import strategies as st
 
 from kurbel.render import Look, render
 from kurbel.render.book import _book_sizes, _fitting_sizes
-from kurbel.render.charset import Charset, width
+from kurbel.render.charset import _NARROW, Charset, width
 from kurbel.render.prose import folded
 from kurbel.report.zusammenstellung import zusammenstellung
 from render.sample_report import ONE, REPORT, texts
@@ -99,7 +101,7 @@ def test_every_character_can_be_written(look: Look) -> None:
     compared, simple = zusammenstellung(compare=True), zusammenstellung(formula="first-order", rows=("c", "x"))
     for encoding in ("ascii", "cp1252", "cp850", "latin-1", "utf-8"):
         for report in (REPORT, ONE, compared, simple):
-            text = render(report, look._replace(encoding=encoding))
+            text = render(report, replace(look, encoding=encoding))
             assert "?" not in text.encode(encoding).decode(encoding)
 
 
@@ -126,6 +128,11 @@ def test_charset_always_encodes(text: str, encoding: str) -> None:
 def test_same_text_every_time() -> None:
     for look in (Look(), Look("csv"), Look("json"), Look("markdown")):
         assert render(REPORT, look) == render(REPORT, look)
+
+
+def test_what_kurbel_writes_takes_one_cell_each_by_the_tables_of_unicode_too() -> None:
+    assert {"−", "φ", "⁶", "½", "∠"} <= _NARROW
+    assert [one for one in _NARROW if combining(one) or east_asian_width(one) in "WF" or not one.isprintable()] == []
 
 
 def test_width_counts_cells() -> None:

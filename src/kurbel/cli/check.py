@@ -1,5 +1,6 @@
 """`kurbel check`: reads a machine, says what will be computed, and holds it against its limits."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
@@ -42,7 +43,7 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
 
     result = checked(_loaded(file, overrides, file_name))
     look = Look() if file_name else stdout_look()
-    look = look._replace(width=width or look.width)
+    look = replace(look, width=width or look.width)
     write_out((listing(result, look),), file_name)
     if result.errors:  # all of them, as one of the gravest kind
         gravest = min(result.errors, key=lambda error: error.exit_status)

@@ -4,12 +4,13 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial, wraps
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from kurbel.cli import readings
 from kurbel.cli.completion import complete_columns, complete_cylinder, complete_override
+from kurbel.frozen import frozen
 from kurbel.render import FORMATS, LAYOUTS, Look
 from kurbel.report.tables import Report
 
@@ -22,7 +23,8 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 Item = TypeVar("Item")
 
 
-class Output(NamedTuple):
+@frozen
+class Output:
     """Where a report goes and how it looks."""
 
     look: Look
@@ -230,7 +232,8 @@ Spreads = tuple[tuple[str, str], ...]
 """Dotted keys, each with its standard uncertainty as a text."""
 
 
-class Asked(NamedTuple):
+@frozen
+class Asked:
     """What is asked of a command that prints a table for a machine, by the names of the options.
 
     units: of the figures; where, over: what has a value, or the stroke, over which the rows stand instead of the angle.
@@ -307,7 +310,7 @@ def _with_asked(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def with_asked(units: str | None, output: Output, **options: Any) -> None:
         system = units or ("si" if output.look.format in ("csv", "json") else "metric")
-        own = {name: options.pop(name) for name in Asked._fields if name in options}
+        own = {name: options.pop(name) for name in Asked.__annotations__ if name in options}
         from kurbel.declared.unit_systems import told_in
 
         with told_in(units or "metric"):

@@ -1,8 +1,7 @@
 """Every quantity that kurbel prints, declared once: reports, CSV heads, JSON, limits and docs read it here."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import partial
-from typing import NamedTuple
 
 from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES, PIN_LOSSES
@@ -12,6 +11,7 @@ from kurbel.declared.forces import INDICATED_COLUMNS, INDICATED_VALUES, ROD_COLU
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
 from kurbel.declared.torsion import HARMONIC_VALUES, TORSION_COLUMNS, TORSION_VALUES
+from kurbel.frozen import frozen
 
 _FORCES, _FLYWHEEL, _STRESS = ("forces",), ("flywheel",), ("stress",)
 _motion = partial(Quantity, commands=("motion", "forces"))
@@ -196,7 +196,8 @@ _WORK_VALUES = (
 )
 
 
-class Lists(NamedTuple):
+@frozen
+class Lists:
     """The columns and the key values that there can be, each in the order in which they are printed."""
 
     all_columns: tuple[Quantity, ...]
@@ -226,12 +227,15 @@ class Lists(NamedTuple):
     @property
     def absolute(self) -> "Lists":
         """The same for a machine whose pressures are absolute."""
-        return Lists(*(tuple(one.absolute() for one in each) for each in self))
+        return self._changed(Quantity.absolute)
 
     @property
     def of_ram(self) -> "Lists":
         """The same for a machine that drives a ram and has no piston."""
-        return Lists(*(tuple(one.of_ram() for one in each) for each in self))
+        return self._changed(Quantity.of_ram)
+
+    def _changed(self, change: Callable[[Quantity], Quantity]) -> "Lists":
+        return Lists(tuple(map(change, self.all_columns)), tuple(map(change, self.all_key_values)))
 
     def columns(self, command: str) -> dict[str, Quantity]:
         """Return the columns of a command, by id."""

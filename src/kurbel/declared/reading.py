@@ -5,9 +5,10 @@ The tree is made of dict, list and texts. Numbers stay text: what a text means i
 
 import re
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from typing import Any
 
 from kurbel.errors import Fault, Path, RuleError
+from kurbel.frozen import frozen
 
 Tree = dict[str, Any]
 FAULT_LIMIT = 100
@@ -33,7 +34,8 @@ class _Refused:
 REFUSED = _Refused()
 
 
-class Birth(NamedTuple):
+@frozen
+class Birth:
     """A record that was read: its form, the mapping at a path, the values of its keys, and what was made of them."""
 
     form: Any

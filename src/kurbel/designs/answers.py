@@ -89,11 +89,11 @@ class _Answers:
         """Return the rows of machines of one kind; of others none."""
         kinds: dict[Any, list[int]] = {}
         known = Kinds()
-        for machine, rows in self._lots:
-            own = {cylinder.name: cylinder for cylinder in machine.cylinders}
-            found = tuple(known.of(machine, own[name]) if name in own else None for name in self._names)
+        for lot in self._lots:
+            own = {cylinder.name: cylinder for cylinder in lot.machine.cylinders}
+            found = tuple(known.of(lot.machine, own[name]) if name in own else None for name in self._names)
             if None not in found:
-                kinds.setdefault(found, []).extend(rows)
+                kinds.setdefault(found, []).extend(lot.rows)
         return list(kinds.values())
 
     def _together(self, rows: list[int]) -> None:

@@ -1,7 +1,7 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName, not_negative
 from kurbel.declared.keys import Described, Key, Keys
@@ -36,7 +36,8 @@ class Chamber(Protocol):
         ...
 
 
-class Line(NamedTuple):
+@frozen
+class Line:
     """One line of a card: pressures in Pa over fractions of the chamber's stroke, in the order of the process.
 
     Two points at one fraction are a vertical jump. `start` is the fraction at which the line begins, 0 or 1.

@@ -2,18 +2,20 @@
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import is_dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kurbel.arrays import Indices
+from kurbel.frozen import frozen
 from kurbel.numerics.varied import Varied, varied
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
 
 
-class Lot(NamedTuple):
+@frozen
+class Lot:
     """Machines of one kind in one record, whose numbers are `Varied` where they differ; rows: what each is known by."""
 
     machine: "Machine"
@@ -86,7 +88,8 @@ def _changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]
     return record if all(one is vars(record)[name] for name, one in found.items()) else _like(record, found)
 
 
-class Chambers(NamedTuple):
+@frozen
+class Chambers:
     """What stands in one end of a cylinder of many variants: the different chambers, and which one each has, (v,)."""
 
     each: tuple[Any, ...]

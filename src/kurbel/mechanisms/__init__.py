@@ -6,7 +6,7 @@ the crank angle is made of. What a new mechanism must supply stands in `Mechanis
 
 from collections.abc import Callable
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Record
@@ -14,6 +14,7 @@ from kurbel.declared.keys import Described, Keys
 from kurbel.declared.quantities import Lists
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, UsageError, refuse
+from kurbel.frozen import frozen
 from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 
@@ -32,7 +33,8 @@ MECHANISMS = {
 """Word in the machine file -> class; imported only when a machine names it."""
 
 
-class Offer(NamedTuple):
+@frozen
+class Offer:
     """A column that only some mechanisms have, with its formula.
 
     factor: takes the mechanism and a crank angle and returns the value in SI over the product of `times`, of the shape
@@ -53,7 +55,8 @@ on_request = partial(Quantity, commands=("motion", "forces"), on_request=("motio
 """Declares a column that a mechanism adds to both, where it is asked for, behind the one that it names."""
 
 
-class KeyOffer(NamedTuple):
+@frozen
+class KeyOffer:
     """A key value that only some mechanisms have, with its formula.
 
     value: takes the mechanism and the results of its command, and returns a number in SI, an Extreme, or None.

@@ -1,6 +1,8 @@
 """What is drawn of a mechanism at a crank angle: where its joints stand, and what joins them."""
 
-from typing import Any, NamedTuple
+from typing import Any
+
+from kurbel.frozen import frozen
 
 Point = tuple[Any, Any]
 """Place in m from the shaft, along φ = 0 and along φ = 90°; each a number, or as the angle."""
@@ -8,7 +10,8 @@ Point = tuple[Any, Any]
 SHAFT, PIN = "shaft", "pin"
 
 
-class Sketch(NamedTuple):
+@frozen
+class Sketch:
     """A mechanism at crank angles, to scale.
 
     joints: places by name, the shaft and the crank pin among them; links: stiff members, each the joints it runs

@@ -10,6 +10,7 @@ from kurbel.arrays import Array, ComplexArray
 
 _ROUNDING = 1e-14
 _STEPS = 6
+_SETTLED = 1e-8  # of a step beside the radius; the next would be its square
 
 PlaneCurve = Callable[["Array"], "tuple[ComplexArray, ...]"]
 """Points of a curve, as complex numbers, with their first and second derivatives by the angle in radians, each (n,)."""
@@ -77,10 +78,12 @@ def carried(curve: PlaneCurve, angles: Array, around: Circle) -> Array:
             return angles
         z, s = z + complex(step[0], step[1]), s + step[2]
         found, weights = found + step[3 : 3 + count], weights + step[3 + count :]
+        if np.abs(step).max() <= _SETTLED:
+            break
     if (weights < 0).any():  # the circle rests on the others alone
         return carried(curve, angles[weights >= 0], around)
     return found if np.isfinite(found).all() else angles
 
 
 def _pairs(vectors: ComplexArray) -> Array:
-    return np.stack((vectors.real, vectors.imag), axis=1)
+    return vectors[:, None].view(float)

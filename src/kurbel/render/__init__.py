@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 from importlib import import_module
-from typing import NamedTuple
 
+from kurbel.frozen import frozen
 from kurbel.render.charset import Charset
 from kurbel.report.tables import Report
 
@@ -13,7 +13,8 @@ FORMATS = ("table", *_WRITERS)
 LAYOUTS = ("book", "rows")
 
 
-class Look(NamedTuple):
+@frozen
+class Look:
     """How a report is to look.
 
     format, layout: of FORMATS and LAYOUTS; comma: decimal comma; digits: significant digits, where None means four in

@@ -1,8 +1,9 @@
 """The look of Zusammenstellung 112: quantities down the side, crank angles across, broken as over two pages."""
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from dataclasses import replace
 
+from kurbel.frozen import frozen
 from kurbel.render import Look
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import BLANK, Line, Piece, line
@@ -12,7 +13,8 @@ _NINE = 9  # the book breaks after 80°
 _GAP = 2
 
 
-class _Grid(NamedTuple):
+@frozen
+class _Grid:
     """Widths of the columns of a sheet, the same in all its blocks."""
 
     name: int
@@ -30,7 +32,7 @@ def table(sheet: Sheet, look: Look) -> Iterator[Line]:
     """Yield the lines of the sheet, block under block."""
     grid = _grid(sheet)
     if look.width is not None and look.width < grid.side + 2 * grid.cell:
-        sheet = sheet._replace(named_beside=False)
+        sheet = replace(sheet, named_beside=False)
         grid = _grid(sheet)
     count = len(sheet.heads[0].cells)
     sizes = _book_sizes(count) if look.width is None else _fitting_sizes(count, (look.width - grid.side) // grid.cell)

@@ -13,6 +13,8 @@ _ASCII = {
     "ä": "ae", "ö": "oe", "ü": "ue", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue", "ß": "ss",
 }  # fmt: skip
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_NARROW = {*map(chr, (*range(32, 127), *_SUPERSCRIPT.values())), *_ASCII, "∠"} - {"\u0307", "\u0308"}
+"""What kurbel itself writes, one terminal cell each; only other characters need the tables of Unicode."""
 _CONTROL = dict.fromkeys((*range(32), *range(127, 160)), "�")
 
 
@@ -82,7 +84,7 @@ def _stand_in(character: str) -> str:
 
 def width(text: str) -> int:
     """Return the number of terminal cells of a text: none for an accent, two for a wide character."""
-    if text.isascii():
+    if text.isascii() or _NARROW.issuperset(text):
         return len(text)
     from unicodedata import combining, east_asian_width
 

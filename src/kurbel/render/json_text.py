@@ -50,7 +50,7 @@ def _provenance(given: Provenance | None) -> dict[str, Any]:
     if given is None:
         return {}
     versions = {"kurbel": __version__, **given.versions}
-    return {"inputs": [i._asdict() for i in given.inputs], "overrides": list(given.overrides), "versions": versions}
+    return {"inputs": [vars(i) for i in given.inputs], "overrides": list(given.overrides), "versions": versions}
 
 
 def _report(report: Report, digits: int | None) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import stat
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -28,10 +29,10 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
     A terminal gets as many angles to a block as fit its width, and colours where they are wanted; a pipe gets plain
     text, of a width only where it is asked for. Raises UsageError where it cannot be written.
     """
-    look = look._replace(encoding="utf-8")
+    look = replace(look, encoding="utf-8")
     if file_name is None or file_name == "-":
         encoding = "utf-8" if look.format in _SAYING_UTF_8 else stdout_charset().encoding
-        look = look._replace(encoding=encoding, width=look.width or stdout_width())
+        look = replace(look, encoding=encoding, width=look.width or stdout_width())
         if look.format == "table":
             from kurbel.render.page import page
 

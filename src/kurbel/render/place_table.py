@@ -1,6 +1,7 @@
 """Tables whose rows are named places: the names on the left, quantities across."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from kurbel.render import Look
 from kurbel.render.columns import blocks
@@ -66,4 +67,4 @@ def _beside(name: Row, headed: bool, grouping: bool) -> Row:
     """Return the names as they stand at the side; grouping: what repeats the one above stays blank."""
     pairs = zip(name.cells, ("", *name.cells))
     cells = tuple("" if grouping and one == above else one for one, above in pairs)
-    return name._replace(symbol=name.symbol if headed else "", cells=cells)
+    return replace(name, symbol=name.symbol if headed else "", cells=cells)

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import groupby
-from typing import NamedTuple
 
+from kurbel.frozen import frozen
 from kurbel.render import Look
 from kurbel.render.charset import width
 from kurbel.render.numbers import Scale, angle_scale, cell, decimal, scale_of, whole_if_integral
@@ -44,7 +44,8 @@ class Cells:
         return max(len(self._text(end)) for end in ends) + len(self._pad)
 
 
-class Row(NamedTuple):
+@frozen
+class Row:
     """One quantity as text; in print it runs across the page or down it. words: it is no quantity but names."""
 
     symbol: str
@@ -58,14 +59,16 @@ class Row(NamedTuple):
         return self.cells.width if isinstance(self.cells, Cells) else max(map(width, self.cells), default=0)
 
 
-class Band(NamedTuple):
+@frozen
+class Band:
     """The rows of one part, with the name over or beside them (empty where there is only one part)."""
 
     name: str
     rows: tuple[Row, ...]
 
 
-class Sheet(NamedTuple):
+@frozen
+class Sheet:
     """One table: the crank angles (with those of the return stroke, where the table is mirrored) and its bands.
 
     named_beside: the names of the bands are short and stand in a column of their own, as L/R does in the book.
@@ -112,7 +115,7 @@ def part_name(report: Report, part: Part, look: Look) -> str:
 def _row(column: Column, look: Look, pad: str) -> Row:
     scale = scale_of((column.size,) if column.size else column.values, look.digits)
     if column.decimals is not None:
-        scale = scale._replace(decimals=column.decimals, exponent=0)
+        scale = Scale(column.decimals)
     return _scaled(column, scale, look, pad)
 
 

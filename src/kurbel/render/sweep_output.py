@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import islice
 from typing import Any, NamedTuple
 
@@ -150,7 +151,7 @@ class SweepOutput:
     def __init__(self, titles: Titles, look: Look, file_name: str | None, headed: bool = True, kept: int = 0) -> None:
         self.titles = titles
         self._file_name = None if file_name == "-" else file_name
-        self._look = look if self._file_name else look._replace(encoding=stdout_look().encoding)
+        self._look = look if self._file_name else replace(look, encoding=stdout_look().encoding)
         self._headed, self._kept = headed, kept
 
     def write(self, rows: Iterable[Any]) -> None:

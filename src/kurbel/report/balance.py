@@ -1,8 +1,8 @@
 """The report of `kurbel balance`: free forces and moments over the crank angle, their orders, the best weights."""
 
-import cmath
 import math
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.report.frame import Frame, Subject
+from kurbel.report.pin_notes import pin_notes
 from kurbel.report.shown import place_table, shown_column
 from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
 from kurbel.solver.balance.circles import Circles
@@ -33,25 +34,19 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
     compare = frame.compare
     (whole,) = subjects(case, compare)
     tables = tuple(_balance_tables(case.balance, frame.system, compare))
-    whole = whole._replace(place_tables=tables, at=None if orders_only or case.machine.speed is None else whole.at)
+    whole = replace(whole, place_tables=tables, at=None if orders_only or case.machine.speed is None else whole.at)
     return frame.report(case.machine, "Massenausgleich", (), whole, _notes(case.balance))
 
 
 def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
     """Yield the whole machine; compare: with what the acceleration of first order gives, beside the true figures."""
     balance = case.balance
-
-    def warnings() -> Iterable[str]:
-        from kurbel.report.notes import pin_notes
-
-        return pin_notes(case.machine)
-
     yield Subject(
         "whole machine",
         (*balance.answering, *((BookBalance(balance),) if compare else ())),
         balance.at,
         left_out=lambda: _left_out(balance, compare),
-        warnings=warnings,
+        warnings=lambda: pin_notes(case.machine),
     )
 
 
@@ -124,8 +119,8 @@ def _alone(found: Sequence[_Entry], system: str) -> Iterator[Column]:
 def _circles(balance: MachineBalance, square: float, compare: bool) -> Iterator[_Entry]:
     book = balance.book if compare else None
     for name, vector, first in (
-        ("F", balance.free.force, book and book.force),
-        ("M", balance.free.moment, book and book.moment),
+        ("F", balance.free.force, book.force if book else None),
+        ("M", balance.free.moment, book.moment if book else None),
     ):
         if vector is None:
             continue
@@ -165,14 +160,18 @@ def _direction(forward: complex, backward: complex) -> float | None:
     """Return the direction in degrees, 0 to below 180, in which both circles meet; None of a circle or of nothing."""
     if not forward or not backward:
         return None
-    degrees = math.degrees(cmath.phase(forward * backward)) / 2
+    degrees = _degrees(forward * backward) / 2
     return degrees + 180.0 if degrees < -_NOTHING else degrees
 
 
 def _phase(circle: complex) -> float | None:
     """Return a direction in degrees, above −180 and up to 180; None of nothing."""
-    degrees = math.degrees(cmath.phase(circle))
+    degrees = _degrees(circle)
     return None if not circle else degrees if degrees > _NOTHING - 180 else degrees + 360
+
+
+def _degrees(circle: complex) -> float:
+    return math.degrees(math.atan2(circle.imag, circle.real))
 
 
 def _weights(balance: MachineBalance, system: str) -> Iterator[PlaceTable]:

@@ -1,6 +1,7 @@
 """The report of `kurbel forces`."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -30,7 +31,7 @@ def cycles_report(case: Case, system: str) -> Report:
     tables = {forces.drive.name: tuple(_cycle_table(forces, system)) for forces in case.cylinders}
     if not any(tables.values()):
         raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
-    parts = [one._replace(at=None, place_tables=tables[one.name]) for one in subjects(case)]
+    parts = [replace(one, at=None, place_tables=tables[one.name]) for one in subjects(case)]
     return Frame("forces", (), None, system).report(machine, "Kräfte im Kurbeltriebe", parts)
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from kurbel.declared.quantities import COMMON, Lists
 from kurbel.declared.quantity import Quantity, called
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, Nowhere, UsageError
+from kurbel.frozen import frozen
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
     from kurbel.solver.case import Case
 
 
-class Subject(NamedTuple):
+@frozen
+class Subject:
     """What a command speaks of: one cylinder, or the whole machine.
 
     results: what answers its key values, the first that knows one; at: takes crank angles (n,) in degrees and returns
@@ -78,7 +80,8 @@ def _nowhere(parts: Sequence[Part]) -> Iterator[str]:
     return (f"{one}." for one in without)
 
 
-class Frame(NamedTuple):
+@frozen
+class Frame:
     """A report to be made: of which command, at which crank angles (n,) in degrees, with which columns, in which units.
 
     angles: of every subject, or what tells those of one. columns: ids to show besides φ, None for all that the machine

@@ -1,6 +1,7 @@
 """The report of `kurbel harmonics`: orders of the torque of every cylinder and of the whole machine."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,8 @@ def harmonics_report(
     each = [_cylinder(case.machine, one, frame.system) for one in found.cylinders]
     (whole,) = subjects(case, found)
     tables = (_machine_table(found, frame.system), *_speed_tables(case.machine, found, speeds, frame.system))
-    whole = whole._replace(place_tables=tuple(table._replace(said=_uniform(found)) for table in tables))
+    tables = tuple(table._replace(said=_uniform(found)) for table in tables)
+    whole = replace(whole, place_tables=tables)
     return frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
 
 

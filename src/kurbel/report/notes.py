@@ -3,8 +3,7 @@
 It is said as notes, since the file may be right.
 """
 
-import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,6 +11,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.piston import Piston
 from kurbel.report.alike import grouped, together
+from kurbel.report.pin_notes import pin_notes
 
 if TYPE_CHECKING:
     from kurbel.machine.indicator import Card
@@ -24,8 +24,6 @@ _ASK = "is beyond anything built; is its unit right?"
 _LARGEST_FLUCTUATION = 0.25  # of what the books let vary most, crushers and hammers, 1/5
 _EXPONENTS = 0.9, 1.7  # wet steam that dries as it expands; a gas of single atoms without heat
 LARGEST_PEAK = 300e5  # Pa; of combustion engines
-_SAME_PLACE = 1e-9  # m
-_SAME_ANGLE = 1e-6  # degrees
 _PLAIN = 0.02
 """Lean of a card, over its range of pressures, below which it has no high end; one open for half the stroke has ¼."""
 
@@ -138,28 +136,6 @@ def _exponent_notes(piston: Piston) -> Iterable[str]:
             if not least <= value <= most:
                 said = f"an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
                 yield f"{piston.name}, {end.replace('_', ' ')}: {said}"
-
-
-def pin_notes(machine: Machine) -> Iterator[str]:
-    """Yield which cylinders that stand at one place along the shaft share no crank pin."""
-    placed = [one for one in machine.cylinders if one.axial_position is not None]
-    for first, second in pairwise(sorted(placed, key=_place)):
-        apart = math.remainder(_throw(second) - _throw(first), 360.0)
-        if _place(second) - _place(first) <= _SAME_PLACE and abs(apart) > _SAME_ANGLE:
-            yield (
-                f"{first.name} and {second.name} stand at one place along the shaft, but their throws "
-                f"{show(abs(apart), 'angle')} apart: they share no crank pin. Two on one pin have crank positions that "
-                "differ as their bank angles do; throws of their own need an 'axial_position' each"
-            )
-
-
-def _place(cylinder: Cylinder) -> float:
-    return cylinder.axial_position or 0.0
-
-
-def _throw(cylinder: Cylinder) -> float:
-    """Return where its throw stands at φ = 0, in degrees."""
-    return cylinder.bank_angle - cylinder.crank_position
 
 
 def _card_end_notes(piston: Piston) -> Iterable[str]:

@@ -1,6 +1,7 @@
 """Two machines side by side: what they were given differently, key values with their differences, pictures in pairs."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import zip_longest
 from operator import itemgetter
@@ -70,7 +71,7 @@ def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterato
         if declared.command == command.word:
             drawn = [_had(partial(pictures_if_any, case, declared, Wish(system))) for case in cases]
             # each picture is named as its machine is here
-            called = [[one._replace(machine=name) for one in ones] for ones, name in zip(drawn, _names(cases))]
+            called = [[replace(one, machine=name) for one in ones] for ones, name in zip(drawn, _names(cases))]
             yield from (Pair(left, right) for left, right in zip_longest(*called))
 
 

@@ -1,6 +1,7 @@
 """The report of `kurbel stress`: stresses place by place, forces on the bearings over the crank angle, key values."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -31,7 +32,7 @@ def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report
     """
     (whole,) = subjects(case)
     tables = tuple(_place_tables(case.stress, frame.system))
-    whole = whole._replace(name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
+    whole = replace(whole, name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
     cool, verdict = shell_verdict(case.stress)
     notes = (*_NOTES, *((_TURNING_ROD,) if case.stress.C_rod else ()), *(verdict if cool else ()))
     return frame.report(case.machine, "Festigkeit der Kurbelwelle", (), whole, notes)

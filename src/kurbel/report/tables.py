@@ -6,6 +6,7 @@ from typing import NamedTuple, TypeVar, Union
 
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
+from kurbel.frozen import frozen
 
 Value = Union[float, int, None]
 Item = TypeVar("Item")
@@ -110,14 +111,16 @@ class Part(NamedTuple):
     of: str = ""
 
 
-class Input(NamedTuple):
+@frozen
+class Input:
     """A file that was read, and the SHA-256 of its bytes; None where it is gone since."""
 
     file: str
     sha256: str | None
 
 
-class Provenance(NamedTuple):
+@frozen
+class Provenance:
     """What results were made from: files, what was set over the machine file, and the versions of the libraries."""
 
     inputs: Collection[Input]

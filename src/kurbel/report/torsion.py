@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,7 +48,7 @@ def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Repor
     critical = found.critical_speeds(wanted.modes, _HIGHEST if wanted.orders is None else math.inf)
     (whole,) = subjects(case, found, critical)
     borne = _borne(found, critical)
-    whole = whole._replace(place_tables=tuple(_tables(found, critical, borne, wanted, frame.system)))
+    whole = replace(whole, place_tables=tuple(_tables(found, critical, borne, wanted, frame.system)))
     pieces = found.pieces if frame.columns else ()
     each = [Subject(one.name, (), one.at) for one in pieces]
     return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found, wanted, critical, borne))

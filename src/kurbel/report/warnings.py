@@ -66,7 +66,8 @@ def _balance_warnings(forces: CylinderForces) -> Iterable[str]:
 
 def _bound_warnings(forces: CylinderForces) -> Iterable[str]:
     """Yield what of the mechanism's own key values is above that to which the sources let it go."""
-    for quantity, _, bound in forces.drive.mechanism.KEY_OFFERS:
+    for offer in forces.drive.mechanism.KEY_OFFERS:
+        quantity, bound = offer.quantity, offer.bound
         found = forces.offered(quantity.id) if bound else None
         if bound and found and found.value > bound:
             shown, most = show(found.value, quantity.kind), show(bound, quantity.kind)

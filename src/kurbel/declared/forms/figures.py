@@ -4,7 +4,8 @@ import re
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import Any
 
 from kurbel.declared.forms.scalars import Number, Physical
 from kurbel.declared.keys import Form, Schema
@@ -13,6 +14,7 @@ from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import REFUSED, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
+from kurbel.frozen import frozen
 from kurbel.near_words import did_you_mean
 
 Known = Callable[[], dict[str, "Quantity"]]
@@ -32,7 +34,8 @@ class Bound(float):
         return bound
 
 
-class Expected(NamedTuple):
+@frozen
+class Expected:
     """The smallest and the largest value that meet an expectation, in the base; unit, text and name as written."""
 
     low: float
@@ -129,8 +132,8 @@ class Expectations(_Figures):
     def figure(self, size: Number | Physical) -> Form:
         return _Figure(size)
 
-    def named(self, figure: Any, written: Any, name: str) -> Expected:
-        return figure._replace(name=name)  # type: ignore[no-any-return]
+    def named(self, figure: Expected, written: Any, name: str) -> Expected:
+        return replace(figure, name=name)
 
     def expected(self) -> str:
         return "a mapping of key values to figures, such as 'b_max: 13.16 m/s2 ± 0.5 %'"

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import chain
 
 from kurbel.errors import UsageError
@@ -37,7 +38,7 @@ def _kind(file_name: str) -> str:
 def draw_file(pictures: list[Picture], look: Look, file_name: str) -> None:
     """Draw pictures one below the other to a file. Raises UsageError where it cannot be written."""
     check_file(file_name)
-    look = look._replace(encoding="utf-8")
+    look = replace(look, encoding="utf-8")
     if _kind(file_name) == ".svg":
         from kurbel.render.pictures.svg import svg_file
 
@@ -54,7 +55,7 @@ def draw_file(pictures: list[Picture], look: Look, file_name: str) -> None:
 
 def draw_stdout(pictures: Iterable[Picture], look: Look) -> None:
     """Draw pictures as characters to standard output, in colour where that is a terminal that wants it."""
-    look = look._replace(encoding=stdout_charset().encoding, width=look.width or stdout_width())
+    look = replace(look, encoding=stdout_charset().encoding, width=look.width or stdout_width())
     lines = list(_lines(pictures, look))
     if not write_coloured(lines, look):
         write_stdout(plain(lines))

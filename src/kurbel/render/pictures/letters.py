@@ -108,12 +108,18 @@ def _names(panel: Panel, taken: Taken, scales: Scales, look: Look) -> Iterator[T
     for curve, number in curves if len(curves) > 1 else ():
         own, name = dense([curve], scales)[::3], symbol(curve.name, look)
         others = [dense([other], scales) for other, _ in curves if other is not curve]
-        gap = np.min([np.abs(own[:, None, :] - other[None, :, :]).sum(axis=2).min(axis=1) for other in others], axis=0)
+        gap = np.min([_apart(own, other).min(axis=1) for other in others], axis=0)
         for clear, best in product((True, False), np.argsort(-gap)[:40]):
             left, base = own[best].tolist()
             if place := taken.place(left, base, name, base < scales[1].start / 2, clear):
                 yield Text(*place, name, f"c{number}")
                 break
+
+
+def _apart(places: Array, others: Array) -> Array:
+    """Return how far places (n, 2) are from others (m, 2), across and down together, (n, m)."""
+    across, down = (np.abs(np.subtract.outer(one, other)) for one, other in zip(places.T, others.T))
+    return np.asarray(across + down)
 
 
 def _below(panel: Panel, scale: Scale, canvas: Canvas, side: int, look: Look) -> Iterator[Printed]:

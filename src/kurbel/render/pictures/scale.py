@@ -1,10 +1,12 @@
 """Scales: from the values of an axis to places on paper or in a terminal, and where its ticks stand."""
 
 import math
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from kurbel.frozen import frozen
 from kurbel.render.numbers import decimal
 from kurbel.report.pictures.picture import Axis, Panel
 
@@ -14,7 +16,8 @@ _AIR = 0.12
 """Share of its height that a panel leaves free above and below its curves."""
 
 
-class Scale(NamedTuple):
+@frozen
+class Scale:
     """What values `low` and `high` stand for on an axis: the places `start` and `end`; log: by powers of ten."""
 
     low: float
@@ -34,7 +37,7 @@ class Scale(NamedTuple):
 
     def reach(self, start: float, end: float) -> "Scale":
         """Return the scale with other ends on paper."""
-        return self._replace(start=start, end=end)
+        return replace(self, start=start, end=end)
 
 
 def scale_of(panel: Panel, part: str) -> Scale:
@@ -57,7 +60,7 @@ def scale_of(panel: Panel, part: str) -> Scale:
 def taller(scale: Scale, height: float) -> Scale:
     """Return a scale that reaches at least so far, its middle where it was."""
     spare = (height - (scale.high - scale.low)) / 2
-    return scale if spare <= 0 else scale._replace(low=scale.low - spare, high=scale.high + spare)
+    return scale if spare <= 0 else replace(scale, low=scale.low - spare, high=scale.high + spare)
 
 
 def _extent(panel: Panel, part: str) -> tuple[float, float]:

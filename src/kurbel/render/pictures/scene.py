@@ -1,11 +1,12 @@
 """A picture laid out on paper: lines, areas and texts at places in points from the upper left corner."""
 
 import re
-from typing import NamedTuple, Union
+from typing import Union
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
+from kurbel.frozen import frozen
 
 Places = tuple[tuple[float, float], ...]
 
@@ -15,7 +16,8 @@ _DOTS = "[\u0307\u0308]"
 _SUBSCRIPT = re.compile(rf"(?:(?<=\b\w)|(?<=\b\w{_DOTS})|(?<=Δ\w))_([^\s|]+?)(?=,?\s|,?$|\|)")
 
 
-class Line(NamedTuple):
+@frozen
+class Line:
     """A line through places, of a class of the style; `parts`: several lines of one look; frames: how it moves."""
 
     parts: tuple[Places, ...]
@@ -24,7 +26,8 @@ class Line(NamedTuple):
     frames: tuple[tuple[Places, ...], ...] = ()
 
 
-class Text(NamedTuple):
+@frozen
+class Text:
     """A text at a place, by its start, middle or end; halo: it may stand on lines; frames: where it moves to.
 
     still: it is of one moment, and stands only where nothing moves; plain: it is a name or a
@@ -55,7 +58,8 @@ class Text(NamedTuple):
         return [self.text] if self.plain else _SUBSCRIPT.split(self.text)
 
 
-class Dots(NamedTuple):
+@frozen
+class Dots:
     """Small figures at places, of a class of the style; corners: of the figure, none for a circle."""
 
     places: Places
@@ -68,7 +72,8 @@ class Dots(NamedTuple):
 Item = Union[Line, Text, Dots]
 
 
-class Scene(NamedTuple):
+@frozen
+class Scene:
     """A laid out picture: its size, what stands on it, the later over the earlier, and what it says in words."""
 
     width: float
@@ -85,15 +90,15 @@ def thinned(x: Array, y: Array, within: float = 0.12) -> Places:
     kept[[0, -1]] = True
     while True:
         ends = np.flatnonzero(kept)
-        spans = np.diff(ends)
-        start, chord = (np.repeat(each, spans) for each in (ends[:-1], np.diff(places[ends])))
+        starts, spans = ends[:-1], ends[1:] - ends[:-1]
+        start, chord = (np.repeat(each, spans) for each in (starts, places[ends[1:]] - places[starts]))
         far = _distances(places[: ends[-1]] - places[start], chord)
-        farthest = np.repeat(np.maximum.reduceat(far, ends[:-1]), spans)
+        farthest = np.repeat(np.maximum.reduceat(far, starts), spans)
         tops = np.flatnonzero((far == farthest) & (far > within))
         if not len(tops):
             return tuple(zip(x[kept].tolist(), y[kept].tolist()))
         # of several that lie equally far from a chord the first
-        kept[tops[np.diff(start[tops], prepend=-1) != 0]] = True
+        kept[tops[:1]] = kept[tops[1:][start[tops[1:]] != start[tops[:-1]]]] = True
 
 
 def _distances(reached: ComplexArray, chord: ComplexArray) -> Array:

@@ -1,11 +1,11 @@
 """How pictures look: the colours and strokes of their curves, in light and dark, told apart without colour, too."""
 
-from typing import NamedTuple
-
+from kurbel.frozen import frozen
 from kurbel.report.pictures.picture import Panel
 
 
-class Look(NamedTuple):
+@frozen
+class Look:
     """A curve's colour on a light and on a dark ground, and its stroke: lengths of dash and gap, none for a full line.
 
     character: what draws it where there are only letters.

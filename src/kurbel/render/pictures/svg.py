@@ -43,7 +43,7 @@ def _items(scene: Scene) -> Iterator[str]:
     if scene.seconds:
         moving = (_item(item, scene.seconds) for item in scene.items if item.frames)
         yield f'<g class="moving">{"".join(moving)}</g>\n'
-        still = (_item(item._replace(frames=()), 0.0) for item in scene.items if item.frames or _of_one_moment(item))
+        still = (_item(item, 0.0) for item in scene.items if item.frames or _of_one_moment(item))
         yield f'<g class="still">{"".join(still)}</g>\n'
 
 
@@ -57,7 +57,7 @@ def _item(item: Item, seconds: float) -> str:
     if isinstance(item, Dots):
         return _dots(item, seconds)
     path = _path(item.parts, item.closed)
-    moves = "".join(_moves("d", (_path(one, item.closed) for one in item.frames), seconds) if item.frames else "")
+    moves = _moves("d", (_path(one, item.closed) for one in item.frames), seconds)
     style = ' style="stroke-dasharray:none"' if item.look.endswith(" solid") else ""
     return f'<path class="{item.look.removesuffix(" solid")}"{style} d="{path}"{f">{moves}</path>" if moves else "/>"}'
 
@@ -65,10 +65,8 @@ def _item(item: Item, seconds: float) -> str:
 def _text(item: Text, seconds: float) -> str:
     anchor = "" if item.anchor == "start" else f' text-anchor="{item.anchor}"'
     halo = " halo" if item.halo else ""
-    moves = ""
-    if item.frames:
-        for name, place in (("x", 0), ("y", 1)):
-            moves += _moves(name, (_number(one[place]) for one in item.frames), seconds)
+    places = (("x", 0), ("y", 1))
+    moves = "".join(_moves(name, (_number(one[place]) for one in item.frames), seconds) for name, place in places)
     where = f'x="{_number(item.x)}" y="{_number(item.y)}"'
     return f'<text class="{item.look}{halo}" {where}{anchor}>{_typeset(item)}{moves}</text>'
 
@@ -102,6 +100,8 @@ def _dots(item: Dots, seconds: float) -> str:
 
 def _moves(attribute: str, values: Iterator[str], seconds: float) -> str:
     every = [*values]
+    if not (every and seconds):
+        return ""
     around = ";".join([*every, every[0]])
     return f'<animate attributeName="{attribute}" dur="{seconds:g}s" repeatCount="indefinite" values="{around}"/>'
 

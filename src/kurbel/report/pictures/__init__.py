@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kurbel.declared.reading import shown
 from kurbel.declared.shaft import SHAFT_PARTS
 from kurbel.errors import NoSolutionError, UsageError
+from kurbel.frozen import frozen
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.near_words import did_you_mean
 from kurbel.report.alike import together
@@ -24,7 +26,8 @@ FILE, TERMINAL = 1 / 2000, 1 / 250
 """By what of its height a line of points may miss a curve: less than can be seen on paper, or in a terminal."""
 
 
-class Declared(NamedTuple):
+@frozen
+class Declared:
     """A picture: its word, its German title, and a sentence; command: whose results it shows.
 
     panels: the function that yields its panels from a source, as `module:function` below this package. rows: instead of
@@ -181,7 +184,8 @@ PICTURES = (
 """The pictures, the one that says most of a machine first."""
 
 
-class Wish(NamedTuple):
+@frozen
+class Wish:
     """How pictures are wanted: in which system of units, how finely (FILE or TERMINAL), of which cylinder alone.
 
     angles: crank angles in degrees at which a mechanism is drawn, None where it moves.
@@ -199,7 +203,7 @@ def pictures(case: "Case", names: Sequence[str], wish: Wish) -> Iterator[Picture
     Raises UsageError for a picture that there is not, or that this machine does not have, NoSolutionError where the
     machine locks itself or stalls.
     """
-    wish = wish._replace(cylinder=wish.cylinder and cylinder_meant(wish.cylinder, _names(case)))
+    wish = replace(wish, cylinder=wish.cylinder and cylinder_meant(wish.cylinder, _names(case)))
     if not names:
         yield from _first(case, wish)
     elif "all" in names:

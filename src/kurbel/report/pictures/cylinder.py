@@ -1,6 +1,7 @@
 """The pictures of one cylinder: indicator cards, piston force with its inertia line, forces, T in polar form."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -207,4 +208,4 @@ def _faint(name: Words, degrees: Any, radius: Any) -> Curve:
 
 def _placed(mark: Mark, base: float) -> Mark:
     x, y = _polar(mark.x, base + mark.y)
-    return mark._replace(x=float(x), y=float(y))
+    return replace(mark, x=float(x), y=float(y))

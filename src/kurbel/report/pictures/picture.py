@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from kurbel.arrays import Array
+from kurbel.frozen import frozen
 
 
 class Words(NamedTuple):
@@ -12,7 +13,8 @@ class Words(NamedTuple):
     ascii_symbol: str = ""
 
 
-class Axis(NamedTuple):
+@frozen
+class Axis:
     """What runs along an axis, and its unit; log: by powers of ten; names: what stands at 0, 1, … instead of numbers.
 
     low, high: how far the axis must reach at least, whatever is drawn; falling: large values stand on the left.
@@ -27,7 +29,8 @@ class Axis(NamedTuple):
     names: tuple[str, ...] = ()
 
 
-class Piece(NamedTuple):
+@frozen
+class Piece:
     """Points of a curve without a jump, in the units of the axes, (n,).
 
     degrees, within: at which crank angles they were computed, and on which side of jumps; None where they have none.
@@ -39,7 +42,8 @@ class Piece(NamedTuple):
     within: Array | None = None
 
 
-class Curve(NamedTuple):
+@frozen
+class Curve:
     """A curve: pieces that follow one another, a jump between two of them.
 
     kind: `line`; `faint`, a line to compare with, such as a mean; of mechanisms `member`, `guide`, and the points
@@ -53,7 +57,8 @@ class Curve(NamedTuple):
     look: int | None = None
 
 
-class Figure(NamedTuple):
+@frozen
+class Figure:
     """A figure that is written into a picture: symbol, value and unit, and the crank angle at which it stands."""
 
     name: Words
@@ -62,7 +67,8 @@ class Figure(NamedTuple):
     at_deg: float | None = None
 
 
-class Mark(NamedTuple):
+@frozen
+class Mark:
     """A point with its figure."""
 
     x: float
@@ -70,7 +76,8 @@ class Mark(NamedTuple):
     figure: Figure
 
 
-class Shade(NamedTuple):
+@frozen
+class Shade:
     """The surface between two lines over the same places x (n,); `gain`: it counts positive.
 
     figure: what is written into it, at its widest place.
@@ -83,7 +90,8 @@ class Shade(NamedTuple):
     figure: Figure | None = None
 
 
-class Arrow(NamedTuple):
+@frozen
+class Arrow:
     """A force that acts at a point: its ends, and what it is called."""
 
     tail: tuple[float, float]
@@ -110,7 +118,8 @@ class Panel(NamedTuple):
     frames: "tuple[Panel, ...]" = ()
 
 
-class Picture(NamedTuple):
+@frozen
+class Picture:
     """A picture: its word on the command line, the printed title, and a sentence that says what is seen.
 
     machine: its name; of: the cylinder, '' where there is one only; across: how many panels stand side by side;

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.frozen import frozen
 from kurbel.numerics.grid import cut_equally
 from kurbel.report.pictures.picture import Piece
 
@@ -19,7 +19,8 @@ Values = Callable[["Array", "Array"], "Array"]
 """Several quantities (k, n) in SI at crank angles (n,) in degrees, on the sides of jumps that hold `within` (n,)."""
 
 
-class Samples(NamedTuple):
+@frozen
+class Samples:
     """Quantities (k, n) at crank angles (n,), the pieces between jumps and bends one after the other."""
 
     degrees: Array

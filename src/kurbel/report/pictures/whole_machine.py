@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -69,7 +70,7 @@ def _numbered(source: Source, shades: list[Shade]) -> Iterator[Shade]:
             continue
         unit = source.unit("energy", results.lobes)
         name = Words(f"A_{owner + 1}")
-        yield shade._replace(figure=Figure(name, float(convert(lobes[owner], "energy", unit)), unit))
+        yield replace(shade, figure=Figure(name, float(convert(lobes[owner], "energy", unit)), unit))
 
 
 def torque_orders(source: Source) -> Iterator[Panel]:

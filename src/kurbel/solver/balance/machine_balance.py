@@ -1,6 +1,5 @@
 """What `kurbel balance` answers for the whole machine: free forces and moments, their orders, and the best weights."""
 
-import cmath
 import math
 from collections.abc import Callable, Sequence
 from functools import cache, cached_property, partial
@@ -176,7 +175,8 @@ class MachineBalance(Results):
     def angle_of(self, product: complex) -> float:
         """Return the direction of a weight from throw 1 in degrees, above −180 and up to 180."""
         throw = self.throws[0].weight(1.0).product
-        degrees = math.degrees(cmath.phase(product / throw))
+        turned = product / throw
+        degrees = math.degrees(math.atan2(turned.imag, turned.real))
         return degrees if degrees > _REAL - 180 else 180.0
 
     @property

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Indices
+from kurbel.frozen import frozen
 from kurbel.machine.variants import count_of
 from kurbel.solver.pressure import Setting
 
@@ -29,7 +30,8 @@ Stroke = tuple[Segment, ...]
 """The segments of one line, in the order of the process, vertical jumps left out."""
 
 
-class Process(NamedTuple):
+@frozen
+class Process:
     """What happens in a chamber during one cycle, stroke by stroke from the (firing) dead centre on.
 
     lift: what makes the pressures absolute, in Pa; clearance: smallest volume over the stroke volume. Straight segments
@@ -58,7 +60,8 @@ class Process(NamedTuple):
         return (segment.p + self.lift) * volume * growth * mean, -self.lift * way
 
 
-class Processes(NamedTuple):
+@frozen
+class Processes:
     """The process of a chamber; of many variants the different ones, and which one each has, (v,), not None."""
 
     each: tuple[Process, ...]

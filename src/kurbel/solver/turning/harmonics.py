@@ -145,15 +145,16 @@ class MachineOrders:
         """Those of every cylinder in which a force acts; one is asked for all that work alike."""
         found: dict[str, CylinderOrders] = {}
         for group in gathered(self.turned.of_cylinders, _alike):
-            own = self._own(*group[0])
+            own = self._own(group[0])
             found |= {part.forces.drive.name: CylinderOrders(part.forces, own) for part in group}
         return tuple(found[part.forces.drive.name] for part in self.turned.of_cylinders)
 
-    def _own(self, forces: CylinderForces, effort: Torque, inertia: Torque | None) -> Orders:
+    def _own(self, one: Driving) -> Orders:
         """Return the orders of a cylinder over its own crank angle."""
+        effort, inertia = one.effort, one.inertia
         rest = effort if inertia is None else Sum((1.0, effort), (-1.0, inertia))
         found = Orders(spectrum(rest, self.orders), None if inertia is None else spectrum(inertia, self.orders))
-        size, behind = found.size, forces.drive.cylinder.crank_position
+        size, behind = found.size, one.forces.drive.cylinder.crank_position
         return found.each(lambda one: one.turned(behind).cleared(size))
 
     @cached_property

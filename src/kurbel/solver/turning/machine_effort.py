@@ -3,13 +3,14 @@
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import UsageError
+from kurbel.frozen import frozen
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
@@ -24,7 +25,8 @@ _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
 
 
-class Driving(NamedTuple):
+@frozen
+class Driving:
     """A cylinder in which a force acts, its torque over the angle of crank 1, and that of its masses, if they move."""
 
     forces: CylinderForces
