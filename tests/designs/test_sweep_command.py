@@ -177,7 +177,7 @@ def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
         text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    while not (file.exists() and file.stat().st_size):
+    while process.poll() is None and not (file.exists() and file.stat().st_size):
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does, the processes that compute among them
     assert process.communicate() == (None, "")
