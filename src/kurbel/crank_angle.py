@@ -16,12 +16,14 @@ class CrankAngle(NamedTuple):
     """A crank angle, or an array of them, with its sine and cosine.
 
     degrees: angle in degrees, any size; sin, cos: of the same shape. The formulas of the mechanisms need only
-    `sin` and `cos`, which may be floats, arrays, jets or numbers of higher precision alike.
+    `sin` and `cos`, which may be floats, arrays, jets or numbers of higher precision alike. rod: (sin ψ, cos ψ) of the
+    one mechanism that is asked about these angles, where they are known: most of its formulas need them.
     """
 
     degrees: Any
     sin: Any
     cos: Any
+    rod: "tuple[Any, Any] | None" = None
 
     @classmethod
     def of(cls, degrees: "float | Array", beyond: "float | Array" = 0.0) -> "CrankAngle":
@@ -30,7 +32,7 @@ class CrankAngle(NamedTuple):
         beyond: degrees to be added that are too small to show in `degrees`: 90 and 1e-20 are an angle just beyond 90°.
 
         >>> CrankAngle.of(180.0)
-        CrankAngle(degrees=180.0, sin=0.0, cos=-1.0)
+        CrankAngle(degrees=180.0, sin=0.0, cos=-1.0, rod=None)
 
         Raises ValueError for nan or inf.
         """

@@ -1,8 +1,9 @@
 """The slider-crank in units of its crank radius: one set of formulas for every kind of number.
 
-Arguments of all functions: `sin`, `cos` of the crank angle; `lam` = R/L; `rho` = 1 − λ² (from R and L as
-(L − R)(L + R)/L², so that it keeps its digits near λ = 1). They may be floats, arrays of any shape, jets, Decimals or
-mpmath numbers; only + − × ÷ and the square root are used. The results have the shape of `sin`.
+Arguments of all functions: `sin`, `cos` of the crank angle; `kappa` = cos ψ of the rod there (`cos_rod_angle`);
+`lam` = R/L; `rho` = 1 − λ² (from R and L as (L − R)(L + R)/L², so that it keeps its digits near λ = 1). They may be
+floats, arrays of any shape, jets, Decimals or mpmath numbers; only + − × ÷ and the square root are used. The results
+have the shape of `sin`.
 
 The textbook formulas subtract nearly equal terms beside the dead centres; here every sum that can be has terms of one
 sign. Measured against mpmath for λ from 1e-12 to 1 − 1e-12: x and c within 8 ulp, also beside their zeros.
@@ -31,17 +32,17 @@ def rod_curvature(sin: Any, sin_psi: Any, cos_psi: Any, slope: Any, lam: Any) ->
     return slope * slope * (sin_psi / cos_psi) - lam * sin / cos_psi
 
 
-def displacement_factor(sin: Any, cos: Any, lam: Any, rho: Any) -> Any:
+def displacement_factor(sin: Any, cos: Any, kappa: Any, lam: Any, rho: Any) -> Any:
     """Return x/R = (1 − cos φ) + (1 − cos ψ)/λ, R 285, as a sum of positive terms.
 
-    >>> displacement_factor(1.0, 0.0, 0.0, 1.0)
+    >>> displacement_factor(1.0, 0.0, 1.0, 0.0, 1.0)
     1.0
     """
     square = sin * sin
     near = 1 + abs(cos)
     # 1 − cos φ = sin²φ/(1 + cos φ) on the inner half, where the difference would cancel
     versine = where(cos >= 0, square / near, near)
-    return versine + lam * square / (1 + cos_rod_angle(sin, cos, rho))
+    return versine + lam * square / (1 + kappa)
 
 
 def _lead(cos: Any, kappa: Any, lam: Any, rho: Any) -> Any:
@@ -50,31 +51,29 @@ def _lead(cos: Any, kappa: Any, lam: Any, rho: Any) -> Any:
     return where(cos >= 0, total, rho / total)
 
 
-def velocity_factor(sin: Any, cos: Any, lam: Any, rho: Any) -> Any:
+def velocity_factor(sin: Any, cos: Any, kappa: Any, lam: Any, rho: Any) -> Any:
     """Return c/v = T/P = sin(φ + ψ)/cos ψ, R 288, 303.
 
-    >>> velocity_factor(1.0, 0.0, 0.25, 0.9375)
+    >>> velocity_factor(1.0, 0.0, math.sqrt(0.9375), 0.25, 0.9375)
     1.0
     """
-    kappa = cos_rod_angle(sin, cos, rho)
     return sin * _lead(cos, kappa, lam, rho) / kappa
 
 
-def acceleration_factor(sin: Any, cos: Any, lam: Any, rho: Any) -> Any:
+def acceleration_factor(sin: Any, cos: Any, kappa: Any, lam: Any, rho: Any) -> Any:
     """Return b R/v² = cos(φ + ψ)/cos ψ + λ cos²φ/cos³ψ: exact, where R 291 is its first-order form.
 
     Written as cos φ (cos ψ + λ cos φ)/cos ψ − λ ρ sin²φ/cos³ψ, whose two terms have one sign for cos φ < 0.
 
-    >>> acceleration_factor(0.0, 1.0, 0.25, 0.9375)
+    >>> acceleration_factor(0.0, 1.0, 1.0, 0.25, 0.9375)
     1.25
     """
-    kappa = cos_rod_angle(sin, cos, rho)
     return cos * _lead(cos, kappa, lam, rho) / kappa - lam * rho * (sin * sin) / (kappa * kappa * kappa)
 
 
-def radial_factor(sin: Any, cos: Any, lam: Any, rho: Any) -> Any:
+def radial_factor(sin: Any, cos: Any, kappa: Any, lam: Any, rho: Any) -> Any:
     """Return D/P = cos(φ + ψ)/cos ψ, R 302."""
-    return cos - lam * (sin * sin) / cos_rod_angle(sin, cos, rho)
+    return cos - lam * (sin * sin) / kappa
 
 
 def first_order_displacement(sin: Any, cos: Any, lam: Any) -> Any:
@@ -148,4 +147,4 @@ def acceleration_dip(lam: Any, rho: Any) -> Extreme | None:
     kappa = sqrt(rho / ((1 - y) * (1 + y)))
     cos = -y * kappa / lam
     sin = sqrt((1 - cos) * (1 + cos))
-    return Extreme(where(none, math.nan, acceleration_factor(sin, cos, lam, rho)), bearing(sin, cos))
+    return Extreme(where(none, math.nan, acceleration_factor(sin, cos, kappa, lam, rho)), bearing(sin, cos))

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from kurbel.mechanisms import fan
-from kurbel.numerics.gauss import LOBATTO_10
+from kurbel.numerics.gauss import LOBATTO_9
 from kurbel.numerics.grid import Cuts, Grid
-from kurbel.numerics.search import Evaluate, Sampled, extremes, zeros
+from kurbel.numerics.search import Evaluate, OnNodes, Polynomials, Sampled, extremes, zeros
 from representative import case_of
 
-GRID = Grid(np.arange(0.0, 361.0, 45.0), LOBATTO_10)
+GRID = Grid(np.arange(0.0, 361.0, 45.0), LOBATTO_9)
 
 
 def counted(function: Evaluate, calls: list[int]) -> Evaluate:
@@ -31,8 +31,8 @@ def waves(degrees: np.ndarray, within: np.ndarray) -> dict[str, Sampled]:
     return {"sine": Sampled(sin, cos), "grown": Sampled(sin * growth, (cos - sin * np.sin(phi)) * growth)}
 
 
-def on_nodes(function: Evaluate) -> dict[str, Sampled]:
-    return {name: Sampled.on(GRID, one.value) for name, one in function(GRID.degrees, GRID.within).items()}
+def on_nodes(function: Evaluate) -> dict[str, OnNodes]:
+    return {name: Polynomials.of(GRID, one.value) for name, one in function(GRID.degrees, GRID.within).items()}
 
 
 def test_extremes_between_nodes_take_one_evaluation_or_two() -> None:
@@ -74,6 +74,6 @@ def test_what_is_flat_toward_a_dead_centre_has_its_extreme_there() -> None:
 def test_twelve_points_between_the_angles_of_a_fan_integrate_beside_a_pole(width: float) -> None:
     """1/(1 + (φ/w)²) has its poles at ±iw."""
     cuts = np.array([*fan(180.0, width), *np.arange(0.0, 361.0, 45.0)])
-    grid = Cuts(np.unique(cuts)).grid(LOBATTO_10)
+    grid = Cuts(np.unique(cuts)).grid(LOBATTO_9)
     exact = 2 * math.radians(width) * math.atan(180 / width)
     assert grid.integral(1 / (1 + ((grid.degrees - 180) / width) ** 2)) == pytest.approx(exact, rel=2e-14)

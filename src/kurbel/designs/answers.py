@@ -12,7 +12,6 @@ from kurbel.machine import Machine
 from kurbel.machine.side_by_side import Kinds, side_by_side
 from kurbel.machine.variants import Lot
 from kurbel.numerics.cycles import Unlike
-from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.guide_load import GuideLoad
 from kurbel.solver.cylinder.motion import Motion
@@ -26,7 +25,7 @@ AT_ONCE = 1000
 """Machines side by side: enough to share the overhead of one run; more would only take memory."""
 
 Values = Union[Sequence[Any], str]
-"""What a machine answers, in SI: a number, an Extreme, a tuple or None each; or why it answers nothing."""
+"""What a machine answers, in SI: a number, a tuple or None each; or why it answers nothing."""
 
 
 def answers_of(lots: Sequence[Lot], asked: Sequence[Answer], rows: Container[int] | None = None) -> dict[int, Values]:
@@ -120,7 +119,7 @@ class _Answers:
 
     def _columns(self, rows: list[int]) -> list[Any]:
         cylinders = {name: self._stack(rows, name) for name in self._names}
-        return [answered(cylinders[one.subject].answering, one.quantity) for one in self._asked]
+        return [one.part_of(answered(cylinders[one.subject].answering, one.quantity)) for one in self._asked]
 
     def _stack(self, rows: list[int], name: str) -> CylinderForces:
         places: dict[int, list[int]] = {}
@@ -143,15 +142,11 @@ class _Answers:
 
 def _listed(value: Any, count: int) -> Sequence[Any]:
     """Return the values of so many machines side by side, one by one."""
-    if isinstance(value, Extreme):
-        return Extreme.each(*(_listed(part, count) for part in value))
     if value is None or isinstance(value, tuple):
-        each = isinstance(value, tuple) and len(value) == count and all(isinstance(one, tuple) for one in value)
-        return value if each else [value] * count  # type: ignore[return-value]
+        return value if value and isinstance(value[0], tuple) else [value] * count
     return value.tolist() if np.ndim(value) else [float(value)] * count
 
 
 def _is_finite(value: Any) -> Any:
     """Return whether a value, or that of every machine, can be told."""
-    number = number_of(value)
-    return number is None or isinstance(number, tuple) or np.isfinite(number)
+    return value is None or isinstance(value, tuple) or np.isfinite(value)

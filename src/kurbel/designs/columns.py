@@ -12,7 +12,7 @@ from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
-from kurbel.numerics.extreme import number_of
+from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.solver.case import Case
 
 SIDE_BY_SIDE = ("forces", "motion")
@@ -22,13 +22,25 @@ SIDE_BY_SIDE = ("forces", "motion")
 class Answer(NamedTuple):
     """A key value of a command; subject: whose it is, as the report of that command names it.
 
-    alone: it was asked of this subject alone, `LP.c_max`.
+    alone: it was asked of this subject alone, `LP.c_max`; angle: where an extreme stands, not its size.
     """
 
     quantity: Quantity
     command: str
     subject: str
     alone: bool = False
+    angle: bool = False
+
+    @property
+    def kind(self) -> str:
+        """Of which kind it is, which decides the unit."""
+        return "angle" if self.angle else self.quantity.kind
+
+    def part_of(self, found: Any) -> Any:
+        """Return of a value what is asked: a number, a tuple or None."""
+        if self.angle:
+            return found.degrees if isinstance(found, Extreme) else None
+        return number_of(found)
 
     @property
     def of_cylinder(self) -> bool:
@@ -94,20 +106,18 @@ def _has(subject: Any, quantity: Quantity) -> bool:
 
 
 def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
-    """Return the values of a machine alone, in SI, an Extreme, a tuple or None; raises KurbelError."""
+    """Return the values of a machine alone, in SI, a number, a tuple or None; raises KurbelError."""
     case = Case(machine)
     known: dict[tuple[str, str], Any] = {}
     for command in dict.fromkeys(one.command for one in answers):
         known |= {(command, subject.name): subject for subject in subjects(case, command)}
-    found = [_checked(known.get((one.command, one.subject)), one.quantity) for one in answers]
-    return found
+    return [_checked(known.get((one.command, one.subject)), one) for one in answers]
 
 
-def _checked(subject: Any, quantity: Quantity) -> Any:
+def _checked(subject: Any, asked: Answer) -> Any:
     from kurbel.report.shown import too_large
 
-    value = subject.answer(quantity) if subject else None
-    number = number_of(value)
-    if number is not None and not np.isfinite(number).all():
-        raise too_large(quantity)
+    value = asked.part_of(subject.answer(asked.quantity)) if subject else None
+    if value is not None and not np.isfinite(value).all():
+        raise too_large(asked.quantity)
     return value

@@ -16,7 +16,6 @@ from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot
-from kurbel.numerics.extreme import Extreme, number_of
 
 CHUNK = 200
 """Rows that are computed together: what memory holds at once, and what a run computes anew that begins amid them."""
@@ -82,7 +81,8 @@ class Sweep:
         self.rows = self.plan.rows
         self._binder = self._started()
         machine = self._binder.machine
-        self.asked = asked_answers(machine, spec.columns)
+        asked = asked_answers(machine, spec.columns)
+        self.asked = tuple(part for one in asked for part in (_with_angle(one) if spec.with_angles else (one,)))
         self._limits = tuple(_limit_answers(machine))
         self.limited = bool(machine.limits)
 
@@ -102,14 +102,12 @@ class Sweep:
     @cached_property
     def heads(self) -> tuple[Head, ...]:
         """What stands over the values."""
-        ids = [one.quantity.id for one in self.asked]
+        ids = [one.quantity.id for one in self.asked if not one.angle]
         heads = [self._input_head(number, one) for number, one in enumerate(self.plan.inputs)]
         for one, unit in zip(self.asked, self._units):
             owned = one.alone or ids.count(one.quantity.id) > 1
             name = f"{one.subject}.{one.quantity.id}" if owned else one.quantity.id
-            heads.append(Head(name, unit, False, one.quantity.kind))
-            if self._has_angle(one):
-                heads.append(Head(f"{name}_at", "deg", False, "angle"))
+            heads.append(Head(f"{name}_at" if one.angle else name, unit, False, one.kind))
         return tuple(heads)
 
     def _input_head(self, number: int, one: Input) -> Head:
@@ -117,19 +115,14 @@ class Sweep:
         first = _in_base([self.plan.texts(0)[number]], kind)[0] or 0.0
         return Head(one.key, shown_unit(kind, self.spec.system, first) if kind else "", True, kind)
 
-    def _has_angle(self, one: Answer) -> bool:
-        return self.spec.with_angles and bool(one.quantity.asks[:1] == ("extremes_of",) or one.quantity.id in _AT)
-
     @cached_property
     def _units(self) -> tuple[str, ...]:
         """Units of the answers, from the sizes that the first machine has."""
         if self.spec.system == "si":
-            return tuple(SI[one.quantity.kind] for one in self.asked)
+            return tuple(SI[one.kind] for one in self.asked)
         first = answers_of([Lot(self._binder.machine, (0,))], self.asked)[0]
         sizes = [0.0] * len(self.asked) if isinstance(first, str) else map(_size, first)
-        return tuple(
-            shown_unit(one.quantity.kind, self.spec.system, size) for one, size in zip(self.asked, sizes, strict=True)
-        )
+        return tuple(shown_unit(one.kind, self.spec.system, size) for one, size in zip(self.asked, sizes, strict=True))
 
     def chunk(self, company: range, wanted: range) -> list[Row]:
         """Return the wanted rows of a chunk, counted from 0."""
@@ -162,20 +155,13 @@ class Sweep:
     def _values(self, found: Sequence[Sequence[Any]]) -> Iterable[tuple[Any, ...]]:
         """Return what stands under the heads of the answers, row by row, of the answers (rows, asked) in SI."""
         columns = zip(self.asked, self._units, zip(*found))
-        return zip(*(part for one, unit, column in columns for part in self._shown(one, unit, column)))
-
-    def _shown(self, one: Answer, unit: str, column: Sequence[Any]) -> Iterator[list[Any]]:
-        kind = one.quantity.kind
-        yield [_in_unit(number_of(value), kind, unit) for value in column]
-        if self._has_angle(one):
-            yield [value.degrees if isinstance(value, Extreme) else None for value in column]
+        return zip(*([_in_unit(value, one.kind, unit) for value in column] for one, unit, column in columns))
 
     def _broken(self, found: Sequence[Any]) -> str:
         from kurbel.report.compared import breaks
 
         for (answer, bound), value in zip(self._limits, found, strict=True):
-            number = number_of(value)
-            if number is not None and breaks(answer.quantity, bound, number):
+            if value is not None and breaks(answer.quantity, bound, value):
                 return answer.quantity.id
         return ""
 
@@ -199,6 +185,13 @@ class Sweep:
 
 
 _AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")
+
+
+def _with_angle(one: Answer) -> Iterator[Answer]:
+    """Yield a key value, and of an extreme the angle where it stands."""
+    yield one
+    if one.quantity.asks[:1] == ("extremes_of",) or one.quantity.id in _AT:
+        yield one._replace(angle=True)
 
 
 def _as_varied(message: str, texts: Iterable[tuple[str, str]]) -> str:
@@ -237,8 +230,7 @@ def _in_unit(number: Any, kind: str, unit: str) -> Any:
 
 
 def _size(value: Any) -> float:
-    number = number_of(value)
-    return max(map(abs, number), default=0.0) if isinstance(number, tuple) else abs(number or 0.0)
+    return max(map(abs, value), default=0.0) if isinstance(value, tuple) else abs(value or 0.0)
 
 
 def _limit_answers(machine: Machine) -> Iterable[tuple[Answer, float]]:

@@ -25,7 +25,6 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.given import tree_of
 from kurbel.machine_file.positions import located
-from kurbel.numerics.extreme import number_of
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
 
@@ -159,8 +158,7 @@ def _shares(squares: Any) -> tuple[float, ...]:
 
 
 def _float(value: Any) -> float:
-    number = number_of(value)
-    return number if isinstance(number, (int, float)) else math.nan
+    return value if isinstance(value, (int, float)) else math.nan
 
 
 def _of_each(keys: Iterable[str], told: Callable[[str], Found], wrong: dict[str, str]) -> dict[str, Found]:

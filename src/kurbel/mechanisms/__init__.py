@@ -271,20 +271,20 @@ def check_lengths(**lengths: float | None) -> None:
 def fan(centre: Any, width: Any) -> tuple[Any, ...]:
     """Return angles in degrees that stand ever wider on both sides of a bend of this half width (degrees) at `centre`.
 
-    So far from the real axis is the pole that makes it; what ten points between two of these angles integrate is
+    So far from the real axis is the pole that makes it; what nine points between two of these angles integrate is
     exact, and without any where the bend is wide. Of arrays, angles of which some have fewer are nan there.
 
-    >>> fan(180.0, 20.0)
-    (180.0, 170.0, 190.0, 162.5, 197.5, 149.375, 210.625, 126.40625, 233.59375)
+    >>> fan(180.0, 40.0)
+    (180.0, 160.0, 200.0, 148.0, 212.0, 128.8, 231.2)
     >>> fan(180.0, 80.0)
     ()
     """
     angles: list[Any] = []
     width = 0.5 * width
     bends = (width > 0) & (width < 36)
-    while some(narrow := bends & (width < 84)):  # then pieces of 36 are as narrow
+    while some(narrow := bends & (width < 72)):  # then pieces of 36 are as narrow
         apart = where(narrow, width, float("nan"))
         angles = angles or [centre + 0.0 * apart]
         angles += [centre - apart, centre + apart]
-        width = width * 1.75
+        width = width * 1.6
     return tuple(angles)

@@ -180,6 +180,8 @@ class SliderCrank(Mechanism):
 
     def rod_angle(self, angle: CrankAngle) -> tuple[Any, Any]:
         """Return (sin ψ, cos ψ) with sin ψ = (R sin φ − e)/L."""
+        if angle.rod is not None:
+            return angle.rod
         if self._straight:
             return self.lam * angle.sin, formulas.cos_rod_angle(angle.sin, angle.cos, self.rho)
         lam, (beyond, within) = self.lam, self._gaps
@@ -219,10 +221,14 @@ class SliderCrank(Mechanism):
             across=(0.0, -1.0),
         )
 
+    def _known(self, angle: CrankAngle) -> tuple[Any, Any, Any, Any, Any]:
+        """Return what the formulas for R = 1 take."""
+        return angle.sin, angle.cos, self.rod_angle(angle)[1], self.lam, self.rho
+
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0."""
         if self._straight:
-            return self.crank * formulas.displacement_factor(angle.sin, angle.cos, self.lam, self.rho)
+            return self.crank * formulas.displacement_factor(*self._known(angle))
         start = CrankAngle.of(self.dead_centres()[0])
         sin_start, cos_start = (value for value in self.rod_angle(start))
         sin_psi, cos_psi = self.rod_angle(angle)
@@ -238,14 +244,14 @@ class SliderCrank(Mechanism):
     def slope(self, angle: CrankAngle) -> Any:
         """Return dx/dφ = R sin(φ+ψ)/cos ψ in m, R 288."""
         if self._straight:
-            return self.crank * formulas.velocity_factor(angle.sin, angle.cos, self.lam, self.rho)
+            return self.crank * formulas.velocity_factor(*self._known(angle))
         sin_psi, cos_psi = self.rod_angle(angle)
         return self.crank * (angle.sin + angle.cos * sin_psi / cos_psi)
 
     def curvature(self, angle: CrankAngle) -> Any:
         """Return d²x/dφ² = R [cos(φ+ψ)/cos ψ + λ cos²φ/cos³ψ] in m."""
         if self._straight:
-            return self.crank * formulas.acceleration_factor(angle.sin, angle.cos, self.lam, self.rho)
+            return self.crank * formulas.acceleration_factor(*self._known(angle))
         sin_psi, cos_psi = self.rod_angle(angle)
         bend = self.lam * (angle.cos * angle.cos) / (cos_psi * cos_psi * cos_psi)
         return self.crank * (angle.cos - angle.sin * sin_psi / cos_psi + bend)

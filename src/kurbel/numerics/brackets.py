@@ -22,17 +22,47 @@ class Sampled(NamedTuple):
         value, slope = getattr(jet, "value", jet), getattr(jet, "slope", 0.0)
         return cls(np.broadcast_to(value, shape), np.broadcast_to(slope, shape))
 
-    @classmethod
-    def on(cls, grid: Grid, value: Any) -> "Sampled":
-        """Return values at the nodes of a grid with the slopes of the polynomials through them."""
-        value = np.broadcast_to(value, grid.shape)
-        return cls(value, grid.slopes(value))
+    def on(self, grid: Grid, pieces: Indices) -> "Sampled":
+        """Return those at the nodes of these pieces (n,) of a grid."""
+        return Sampled(*(part.T.take(pieces, axis=1).T for part in self))
 
+    def reach(self, grid: Grid, high: Array, low: Array) -> Array:
+        """Return by what values between the nodes may pass the highest and lowest of those at the nodes, (pieces,).
+
+        Slope times width is four times what a parabola with these slopes rises above its ends.
+        """
+        steepest = np.maximum(self.slope.max(axis=1), -self.slope.min(axis=1))
+        return np.asarray(steepest * (grid.half_widths * grid.gaps.max()))
+
+
+class Polynomials(NamedTuple):
+    """Values of one quantity at the nodes of a grid, (pieces, nodes); the polynomials through them have its slopes."""
+
+    value: Array
+
+    @classmethod
+    def of(cls, grid: Grid, value: Any) -> "Polynomials":
+        """Return them of values at the nodes of a grid, or of what does not change."""
+        return cls(np.broadcast_to(value, grid.shape))
+
+    def on(self, grid: Grid, pieces: Indices) -> Sampled:
+        """Return values and slopes at the nodes of these pieces (n,) of a grid."""
+        value = self.value.T.take(pieces, axis=1).T
+        return Sampled(value, grid.slopes(value, pieces))
+
+    def reach(self, grid: Grid, high: Array, low: Array) -> Array:
+        """Return by what values between the nodes may pass the highest and lowest of those at the nodes, (pieces,)."""
+        return np.asarray(grid.overshoot * (high - low))
+
+
+OnNodes = Sampled | Polynomials
+"""A quantity at the nodes of a grid, with slopes of its own, which may tell of a pole beside a piece, or without."""
 
 Evaluate = Callable[["Array", "Array"], "dict[str, Sampled]"]
 """Quantities at any (degrees, within), each (n,). Of many variants it has `of(variant (n,))`: the same of those.
 
-It may have `inside(within)`: what it takes in their place, so that what all angles in a piece share is found once.
+It may have `inside(grid, piece (n,))`: what it takes in place of `within`, so that what all angles in a piece share is
+found once.
 """
 
 
@@ -40,31 +70,34 @@ class Rows(NamedTuple):
     """Pieces of several quantities, those of one after those of another: what is searched of them is searched at once.
 
     owner, piece: number of the quantity and of the piece, (n,); value, slope: at the nodes, (n, nodes), node by node in
-    memory; worth: which intervals between two nodes are worth a search, (n, nodes − 1).
+    memory; levels: the values that are searched for, (levels, n), nan where none is; None: every turning point is.
     """
 
     owner: Indices
     piece: Indices
     value: Array
     slope: Array
-    worth: Any = True
+    levels: Array | None = None
 
     @classmethod
-    def of(cls, samples: Iterable[Sampled], chosen: Flags) -> "Rows":
+    def of(cls, grid: Grid, samples: Sequence[OnNodes], chosen: Flags) -> "Rows":
         """Return the pieces for which a flag (quantities, pieces) is set."""
         parts = [np.flatnonzero(own) for own in chosen]
-        values, slopes = (
-            np.concatenate([one.T.take(rows, axis=1) for one, rows in zip(part, parts)], axis=1).T
-            for part in zip(*samples)
-        )
-        owner = np.repeat(np.arange(len(parts)), [len(rows) for rows in parts])
+        found = zip(*(one.on(grid, pieces) for one, pieces in zip(samples, parts)))
+        values, slopes = (np.concatenate([one.T for one in part], axis=1).T for part in found)
+        owner = np.repeat(np.arange(len(parts)), [len(pieces) for pieces in parts])
         return cls(owner, np.concatenate(parts), values, slopes)
 
-    def between_nodes(self, grid: Grid) -> tuple[Array, Array, Array]:
-        """Return values at both ends of the intervals, and what those between may differ by, (n, nodes − 1)."""
-        slope = np.abs(self.slope)
-        rise = np.maximum(slope[:, :-1], slope[:, 1:]) * grid.half_widths[self.piece, None] * grid.gaps
-        return self.value[:, :-1], self.value[:, 1:], rise
+    def worth(self, grid: Grid, places: Indices, nodes: Indices) -> Flags:
+        """Return which of these intervals (k,) may reach a level; places: of the rows, nodes: those before."""
+        if self.levels is None:
+            return np.ones(len(places), dtype=bool)
+        before, after = self.value[places, nodes], self.value[places, nodes + 1]
+        slope = np.maximum(np.abs(self.slope[places, nodes]), np.abs(self.slope[places, nodes + 1]))
+        rise = slope * grid.half_widths[self.piece[places]] * grid.gaps[nodes]
+        levels = self.levels[:, places]
+        reached = (np.maximum(before, after) + rise >= levels) & (np.minimum(before, after) - rise <= levels)
+        return np.asarray(reached.any(axis=0))
 
 
 class Brackets(NamedTuple):
@@ -87,18 +120,14 @@ class Brackets(NamedTuple):
         return cls(*map(np.concatenate, zip(*parts, strict=True)))
 
 
-def _ranges(grid: Grid, samples: Iterable[Sampled]) -> tuple[Array, Array, Array]:
+def ranges(grid: Grid, samples: Iterable[OnNodes]) -> tuple[Array, Array, Array]:
     """Return largest and smallest values at the nodes of pieces, and what those between may differ by from these.
 
-    Each is (quantities, pieces). Slope times width is four times what a parabola with these slopes rises above its
-    ends.
+    Each is (quantities, pieces).
     """
-    found = [
-        (value.max(axis=1), value.min(axis=1), np.maximum(slope.max(axis=1), -slope.min(axis=1)))
-        for value, slope in samples
-    ]
-    high, low, steepest = map(np.stack, zip(*found))
-    return high, low, steepest * (grid.half_widths * grid.gaps.max())
+    ends = [(one, one.value.max(axis=1), one.value.min(axis=1)) for one in samples]
+    high, low, reach = map(np.stack, zip(*((high, low, one.reach(grid, high, low)) for one, high, low in ends)))
+    return high, low, reach
 
 
 _FLAT = 32 * np.finfo(float).eps
@@ -107,33 +136,27 @@ REPEATED = 64 * np.finfo(float).eps
 """By which, beside the largest value, equal summits of a curve differ that is summed over cylinders and the cycle."""
 
 
-def may_be_extreme(grid: Grid, samples: Sequence[Sampled]) -> Rows:
+def may_be_extreme(grid: Grid, samples: Sequence[OnNodes]) -> Rows:
     """Return where quantities may pass all nodes of their variant; of each at least one row."""
-    high, low, reach = _ranges(grid, samples)
+    high, low, reach = ranges(grid, samples)
     top, bottom = np.maximum.reduceat(high, grid.first, axis=1), np.minimum.reduceat(low, grid.first, axis=1)
     slack = REPEATED * np.maximum(np.abs(top), np.abs(bottom))
     within = (high + reach < grid.of_each(top - slack)) & (low - reach > grid.of_each(bottom + slack))
-    rows = Rows.of(samples, ~within)  # what is no number, too
-    at = rows.owner, rows.piece
+    rows = Rows.of(grid, samples, ~within)  # what is no number, too
+    at, variant = (rows.owner, rows.piece), (rows.owner, grid.number[rows.piece])
     varies = reach[at] > _FLAT * np.maximum(high[at], -low[at])
-    before, after, rise = rows.between_nodes(grid)
-    variant = rows.owner, grid.number[rows.piece]
-    above = np.maximum(before, after) + rise >= top[variant][:, None]
-    below = np.minimum(before, after) - rise <= bottom[variant][:, None]
-    return rows._replace(worth=(above | below) & varies[:, None])
+    return rows._replace(levels=np.where(varies, (top[variant], bottom[variant]), np.nan))
 
 
-def everywhere(grid: Grid, samples: Sequence[Sampled]) -> Rows:
-    """Return every piece, with every interval worth a search."""
-    return Rows.of(samples, np.ones((len(samples), len(grid.low)), dtype=bool))
+def everywhere(grid: Grid, samples: Sequence[OnNodes]) -> Rows:
+    """Return every piece."""
+    return Rows.of(grid, samples, np.ones((len(samples), len(grid.low)), dtype=bool))
 
 
-def may_be_zero(grid: Grid, samples: Sequence[Sampled]) -> Rows:
-    """Return where quantities may reach zero, and turn back or not."""
-    high, low, reach = _ranges(grid, samples)
-    rows = Rows.of(samples, (low <= reach) & (high >= -reach))
-    before, after, rise = rows.between_nodes(grid)
-    return rows._replace(worth=np.minimum(np.abs(before), np.abs(after)) <= rise)
+def may_be_zero(grid: Grid, samples: Sequence[OnNodes], high: Array, low: Array, reach: Array) -> Rows:
+    """Return where quantities of these `ranges` may reach zero, and turn back or not."""
+    rows = Rows.of(grid, samples, (low <= reach) & (high >= -reach))
+    return rows._replace(levels=np.zeros((1, len(rows.owner))))
 
 
 def slope_brackets(grid: Grid, rows: Rows, evaluate: Evaluate) -> Brackets:
@@ -152,8 +175,8 @@ def slope_brackets(grid: Grid, rows: Rows, evaluate: Evaluate) -> Brackets:
 def _crossing(grid: Grid, rows: Rows) -> Brackets:
     before, after = rows.slope[:, :-1], rows.slope[:, 1:]
     # a zero at a node counts for the interval that it ends, so that it is found once
-    once = (((before < 0) & (after >= 0)) | ((before > 0) & (after <= 0))) & rows.worth
-    return _between(grid, rows, *_set(once))
+    once = ((before < 0) & (after >= 0)) | ((before > 0) & (after <= 0))
+    return _between(grid, rows, *_worth(grid, rows, once))
 
 
 def _dips(grid: Grid, rows: Rows) -> tuple[Brackets, Array]:
@@ -164,8 +187,8 @@ def _dips(grid: Grid, rows: Rows) -> tuple[Brackets, Array]:
     bends = grid.slopes(rows.slope, rows.piece)
     ends = (part[:, side] for part in (rows.slope, bends) for side in (slice(-1), slice(1, None)))
     low, high, bend, next_bend = ends
-    toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0) & rows.worth
-    places, nodes = _set(toward)
+    toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0)
+    places, nodes = _worth(grid, rows, toward)
     low, high, bend, next_bend = (part[places, nodes] for part in (low, high, bend, next_bend))
     width = grid.half_widths[rows.piece[places]] * grid.gaps[nodes]
     lowest = low + bend * (high - low - next_bend * width) / (bend - next_bend)
@@ -174,10 +197,11 @@ def _dips(grid: Grid, rows: Rows) -> tuple[Brackets, Array]:
     return _between(grid, rows, places[beyond], nodes[beyond]), share[beyond]
 
 
-def _set(flags: Flags) -> tuple[Indices, Indices]:
-    """Return in which rows and at which nodes flags (n, nodes) are set, which lie node by node in memory."""
+def _worth(grid: Grid, rows: Rows, flags: Flags) -> tuple[Indices, Indices]:
+    """Return in which rows and after which nodes flags (n, nodes − 1) are set of intervals that are worth a search."""
     nodes, places = np.divmod(np.flatnonzero(flags.T), len(flags))
-    return places, nodes
+    worth = rows.worth(grid, places, nodes)
+    return places[worth], nodes[worth]
 
 
 def _between(grid: Grid, rows: Rows, places: Indices, nodes: Indices) -> Brackets:
@@ -190,9 +214,7 @@ def at_brackets(grid: Grid, rows: Rows, brackets: Brackets, evaluate: Evaluate) 
     """Return what gives values and slopes of the quantities of brackets (n,) at angles (n,) in degrees inside them."""
     owner, piece = rows.owner[brackets.place], rows.piece[brackets.place]
     asked: Any = evaluate if grid.variant is None else evaluate.of(grid.variant[piece])  # type: ignore[attr-defined]
-    within: Any = grid.within[piece, 0]
-    if hasattr(asked, "inside"):
-        within = asked.inside(within)
+    within: Any = asked.inside(grid, piece) if hasattr(asked, "inside") else grid.within[piece, 0]
 
     def at(degrees: Array) -> Sampled:
         every = zip(*asked(degrees, within).values())

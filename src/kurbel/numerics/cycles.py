@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices
-from kurbel.numerics.gauss import LOBATTO_10
+from kurbel.numerics.gauss import LOBATTO_9
 from kurbel.numerics.grid import SAME, Grid, Pieces, narrow
 
 
@@ -75,7 +75,7 @@ class Cycles(Grid):
 
     def __init__(self, breaks: Flat, cycle: float) -> None:
         self.variant, low = breaks
-        Pieces.__init__(self, low, _ends(breaks, cycle), LOBATTO_10)
+        Pieces.__init__(self, low, _ends(breaks, cycle), LOBATTO_9)
         self.cycle = cycle
 
     @cached_property

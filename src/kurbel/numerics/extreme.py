@@ -1,7 +1,5 @@
 """An extreme: the value and where it stands."""
 
-from collections.abc import Iterable
-from itertools import repeat
 from typing import Any, NamedTuple
 
 from kurbel.numerics.arithmetic import where
@@ -16,12 +14,6 @@ class Extreme(NamedTuple):
 
     value: float
     degrees: float
-
-    @classmethod
-    def each(cls, values: Iterable[float], degrees: Iterable[float]) -> "list[Extreme]":
-        """Return the extremes of many variants, one by one."""
-        # of a sweep's answers these are the most: a call of the class for each takes twice as long
-        return list(map(tuple.__new__, repeat(cls), zip(values, degrees)))
 
 
 def number_of(answer: Any) -> Any:

@@ -15,12 +15,11 @@ HALF_RULE = (
 )
 """Nodes and weights on (−1, 1), the positive half; the rule is symmetric."""
 
-_HALF_LOBATTO_10 = (
-    (0.16527895766638703, 0.32753976118389744),
-    (0.4779249498104445, 0.2920426836796838),
-    (0.738773865105505, 0.22488934206312644),
-    (0.9195339081664589, 0.13330599085107012),
-    (1.0, 0.022222222222222223),
+_HALF_LOBATTO_9 = (
+    (0.36311746382617816, 0.34642851097304633),
+    (0.6771862795107377, 0.2745387125001617),
+    (0.8997579954114602, 0.16549536156080552),
+    (1.0, 0.027777777777777776),
 )
 
 _HALF_LOBATTO_16 = (
@@ -35,15 +34,17 @@ _HALF_LOBATTO_16 = (
 )
 
 
-def _whole(half: tuple[tuple[float, float], ...]) -> Rule:
+def _whole(half: tuple[tuple[float, float], ...], middle: tuple[float, ...] = ()) -> Rule:
+    """Return a rule by its positive half; middle: the weight of its node 0, where it has one."""
     nodes, weights = (tuple(column) for column in zip(*half, strict=True))
-    return (*(-node for node in reversed(nodes)), *nodes), (*reversed(weights), *weights)
+    centre = (0.0,) * len(middle)
+    return (*(-node for node in reversed(nodes)), *centre, *nodes), (*reversed(weights), *middle, *weights)
 
 
 GAUSS = _whole((*HALF_RULE, (1.0, 0.0)))
 """16 points of Gauss, and both ends with the weight 0."""
 LOBATTO_16 = _whole(_HALF_LOBATTO_16)
-LOBATTO_10 = _whole(_HALF_LOBATTO_10)
-"""Both ends included: exact for polynomials of degree 17."""
+LOBATTO_9 = _whole(_HALF_LOBATTO_9, (0.37151927437641724,))
+"""Both ends included: exact for polynomials of degree 15."""
 LOBATTO_4 = (-1.0, -0.4472135954999579, 0.4472135954999579, 1.0), (1 / 6, 5 / 6, 5 / 6, 1 / 6)
 """Both ends included: exact for polynomials of degree 5."""

@@ -152,6 +152,12 @@ class Grid(Pieces):
         return np.asarray(matrix)
 
     @cached_property
+    def overshoot(self) -> float:
+        """By what share of their range the polynomials through values at the nodes may pass these between the nodes."""
+        shares = _interpolation(self.nodes, (self.nodes[1:] + self.nodes[:-1]) / 2)
+        return -float(np.minimum(shares, 0.0).sum(axis=1).min())
+
+    @cached_property
     def coefficients(self) -> Array:
         """What turns values at the nodes into coefficients of their polynomial on −1 … 1, from the highest power on."""
         return np.linalg.inv(np.vander(self.nodes))
@@ -227,7 +233,7 @@ class Cuts(NamedTuple):
     """Where a cycle is cut into smooth pieces, both in degrees from 0 to its end.
 
     smooth: ascending, so dense toward a pole beside the real axis that on every piece, none being wider than 36°, the
-    polynomial through sixteen points is exact, and the integral of that through ten. jumps: further angles at which
+    polynomial through sixteen points is exact, and the integral of that through nine. jumps: further angles at which
     something bends or jumps, be they thousands.
     """
 

@@ -1,6 +1,6 @@
 """Searches over a cycle: the exact extremes between the nodes of a grid, and the exact zeros between the extremes."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,26 +14,45 @@ from kurbel.numerics.brackets import (
     everywhere,
     may_be_extreme,
     may_be_zero,
+    ranges,
     roots,
     slope_brackets,
 )
 from kurbel.numerics.brackets import Evaluate as Evaluate
+from kurbel.numerics.brackets import OnNodes as OnNodes
+from kurbel.numerics.brackets import Polynomials as Polynomials
 from kurbel.numerics.brackets import Sampled as Sampled
 from kurbel.numerics.extreme import Extreme, chosen
 from kurbel.numerics.grid import Grid
 
+Samples = Mapping[str, OnNodes]
+"""Quantities at the nodes of a grid, by their names."""
 _ROUNDING = 8 * np.finfo(float).eps
 """What is no larger than this beside the largest value of its quantity is rounding and has no sign."""
 _ALIKE = 4 * np.finfo(float).eps
 """By which values beside each other differ that are one but for rounding."""
 
 
+class Turns(NamedTuple):
+    """Where quantities turn round between two nodes: place of the row, node before, angle, value, (n,)."""
+
+    place: Indices
+    node: Indices
+    degrees: Array
+    value: Array
+
+    def at(self, which: Flags) -> "Turns":
+        """Return those for which a flag (n,) is set."""
+        parts: list[Any] = [part[which] for part in self]
+        return Turns(*parts)
+
+
 class Curve(NamedTuple):
     """One quantity over the cycle, each (n,): nodes of a grid, and every angle between them where it turns round.
 
     They stand in order; between neighbouring angles of one piece, told by its row, it only rises or only falls.
-    first: (v,) where each variant begins; turning: (k,) which of them are no nodes; at_nodes: (pieces, nodes) values at
-    all nodes of the grid.
+    first: (v,) where each variant begins; turns: those that are no nodes; at_nodes: (pieces, nodes) values at all nodes
+    of the grid.
     """
 
     degrees: Array
@@ -41,7 +60,7 @@ class Curve(NamedTuple):
     value: Array
     first: Indices
     grid: Grid
-    turning: Indices
+    turns: Turns
     at_nodes: Array
 
     def less(self, value: float) -> "Curve":
@@ -56,7 +75,7 @@ class Curve(NamedTuple):
     @property
     def peaks(self) -> tuple[Array, Array]:
         """Angles (k,) between the nodes at which it turns round, and the middles of their pieces."""
-        return self.degrees[self.turning], self.within[self.turning]
+        return self.turns.degrees, self.grid.within[self.turns.place, 0]
 
     @property
     def following(self) -> Indices:
@@ -84,74 +103,70 @@ class Extremes(NamedTuple):
         return chosen(where(alike, low.degrees < high.degrees, low.value > high.value), low, high)
 
 
-def extremes(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dict[str, Extremes]:
+def extremes(grid: Grid, samples: Samples, evaluate: Evaluate) -> dict[str, Extremes]:
     """Return the exact extremes of several quantities over the grid, one-sided values at its breaks included.
 
     samples: the quantities on the grid, (pieces, nodes).
     """
     rows = may_be_extreme(grid, list(samples.values()))
-    found = _ends(_extreme_pieces(grid, rows, _turning_points(grid, rows, evaluate)))
+    found = _ends(grid, rows, _turning_points(grid, rows, evaluate))
     count = len(grid.first)
     parts = (slice(number * count, (number + 1) * count) for number in range(len(samples)))
     return {name: _told(grid, found, part) for name, part in zip(samples, parts)}
 
 
-def zeros(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
-    """Return the angles of `sign_changes` of quantities of which no extremes are wanted."""
-    rows = may_be_zero(grid, list(samples.values()))
-    return sign_changes(grid, _curves(grid, samples, evaluate, rows), evaluate, size)
+def zeros(grid: Grid, samples: Samples, evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
+    """Return the angles of `sign_changes` of quantities of which no extremes are wanted.
+
+    size: beside which values are rounding, the largest one of a quantity if it is not given.
+    """
+    high, low, reach = ranges(grid, samples.values())
+    rows = may_be_zero(grid, list(samples.values()), high, low, reach)
+    largest = np.maximum.reduceat(np.maximum(high, -low), grid.first, axis=1)
+    sizes = largest if size is None else np.full_like(largest, size)
+    return sign_changes(grid, _curves(grid, samples, evaluate, rows, _ROUNDING * sizes), evaluate, sizes)
 
 
-def curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate) -> dict[str, Curve]:
+def curves(grid: Grid, samples: Samples, evaluate: Evaluate) -> dict[str, Curve]:
     """Return several quantities as curves.
 
     samples: the quantities on the grid, (pieces, nodes).
     """
-    return _curves(grid, samples, evaluate, everywhere(grid, list(samples.values())))
+    noise = np.full((len(samples), len(grid.first)), np.inf)
+    return _curves(grid, samples, evaluate, everywhere(grid, list(samples.values())), noise)
 
 
-def _curves(grid: Grid, samples: dict[str, Sampled], evaluate: Evaluate, rows: Rows) -> dict[str, Curve]:
-    """Return several quantities as curves; of intervals that are not worth a search only the ends of their piece."""
+def _curves(grid: Grid, samples: Samples, evaluate: Evaluate, rows: Rows, noise: Array) -> dict[str, Curve]:
+    """Return several quantities as curves; of pieces that have one sign only the beginning.
+
+    noise: what is no larger has no sign, of the quantities of every variant.
+    """
     turns = _turning_points(grid, rows, evaluate)
-    owner, piece = rows.owner[turns.place], rows.piece[turns.place]
+    unsigned = noise[rows.owner, grid.number[rows.piece]]
+    whole = (rows.value.min(axis=1) <= unsigned) & (rows.value.max(axis=1) >= -unsigned)
+    whole[turns.place] = True
     found = {}
     for number, (name, sampled) in enumerate(samples.items()):
-        kept = np.zeros(sampled.value.shape, dtype=bool)
-        kept[:, 0] = kept[:, -1] = True
-        mine = rows.owner == number
-        beside = np.broadcast_to(rows.worth, (len(mine), len(grid.gaps)))[mine]
-        kept[rows.piece[mine], :-1] |= beside
-        kept[rows.piece[mine], 1:] |= beside
-        nodes, own = len(grid.nodes), owner == number
-        row, node = np.divmod(np.flatnonzero(kept), nodes)
-        into = np.searchsorted(row * nodes + node, piece[own] * nodes + turns.node[own]) + 1
-        at_nodes = grid.degrees[row, node], row, sampled.value[row, node]
-        degrees, row, value, turning = _inserted(at_nodes, into, (turns.degrees[own], piece[own], turns.value[own]))
-        found[name] = Curve(degrees, row, value, np.searchsorted(row, grid.first), grid, turning, sampled.value)
+        own = turns.at(rows.owner[turns.place] == number)
+        own = own._replace(place=rows.piece[own.place])
+        counts = np.ones(len(grid.low), dtype=np.intp)
+        counts[rows.piece[whole & (rows.owner == number)]] = len(grid.nodes)
+        begins = np.cumsum(counts) - counts
+        row = np.repeat(np.arange(len(counts)), counts)
+        place = (np.arange(len(row)) - begins[row]) * len(counts) + row  # node by node
+        at_nodes = grid.degrees.T.take(place), row, sampled.value.T.take(place)
+        degrees, row, value = _inserted(at_nodes, begins[own.place] + own.node + 1, (own.degrees, own.place, own.value))
+        found[name] = Curve(degrees, row, value, np.searchsorted(row, grid.first), grid, own, sampled.value)
     return found
 
 
-class _Turns(NamedTuple):
-    """Where quantities turn round between two nodes: place of the row, node before, angle, value, (n,)."""
-
-    place: Indices
-    node: Indices
-    degrees: Array
-    value: Array
-
-    def at(self, which: Flags) -> "_Turns":
-        """Return those for which a flag (n,) is set."""
-        parts: list[Any] = [part[which] for part in self]
-        return _Turns(*parts)
-
-
-def _turning_points(grid: Grid, rows: Rows, evaluate: Evaluate) -> _Turns:
+def _turning_points(grid: Grid, rows: Rows, evaluate: Evaluate) -> Turns:
     brackets = slope_brackets(grid, rows, evaluate)
-    turns = _Turns(brackets.place, brackets.node, *roots(grid, rows, brackets, evaluate, "slope"))
+    turns = Turns(brackets.place, brackets.node, *roots(grid, rows, brackets, evaluate, "slope"))
     return turns.at(_apart_from_ends(rows, turns))
 
 
-def _apart_from_ends(rows: Rows, turns: _Turns) -> Flags:
+def _apart_from_ends(rows: Rows, turns: Turns) -> Flags:
     """Return which do not, but for rounding, turn at the end of a piece: a dead centre is told as the angle it is."""
     apart = np.ones(len(turns.place), dtype=bool)
     for end, node in ((0, 0), (-1, rows.value.shape[1] - 2)):
@@ -160,33 +175,8 @@ def _apart_from_ends(rows: Rows, turns: _Turns) -> Flags:
     return apart
 
 
-def _extreme_pieces(grid: Grid, rows: Rows, turns: _Turns) -> Curve:
-    """Return the curve of the pieces that reach the largest or the smallest value but for rounding.
-
-    Every quantity of every variant is one of its variants.
-    """
-    variants = len(grid.first)
-    whose = rows.owner * variants + grid.number[rows.piece]
-    first = np.flatnonzero(np.append(True, whose[1:] != whose[:-1]))
-    high, low = rows.value.max(axis=1), rows.value.min(axis=1)
-    np.maximum.at(high, turns.place, turns.value)
-    np.minimum.at(low, turns.place, turns.value)
-    top, bottom = np.maximum.reduceat(high, first), np.minimum.reduceat(low, first)
-    slack = REPEATED * np.maximum(np.abs(top), np.abs(bottom))
-    reached = ~((high < (top - slack)[whose]) & (low > (bottom + slack)[whose]))
-    kept, nodes = np.flatnonzero(reached), rows.value.shape[1]
-    pieces = rows.piece[kept]
-    own = reached[turns.place]
-    into = (np.cumsum(reached) - 1)[turns.place[own]] * nodes + turns.node[own] + 1
-    at_nodes = grid.degrees.T.take(pieces, axis=1).T.ravel(), np.repeat(pieces, nodes), rows.value[kept].ravel()
-    turned = turns.degrees[own], rows.piece[turns.place[own]], turns.value[own]
-    degrees, row, value, turning = _inserted(at_nodes, into, turned)
-    begins = np.searchsorted(whose[kept], np.arange(len(first))) * nodes
-    return Curve(degrees, row, value, begins + np.searchsorted(np.sort(into), begins), grid, turning, rows.value)
-
-
 def _inserted(points: Sequence[Any], into: Indices, turns: Sequence[Any]) -> tuple[Any, ...]:
-    """Return angles and more (n,) of points in order, with those of turns before these places, and where these are."""
+    """Return angles and more (n,) of points in order, with those of turns before these places."""
     order = np.lexsort((turns[0], into))
     turning = into[order] + np.arange(len(into))
     nodal = np.ones(len(points[0]) + len(into), dtype=bool)
@@ -196,16 +186,17 @@ def _inserted(points: Sequence[Any], into: Indices, turns: Sequence[Any]) -> tup
         both = np.empty(len(nodal), own.dtype)
         both[nodal], both[turning] = own, turned[order]
         found.append(both)
-    return *found, turning
+    return tuple(found)
 
 
-def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: float | None = None) -> dict[str, Any]:
+def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: Array | float) -> dict[str, Any]:
     """Return the angles (n,) in degrees, ascending, at which several quantities take the other sign, round the cycle.
 
-    What is zero but for rounding, beside `size` or its own largest value, has no sign: +, 0, − is one change, where the
-    piece begins in which the new sign is met; +, 0, + is none. At a jump it is the angle of the jump.
+    What is zero but for rounding, beside a size, or one of each quantity and variant, has no sign: +, 0, − is one
+    change, where the piece begins in which the new sign is met; +, 0, + is none. At a jump it is the angle of the jump.
     """
-    parts = [_turns(curve, size) for curve in found.values()]
+    sizes = np.broadcast_to(size, (len(found), len(grid.first)))
+    parts = [_turns(curve, own) for curve, own in zip(found.values(), sizes)]
     brackets = Brackets.joined(part for part, _ in parts)
     owner = np.repeat(np.arange(len(parts)), [len(part.place) for part, _ in parts])
     curved = [curve.at_nodes.T.take(part.place, axis=1) for curve, (part, _) in zip(found.values(), parts)]
@@ -220,13 +211,9 @@ def sign_changes(grid: Grid, found: dict[str, Curve], evaluate: Evaluate, size: 
     return changes
 
 
-def _turns(curve: Curve, size: float | None) -> tuple[Brackets, Indices]:
+def _turns(curve: Curve, size: Array) -> tuple[Brackets, Indices]:
     """Return the changes of sign inside pieces, with these as places, and the pieces that begin with one."""
-    magnitude = np.abs(curve.value)
-    noise = _ROUNDING * (
-        np.maximum.reduceat(magnitude, curve.first) if size is None else np.full(len(curve.first), size)
-    )
-    kept = np.flatnonzero(magnitude > curve.of_each(noise))
+    kept = np.flatnonzero(np.abs(curve.value) > curve.of_each(_ROUNDING * size))
     beginning = np.searchsorted(kept, curve.first)
     begun = beginning[np.diff(np.append(beginning, len(kept))) > 0]  # of what has any sign at all
     signed = curve._replace(degrees=curve.degrees[kept], row=curve.row[kept], value=curve.value[kept], first=begun)
@@ -260,7 +247,9 @@ def lasting(curve: Curve, changes: Array, noise: float) -> Array:
 
 def extremes_of(curve: Curve) -> Extremes:
     """Return the largest and smallest value of a curve, of every variant."""
-    return _told(curve.grid, _ends(curve), slice(None))
+    pieces = np.arange(len(curve.at_nodes))
+    rows = Rows(np.zeros_like(pieces), pieces, curve.at_nodes, curve.at_nodes)  # whose slopes nobody asks for
+    return _told(curve.grid, _ends(curve.grid, rows, curve.turns), slice(None))
 
 
 _Ends = tuple[tuple[Array, Array], tuple[Array, Array]]
@@ -271,31 +260,88 @@ def _told(grid: Grid, ends: _Ends, variants: slice) -> Extremes:
     return Extremes(*(Extreme(*(grid.told(one[variants]) for one in end)) for end in ends))
 
 
-def _ends(curve: Curve) -> _Ends:
-    high, low = np.maximum.reduceat(curve.value, curve.first), np.minimum.reduceat(curve.value, curve.first)
-    size = np.maximum(np.abs(high), np.abs(low))
-    return _first_at(curve, high, size, 1.0), _first_at(curve, low, size, -1.0)
+class _Order(NamedTuple):
+    """How rows follow one another in the cycle: whose each is, of the quantities of every variant, and what is beside.
+
+    whose: (n,); first: the first row of each of those, (v,); before, after: the rows of the pieces before and after,
+    (n,), −1 where that piece is left out.
+    """
+
+    whose: Indices
+    first: Indices
+    before: Indices
+    after: Indices
+
+    @classmethod
+    def of(cls, grid: Grid, rows: Rows) -> "_Order":
+        variant, numbers = grid.number[rows.piece], np.arange(len(rows.piece))
+        whose = rows.owner * len(grid.first) + variant
+        first = np.flatnonzero(np.append(True, whose[1:] != whose[:-1]))
+        after = numbers + 1
+        after[np.append(first[1:], len(after)) - 1] = first
+        apart = (rows.piece[after] - rows.piece - 1) % grid.counts[variant] != 0
+        before = np.empty_like(after)
+        before[after] = np.where(apart, -1, numbers)
+        return cls(whose, first, before, np.where(apart, -1, after))
 
 
-def _first_at(curve: Curve, best: Array, size: Array, sign: float) -> tuple[Array, Array]:
-    """Return the extremes and the first angles that reach them but for rounding: plateaus answer alike everywhere."""
-    # a summit that comes back in every part of the cycle differs by the rounding of the sums that make the curve, ...
-    level = curve.of_each(best * sign - REPEATED * size)
-    high = np.flatnonzero(curve.value * sign >= level)
-    # ... and what only lies beside a summit, as high but for that, is none
-    owner = np.searchsorted(curve.first, high, side="right") - 1
-    first, last = curve.first[owner], np.append(curve.first[1:], len(curve.value))[owner] - 1
-    following, preceding = np.where(high == last, first, high + 1), np.where(high == first, last, high - 1)
-    round_it = curve.grid.counts[owner % len(curve.grid.first)]  # of several quantities as of variants
-    ahead = curve.row[following] - curve.row[high] + np.where(high == last, round_it, 0)
-    behind = curve.row[high] - curve.row[preceding] + np.where(high == first, round_it, 0)
-    value, slack = curve.value[high] * sign, _ALIKE * np.abs(best)[owner]
-    # pieces between which others are left out do not stand beside each other
-    after = np.where(ahead <= 1, curve.value[following] * sign, -np.inf)
-    beside = np.maximum(after, np.where(behind <= 1, curve.value[preceding] * sign, -np.inf))
-    summit = high[value >= beside - slack]
-    degrees = np.full(len(best), np.inf)
-    np.minimum.at(degrees, owner[value >= beside - slack], curve.degrees[summit])
+def _ends(grid: Grid, rows: Rows, turns: Turns) -> _Ends:
+    """Return the largest and smallest values of the quantities of every variant, each with the first of its angles."""
+    order = _Order.of(grid, rows)
+    mirrored = rows._replace(value=-rows.value), turns._replace(value=-turns.value)
+    sides = [(*side, _highest(*side)) for side in ((rows, turns), mirrored)]
+    best = [np.maximum.reduceat(highest, order.first) for _, _, highest in sides]
+    size = np.maximum(*np.abs(best))
+    degrees = [_first_at(grid, order, *side, most, size) for side, most in zip(sides, best)]
     # beside the values of the other sign this is the rounding of a dead centre, which is no float
-    exact = np.abs(best) > _ROUNDING * size
-    return np.where(exact, best + 0.0, 0.0), degrees
+    high, low = (np.where(np.abs(most) > _ROUNDING * size, most, 0.0) for most in best)
+    return (high + 0.0, degrees[0]), (0.0 - low, degrees[1])
+
+
+def _highest(rows: Rows, turns: Turns) -> Array:
+    """Return the largest value in each row, (n,)."""
+    highest = rows.value.max(axis=1)
+    np.maximum.at(highest, turns.place, turns.value)
+    return np.asarray(highest)
+
+
+def _first_at(grid: Grid, order: _Order, rows: Rows, turns: Turns, highest: Array, best: Array, size: Array) -> Array:
+    """Return the first angles (v,) that reach the best values but for rounding: plateaus answer alike everywhere."""
+    # a summit that comes back in every part of the cycle differs by the rounding of the sums that make the curve, ...
+    level, slack = best - REPEATED * size, _ALIKE * np.abs(best)
+    reached = highest >= level[order.whose]
+    near, own = np.flatnonzero(reached), turns.at(reached[turns.place])
+    own = own._replace(place=(np.cumsum(reached) - 1)[own.place])
+    # ... and what only lies beside a summit, as high but for that, is none
+    nodes, whose = _with_neighbours(order, rows, near), order.whose[near]
+    beside_nodes, beside_turns = _beside(nodes, own)
+    node, row = np.nonzero((nodes[1:-1] >= level[whose]) & (nodes[1:-1] >= beside_nodes - slack[whose]))
+    of = whose[own.place]
+    turned = (own.value >= level[of]) & (own.value >= beside_turns - slack[of])
+    degrees = np.full(len(best), np.inf)
+    np.minimum.at(degrees, whose[row], grid.degrees[rows.piece[near[row]], node])
+    np.minimum.at(degrees, of[turned], own.degrees[turned])
+    return degrees
+
+
+def _with_neighbours(order: _Order, rows: Rows, near: Indices) -> Array:
+    """Return the values at the nodes of these rows (k,), and at those before and after, (nodes + 2, k); −∞ for none."""
+    before, after, value = order.before[near], order.after[near], rows.value.T
+    last = np.where(before < 0, -np.inf, value[-1, before])
+    first = np.where(after < 0, -np.inf, value[0, after])
+    return np.concatenate((last[None], value.take(near, axis=1), first[None]))
+
+
+def _beside(nodes: Array, turns: Turns) -> tuple[Array, Array]:
+    """Return the higher one of the points on both sides of each node, (nodes, k), and of each turning point, (t,).
+
+    nodes: with those before and after, (nodes + 2, k); turns: of these k rows.
+    """
+    at = turns.node + 1, turns.place
+    between = np.full((len(nodes) - 1, nodes.shape[1]), -np.inf)
+    np.maximum.at(between, at, turns.value)
+    turned = between > -np.inf
+    before = np.where(turned[:-1], between[:-1], nodes[:-2])
+    after = np.where(turned[1:], between[1:], nodes[2:])
+    sides = np.maximum(nodes[at], nodes[turns.node + 2, turns.place])
+    return np.maximum(before, after), np.maximum(between[at], sides)

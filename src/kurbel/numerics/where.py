@@ -8,7 +8,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.numerics.grid import Grid
-from kurbel.numerics.search import Sampled, curves, extremes_of, sign_changes
+from kurbel.numerics.search import OnNodes, Sampled, curves, extremes_of, sign_changes
 
 
 class Where(NamedTuple):
@@ -18,7 +18,7 @@ class Where(NamedTuple):
     span: tuple[float, float]
 
 
-def where(grid: Grid, samples: Sampled, sampled: Callable[[Array, Array], Sampled], value: float) -> Where:
+def where(grid: Grid, samples: OnNodes, sampled: Callable[[Array, Array], Sampled], value: float) -> Where:
     """Return the angles of the cycle at which a quantity passes a value, or reaches it as its extreme.
 
     samples: the quantity on the grid, (pieces, nodes); sampled: takes (degrees, within), each (n,). At a jump over the

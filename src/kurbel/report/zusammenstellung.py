@@ -27,13 +27,13 @@ ROWS = {
 _ODD = ("velocity_factor", "psi", "guide_force_factor")  # they change their sign on the return stroke
 
 
-Factor = Callable[[float, float, float, float], float]
-"""Of sine and cosine of the crank angle, R/L, and ρ = 1 − (R/L)² without its cancellation."""
+Factor = Callable[[float, float, float, float, float], float]
+"""Of sine and cosine of the crank angle, cos ψ, R/L, and ρ = 1 − (R/L)² without its cancellation."""
 
 
-def _guide(sin: float, cos: float, lam: float, rho: float) -> float:
+def _guide(sin: float, cos: float, kappa: float, lam: float, rho: float) -> float:
     """Return N/P = tan ψ, R 301."""
-    return float(lam * sin / formulas.cos_rod_angle(sin, cos, rho))
+    return lam * sin / kappa
 
 
 _EXACT: dict[str, Factor] = {
@@ -41,14 +41,14 @@ _EXACT: dict[str, Factor] = {
     "velocity_factor": formulas.velocity_factor,
     "displacement_factor": formulas.displacement_factor,
     "psi": lambda *known: math.degrees(math.atan(_guide(*known))),
-    "rod_force_factor": lambda sin, cos, _, rho: 1 / formulas.cos_rod_angle(sin, cos, rho),
+    "rod_force_factor": lambda sin, cos, kappa, *_: 1 / kappa,
     "guide_force_factor": _guide,
     "radial_force_factor": formulas.radial_factor,
 }
-_BOOK = _EXACT | {"acceleration_factor": lambda sin, cos, lam, _: formulas.first_order_acceleration(sin, cos, lam)}
+_BOOK = _EXACT | {"acceleration_factor": lambda sin, cos, _, lam, __: formulas.first_order_acceleration(sin, cos, lam)}
 _FIRST_ORDER = _BOOK | {
-    "velocity_factor": lambda sin, cos, lam, _: formulas.first_order_velocity(sin, cos, lam),
-    "displacement_factor": lambda sin, cos, lam, _: formulas.first_order_displacement(sin, cos, lam),
+    "velocity_factor": lambda sin, cos, _, lam, __: formulas.first_order_velocity(sin, cos, lam),
+    "displacement_factor": lambda sin, cos, _, lam, __: formulas.first_order_displacement(sin, cos, lam),
 }
 _FACTORS = {"book": _BOOK, "exact": _EXACT, "first-order": _FIRST_ORDER}
 
@@ -104,8 +104,9 @@ def _part(ratio: float, ids: tuple[str, ...], angles: Sequence[float], formula: 
     factors = [_FACTORS[formula][id] for id in ids]
     values = [array("d") for _ in ids]
     for angle in map(CrankAngle.of, angles):
+        known = angle.sin, angle.cos, formulas.cos_rod_angle(angle.sin, angle.cos, rho), lam, rho
         for column, factor in zip(values, factors):
-            column.append(factor(angle.sin, angle.cos, lam, rho))
+            column.append(factor(*known))
     columns = (_column(FACTORS[id], column, formula) for id, column in zip(ids, values))
     return Part(ratio, (_column(PHI, angles, formula), *columns))
 

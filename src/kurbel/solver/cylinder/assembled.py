@@ -6,6 +6,7 @@ import numpy as np
 
 from kurbel.numerics.grid import Grid
 from kurbel.solver.cylinder.drive import Drive
+from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.state import State
 
 
@@ -22,6 +23,7 @@ class Assembled:
         self._place = np.where(new, len(before.low) + np.cumsum(new) - 1, there)
         self._coarser, self._finer = coarser, drive.on(grid.part(new))
         self._found: dict[str, Any] = {}
+        self.inside = Inside.of_pieces(drive, (coarser.inside, self._finer.inside), self._place[:, None])
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):

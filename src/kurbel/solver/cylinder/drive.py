@@ -14,7 +14,7 @@ from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.variants import taken
 from kurbel.mechanisms import fan
 from kurbel.numerics.arithmetic import arcsin, some, sqrt, where
-from kurbel.numerics.gauss import LOBATTO_10
+from kurbel.numerics.gauss import LOBATTO_9
 from kurbel.numerics.grid import Cuts, Grid, Pieces
 from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.state import State
@@ -234,7 +234,7 @@ class Drive:
     def pieces(self) -> Grid:
         """The cycle in smooth pieces, or the cycles of all variants."""
         if self.count is None:
-            return self.cuts.grid(LOBATTO_10)
+            return self.cuts.grid(LOBATTO_9)
         from kurbel.numerics.cycles import cycles_of_turns
 
         return cycles_of_turns(self._smooth, self.cycle, self._jumps, self.count)

@@ -56,6 +56,11 @@ class PistonGas:
         """Crank angles in degrees of a turn at which quadratures should split."""
         return tuple(angle for end in (self.head, self.crank) if end for angle in end.bends)
 
+    @property
+    def straight(self) -> bool:
+        """Whether the force is a straight line over the stroke between any two neighbouring starts."""
+        return all(end.straight for end in (self.head, self.crank) if end)
+
     def force(self, pressure: Callable[[Pressure], Any], alike: bool = False) -> Any:
         """Return P = p_H A_H − p_C A_C in N, R 296; alike: with the mean of both areas, R 297.
 

@@ -1,17 +1,29 @@
 """What stays the same over a smooth piece of the cycle: the sense of the motion, the guide, the lines of the cards."""
 
+from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 
 if TYPE_CHECKING:
     from kurbel.solver.cylinder.drive import Drive
     from kurbel.solver.cylinder.state import State
     from kurbel.solver.pressure import Pressure
+
+
+class GasLine(NamedTuple):
+    """The force of the gas on pieces on which it is straight over the stroke, each (n,) or (n, 1).
+
+    force: in N at a share z of the stroke; rise: of it over a whole stroke.
+    """
+
+    force: Array
+    rise: Array
+    z: Array
 
 
 class Inside:
@@ -26,6 +38,24 @@ class Inside:
         self.rubs = rubs
         self._held: dict[int, Any] = {}
         self._side: Array | None = None
+        self.gas_line: GasLine | None = None  # where a state at the nodes of the pieces has found it
+
+    @classmethod
+    def of_pieces(cls, drive: "Drive", parts: "Sequence[Inside]", place: Indices) -> "Inside":
+        """Return what is known of the pieces at these places of several, counted from one to the next.
+
+        place: (n,), or (n, 1) for all nodes of each; drive: of the variants that they are of.
+        """
+
+        def at(*each: Any) -> Any:
+            return np.concatenate(each)[place, 0]
+
+        found = cls(drive, CrankAngle(*map(at, *(one.angle[:3] for one in parts))), parts[0].rubs)
+        found.direction = at(*(one.direction for one in parts))
+        sides, lines = zip(*((one._side, one.gas_line) for one in parts))
+        found._side = None if any(one is None for one in sides) else at(*sides)
+        found.gas_line = GasLine(*map(at, *lines)) if all(lines) else None
+        return found
 
     @property
     def unrubbed(self) -> "Inside":

@@ -17,7 +17,9 @@ from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import (
     Curve,
     Extremes,
+    Polynomials,
     Sampled,
+    Samples,
     curves,
     extremes,
     lasting,
@@ -38,29 +40,35 @@ _SURE = 4.0
 
 
 class Quantities:
-    """Columns of a drive with their slopes at any (degrees, within); see `search.Evaluate`."""
+    """Columns of a drive with their slopes at any (degrees, within); see `search.Evaluate`.
 
-    def __init__(self, drive: Drive, names: tuple[str, ...], rubs: bool = True) -> None:
+    known: what is known already of all pieces of the grid on which they are searched.
+    """
+
+    def __init__(self, drive: Drive, names: tuple[str, ...], rubs: bool = True, known: Inside | None = None) -> None:
         self.drive = drive
         self.names = names
         self.rubs = rubs
+        self.known = known
 
     def __call__(self, degrees: Array, within: Array | Inside) -> dict[str, Sampled]:
         state = self.drive.jets_at(degrees, within)
         state = state if self.rubs else state.unrubbed
         return {name: Sampled.of(getattr(state, name), degrees.shape) for name in self.names}
 
-    def inside(self, within: Array) -> Inside:
-        """Return what all angles in the pieces share that hold these."""
-        return Inside(self.drive, CrankAngle.of(within))
+    def inside(self, grid: Grid, piece: Indices) -> Inside:
+        """Return what all angles in these pieces (n,) share."""
+        if self.known is None:
+            return Inside(self.drive, CrankAngle.of(grid.within[piece, 0]))
+        return Inside.of_pieces(self.drive, (self.known,), piece)
 
-    def on(self, grid: Grid, state: State | Assembled) -> dict[str, Sampled]:
+    def on(self, grid: Grid, state: State | Assembled) -> Samples:
         """Return them in the state at the nodes of a grid."""
-        return {name: Sampled.on(grid, getattr(state, name)) for name in self.names}
+        return {name: Polynomials.of(grid, getattr(state, name)) for name in self.names}
 
     def of(self, variant: Indices) -> "Quantities":
         """Return the same of these variants (n,)."""
-        return Quantities(self.drive.taken(variant), self.names, self.rubs)
+        return Quantities(self.drive.taken(variant), self.names, self.rubs, self.known)
 
 
 class Searched:
@@ -88,20 +96,21 @@ class Searched:
         """Return the grid of samples cut where the guide force changes sides, and near the least force on a pin."""
         pins = self.drive.pin_friction
         if self.drive.rubs:
-            sense = self.quantities("guide_sense")
-            sampled = sense.on(grid, samples)
+            sense = Quantities(self.drive, ("guide_sense",), known=samples.inside)
+            sampled: Samples = sense.on(grid, samples)
             if pins:
                 # what makes pins rub bends where N changes sides without them; only beside that true turns are exact
                 without = Quantities(self.drive, ("guide_sense",), rubs=False)
                 found = zeros(grid, without(grid.degrees, grid.within), without)["guide_sense"]
                 grid = grid.split_at(found)
+                sense = Quantities(self.drive, ("guide_sense",))
                 sampled = sense(grid.degrees, grid.within)
             grid = grid.split_at(zeros(grid, sampled, sense)["guide_sense"])
         return grid.split_at(pins.bends(grid)) if pins and self.drive.has_force else grid
 
     def quantities(self, *names: str) -> Quantities:
         """Return what gives these columns with their slopes."""
-        return Quantities(self.drive, names)
+        return Quantities(self.drive, names, known=self.samples.inside)
 
     @cached_property
     def samples(self) -> State | Assembled:

@@ -13,7 +13,7 @@ from kurbel.mechanisms import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.jet import Jet, once_each
 from kurbel.solver.cylinder import chamber, guide, rod_point
-from kurbel.solver.cylinder.inside import Inside
+from kurbel.solver.cylinder.inside import GasLine, Inside
 from kurbel.solver.cylinder.rod_load import rod_load
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class State:
                 raise AttributeError(f"no column is called {id}")
             return None
         times = [getattr(self, name) for name in offer.times]
-        factor = offer.factor(self.drive.mechanism, self.angle)
+        factor = offer.factor(self.drive.mechanism, self._posed)
         if factor is None or any(one is None for one in times):
             return None
         return reduce(mul, times) * factor if times else factor
@@ -79,10 +79,15 @@ class State:
         return self.angle.degrees  # type: ignore[no-any-return]
 
     @cached_property
+    def _posed(self) -> CrankAngle:
+        """The crank angles with what the mechanism's rod does there."""
+        return self.angle._replace(rod=self.rod_angle)
+
+    @cached_property
     def _plain(self) -> CrankAngle:
-        """The crank angles without the slopes of jets."""
-        degrees, sin, cos = self.angle
-        return CrankAngle(degrees, getattr(sin, "value", sin), getattr(cos, "value", cos))
+        """The same without the slopes of jets."""
+        degrees, sin, cos, rod = self._posed
+        return CrankAngle(degrees, _value(sin), _value(cos), rod and (_value(rod[0]), _value(rod[1])))
 
     @property
     def _is_jet(self) -> bool:
@@ -112,7 +117,7 @@ class State:
     @cached_property
     def curvature(self) -> Any:
         """d²x/dφ² in m per radian squared; of what only swings, d²θ/dφ²."""
-        return self.drive.mechanism.curvature(self.angle)
+        return self.drive.mechanism.curvature(self._posed)
 
     @cached_property
     def c(self) -> Any:
@@ -135,7 +140,7 @@ class State:
         """Rod angle in degrees."""
         return None if self.rod_angle is None else bearing(*self.rod_angle)
 
-    @property
+    @cached_property
     def z(self) -> Any:
         """What of the stroke, or of the swing, is passed from the inner dead centre; of what turns on, None."""
         one = self.drive.mechanism
@@ -148,7 +153,7 @@ class State:
 
     def pressure(self, end: "Pressure") -> Any:
         """Return the gauge pressure in Pa at an end of a piston."""
-        return end(self.way, self.angle, self.inside.held(end))
+        return end(self.z, self.phi, self.inside.held(end))
 
     @cached_property
     def p_head(self) -> Any:
@@ -165,7 +170,24 @@ class State:
     @cached_property
     def P_gas(self) -> Any:
         """Force of gas, steam or water on all pistons in N, R 296."""
-        return reduce(add, (gas.force(self.pressure) for gas in self.drive.gas)) if self.drive.gas else None
+        if not self.drive.gas:
+            return None
+        at_nodes = self.phi.shape != self.inside.angle.degrees.shape
+        if at_nodes and self.inside.gas_line is None and all(gas.straight for gas in self.drive.gas):
+            begin = _value(self.z)[:, :1]
+            force = self._force_of_gas(Jet(begin, 1.0), self.phi[:, :1])
+            self.inside.gas_line = GasLine(force.value, force.slope, begin)
+        line = self.inside.gas_line
+        if line is None:
+            return self._force_of_gas(self.z, self.phi)
+        force = (self.z - line.z) * line.rise + line.force
+        if at_nodes:  # pieces may end, as they may begin, at a corner of a card, where the force is that of the card
+            _value(force)[:, -1:] = self._force_of_gas(_value(self.z)[:, -1:], self.phi[:, -1:])
+        return force
+
+    def _force_of_gas(self, z: Any, degrees: Array) -> Any:
+        """Return the force of the gas on all pistons in N at these shares of the stroke and crank angles in degrees."""
+        return reduce(add, (gas.force(lambda end: end(z, degrees, self.inside.held(end))) for gas in self.drive.gas))
 
     @property
     def P_gas_book(self) -> Any:
@@ -294,7 +316,7 @@ class State:
     @cached_property
     def D(self) -> Any:
         """Radial force at the crank pin in N, positive toward the shaft, R 302."""
-        radial = None if self.P is None else self.drive.mechanism.radial(self.angle)
+        radial = None if self.P is None else self.drive.mechanism.radial(self._posed)
         if radial is None:
             return None
         push = self.along_rod * radial
@@ -339,6 +361,11 @@ class State:
         """What couple and weight of an exact rod give to T in N."""
         assert self.drive.rod is not None
         return self.drive.rod.tangential(self.rod_angle, self.angle)
+
+
+def _value(jet: Any) -> Any:
+    """Return a jet, or an array as it is, without its slope."""
+    return getattr(jet, "value", jet)
 
 
 def _sum(first: Any, second: Any) -> Any:

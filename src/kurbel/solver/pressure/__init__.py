@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.crank_angle import CrankAngle
 from kurbel.machine.variants import Chambers, count_of, taken
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.extreme import Extreme
@@ -54,6 +53,11 @@ class Pressure(Protocol):
     """The gauge pressure in one chamber over the crank angle."""
 
     @property
+    def straight(self) -> bool:
+        """Whether it is a straight line over the stroke between any two neighbouring starts."""
+        ...
+
+    @property
     def starts(self) -> Any:
         """Crank angles (n,) in degrees in [0, cycle), ascending, at which it bends or jumps; or `Flat` of variants."""
         ...
@@ -72,10 +76,10 @@ class Pressure(Protocol):
         """Return what holds over the segments in which angles (n,) in degrees lie: each side of a jump has its own."""
         ...
 
-    def __call__(self, x: Any, angle: CrankAngle, held: Any) -> Any:
-        """Return the gauge pressure in Pa at crank angles (n,), where the displacement is x (n,) in m.
+    def __call__(self, z: Any, degrees: Array, held: Any) -> Any:
+        """Return the gauge pressure in Pa at crank angles (n,) in degrees, where z (n,) of the stroke is passed.
 
-        held: of the segment that is meant. With a jet for x the pressure is a jet too.
+        held: of the segment that is meant. With a jet for z the pressure is a jet too.
         """
         ...
 

@@ -43,7 +43,6 @@ class ProcessPressure:
     def __init__(self, processes: Processes, setting: Setting) -> None:
         self.processes = processes
         self.setting = setting
-        self._stroke = setting.mechanism.stroke
         self._lift, self._clearance = processes.lift, processes.clearance
         self._places = segments_over(processes, setting)
         self.starts = self._places.starts
@@ -51,7 +50,7 @@ class ProcessPressure:
         gradients = (table.next_p - table.p) / (table.next_z - table.z)
         ends = self._places.angles, self._places.ends
         self._lines = np.stack((table.z, table.p, table.next_z, table.exponent, gradients, *ends))
-        self._polytropic = bool(table.exponent.any())
+        self.straight = not table.exponent.any()
         self._variant: Indices | None = None
 
     def taken(self, index: Indices) -> "ProcessPressure":
@@ -61,9 +60,7 @@ class ProcessPressure:
         other = copy(self)
         other._variant = index
         other.setting = self.setting.taken(index)
-        other._stroke, other._lift, other._clearance = (
-            taken(one, index) for one in (self._stroke, self._lift, self._clearance)
-        )
+        other._lift, other._clearance = taken(self._lift, index), taken(self._clearance, index)
         return other
 
     def held(self, within: Array) -> Held:
@@ -71,12 +68,12 @@ class ProcessPressure:
         segment = self._places.holding(within_cycle(within, self.setting.cycle), self._variant)
         return Held(*self._lines.take(segment, axis=1))
 
-    def __call__(self, x: Any, angle: CrankAngle, held: Held) -> Any:
-        """Return the gauge pressure in Pa at displacements x (n,) in m, on the segments that are held."""
-        share = x / self._stroke if self.setting.head_end else 1 - x / self._stroke
-        self._put_corners(getattr(share, "value", share), angle.degrees, held)
+    def __call__(self, z: Any, degrees: Array, held: Held) -> Any:
+        """Return the gauge pressure in Pa where z (n,) of the stroke is passed, on the segments that are held."""
+        share = z + 0.0 if self.setting.head_end else 1 - z  # a new one
+        self._put_corners(getattr(share, "value", share), degrees, held)
         straight = (held.p - self.setting.base) + held.gradient * (share - held.z)
-        return self._curved(straight, share, held) if self._polytropic else straight
+        return straight if self.straight else self._curved(straight, share, held)
 
     def _put_corners(self, share: Array, degrees: Array, held: Held) -> None:
         """Make stroke fractions at corners those of the card: their angles are rounded, lines may be steep."""
@@ -99,13 +96,13 @@ class ProcessPressure:
     @cached_property
     def bends(self) -> tuple[Any, ...]:
         """Angles in degrees beside the dead centre of the smallest volume, where a polytropic line bends sharply."""
-        if not self._polytropic:
+        if self.straight:
             return ()
         mechanism = self.setting.mechanism
         dead_centre = mechanism.dead_centres()[0 if self.setting.head_end else 1]
         curvature = abs(mechanism.curvature(CrankAngle.of(dead_centre)))
         flat = curvature == 0
-        bent = sqrt(2 * self._clearance * self._stroke / where(flat, 1.0, curvature)) * (180 / math.pi)
+        bent = sqrt(2 * self._clearance * mechanism.stroke / where(flat, 1.0, curvature)) * (180 / math.pi)
         return fan(dead_centre, where(flat, 0.0, bent))
 
     @property

@@ -52,6 +52,8 @@ class TracePressure:
     the trace counts them, gauge or absolute; pressures: their mean (n,). starts, bends: as `Pressure` says.
     """
 
+    straight = False
+
     def __init__(self, trace: Trace, setting: Setting) -> None:
         self.trace = trace.over(setting.cycle)
         self.setting = setting
@@ -78,10 +80,10 @@ class TracePressure:
         since = np.mod(turned - self.starts[segment], self.setting.cycle)
         return Held(within, since, self._segments.p[segment], self._gradients[segment])
 
-    def __call__(self, x: Any, angle: CrankAngle, held: Held) -> Any:
-        """Return the gauge pressure in Pa at crank angles (n,), on the segments that are held."""
-        value = held.p + held.gradient * (held.since + (angle.degrees - held.within))
-        return Jet(value, held.gradient * (180 / math.pi)) if isinstance(x, Jet) else value
+    def __call__(self, z: Any, degrees: Array, held: Held) -> Any:
+        """Return the gauge pressure in Pa at crank angles (n,) in degrees, on the segments that are held."""
+        value = held.p + held.gradient * (held.since + (degrees - held.within))
+        return Jet(value, held.gradient * (180 / math.pi)) if isinstance(z, Jet) else value
 
     def taken(self, index: Indices) -> "TracePressure":
         """Return itself: a trace is of one machine."""
@@ -97,9 +99,7 @@ class TracePressure:
 
     def rise(self, degrees: Array) -> Array:
         """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each."""
-        ahead, behind = (
-            self(None, CrankAngle.of(at), self.held(at)) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2)
-        )
+        ahead, behind = (self(None, at, self.held(at)) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2))
         return np.asarray((ahead - behind) / _CHORD)
 
     @cached_property

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Indices
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
@@ -131,7 +131,10 @@ class _Evaluated:
 
     def __init__(self, torque: Sum) -> None:
         self._torque = torque
-        self.inside = torque.inside
+
+    def inside(self, grid: Grid, piece: Indices) -> tuple[Any, ...]:
+        """Return what the torque takes in place of angles in these pieces (n,)."""
+        return self._torque.inside(grid.within[piece, 0])
 
     def __call__(self, degrees: Array, within: Any) -> dict[str, Sampled]:
         return {"M": Sampled.of(self._torque.torque(degrees, within), degrees.shape)}
