@@ -61,7 +61,7 @@ def _processes(jobs: int) -> Iterator[Callable[..., Any]]:
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import active_children, get_context
 
-    pool = ProcessPoolExecutor(jobs, get_context("spawn"))
+    pool = ProcessPoolExecutor(jobs, get_context("spawn"), initializer=_end_with_parent)
 
     def submit(*task: Any) -> Any:
         with _interrupts_wait():  # for ever in the processes that are started here: one is for this process alone
@@ -77,6 +77,21 @@ def _processes(jobs: int) -> Iterator[Callable[..., Any]]:
     finally:
         with _interrupts_wait():  # the second of an impatient user would leave half of it behind
             pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that started it does, killed or not: nobody else would tell it to."""
+    from multiprocessing import parent_process
+    from threading import Thread
+
+    parent = parent_process()
+    assert parent is not None
+
+    def follow() -> None:
+        parent.join()
+        os._exit(1)
+
+    Thread(target=follow, daemon=True).start()
 
 
 @contextmanager
