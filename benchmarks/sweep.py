@@ -7,11 +7,15 @@ Times are of the processor; rows are designs of the waterworks machine, whose on
 
 from __future__ import annotations
 
+import os
 import resource
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+
+# one core, as in the program: others that wait for their part of a small product are busy doing it
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 

@@ -199,6 +199,18 @@ def test_of_a_ram_without_a_piston_nobody_expects_an_indicated_work() -> None:
     assert "no bore given" not in stdout.replace("gas force: no bore given", "")
 
 
+@pytest.mark.parametrize("command", ["motion", "forces"])
+def test_a_shaper_has_no_piston(command: str) -> None:
+    """Its largest force was called that of a piston; what drives a pump by the same lever still has one."""
+    shaper = str(CONFIGS / "shaper.yaml")
+    told = run(command, shaper).stdout
+    assert "piston" not in told
+    assert "Mean ram speed" in told
+    assert ("Largest force along the stroke line" in told) == (command == "forces")
+    bore = ("--set", "bore=200 mm", "--set", "indicator={head_end: 3 bar}")
+    assert "Mean piston speed" in run(command, shaper, *bore).stdout
+
+
 @pytest.mark.parametrize(("missing", "why"), [("speed: 50 rpm\n", "no speed given"), (None, "no indicator given")])
 def test_what_the_brake_measured_needs_an_indicated_power(missing: str | None, why: str) -> None:
     text = (

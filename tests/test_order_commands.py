@@ -53,6 +53,21 @@ def test_the_columns_that_scripts_rely_on() -> None:
     assert all(isinstance(one["unit"], str) for one in found["machine_place_tables"][0]["columns"])
 
 
+UNIFORM = "speed: 60 rpm\neffort: {unit: N m, points: [[0, 5], [360, 5]]}\n"
+
+
+@pytest.mark.parametrize("options", [(), ("--speeds", "30, 90 rpm")])
+def test_an_effort_without_orders_is_said_to_have_none(options: tuple[str, ...]) -> None:
+    """Two dozen rows of zeros were printed; scripts still have them."""
+    for look in ("table", "markdown", "html", "latex"):
+        told = " ".join(run("harmonics", "-", "-f", look, *options, text=UNIFORM).stdout.split())
+        assert "The turning effort has none of these orders: they are all zero." in told
+        assert "Orders of the turning effort" not in told
+    found = table(parsed("harmonics", "-", *options, text=UNIFORM), "orders")
+    assert (found["order"], found["M_amplitude"]) == (list(range(1, 25)), [0] * 24)
+    assert len(run("harmonics", "-", "-f", "csv", *options, text=UNIFORM).stdout.splitlines()) > 24
+
+
 def test_half_orders_of_four_strokes() -> None:
     found = parsed("harmonics", str(CONFIGS / "four-cylinder-generator.yaml"))
     assert table(found, "orders")["order"] == [half / 2 for half in range(1, 49)]
@@ -230,11 +245,31 @@ def test_an_undamped_resonance_beside_a_damper_elsewhere_has_no_solution() -> No
     )
     result = run("torsion", "-", text=text)
     assert (result.exit_code, result.stdout) == (3, "")
-    assert "an order of the torque meets a natural vibration that nothing damps: give it 'damping'" in result.stderr
+    assert (
+        "an order of the torque meets a natural vibration that next to nothing damps: give it 'damping'"
+        in result.stderr
+    )
     beside = parsed("torsion", "-", "--set", "speed=5.5 rad/s", text=text)
     torques = table(beside, "critical_speeds")["M_vibratory"]
     assert torques[0] is None  # order 1 with mode 1
     assert torques[13] is not None  # order 2 with mode 2, which the damper reaches
+
+
+def test_what_only_rounding_bounds_has_a_dash() -> None:
+    """A loss factor of 1e-12: the torque of a critical speed was told to four digits, of which rounding made some."""
+    text = (
+        "speed: 600 rpm\neffort: {unit: N m, mean: 5, harmonics: [[1, 3, 0], [2, 1, 1], [3, 2, 0]]}\n"
+        "shaft: [{inertia: 2 kg m2}, {stiffness: 4000 N m/rad}, {inertia: 2 kg m2},\n"
+        " {stiffness: 6000 N m/rad, loss_factor: LOSS}, {inertia: 3 kg m2}]\n"
+    )
+    torques = [
+        table(parsed("torsion", "-", text=text.replace("LOSS", loss)), "critical_speeds").get("M_vibratory")
+        for loss in ("1e-6", "1e-12")
+    ]
+    assert None not in torques[0][:3]
+    assert torques[1] is None or torques[1][:3] == [None] * 3
+    told = " ".join(run("torsion", "-", text=text.replace("LOSS", "1e-12")).stdout.split())
+    assert "and where next to nothing damps the mode" in told
 
 
 STALLS = """

@@ -19,7 +19,7 @@ from kurbel.machine.masses import Masses
 from kurbel.mechanisms import Mechanism, every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.forces import forces_report
-from kurbel.report.frame import Frame
+from kurbel.report.frame import Frame, report_of
 from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.bearings.bearing import Bearing
@@ -186,3 +186,22 @@ def test_a_symbol_of_two_quantities_is_told() -> None:
     found = called("F_x", twins)
     assert ambiguity("F_x", found) == "'F_x' is the symbol of F_free and of F_bearing; write which"
     assert called("F_free", [*twins, Quantity("G", "F_free", "force", "Force")]) == ("F_free",)
+
+
+@pytest.mark.parametrize(
+    ("command", "name", "part", "units"),
+    [
+        ("forces", "shaper", 0, {"P_start_max": "kN", "P_start_min": "kN", "P_peak": "kN"}),
+        ("flywheel", "compressor-two-stage", 0, {"E_max": "kJ", "E_min": "kJ", "M_mean": "kN m", "M_max": "kN m"}),
+        ("bearings", "boxer", 1, {"load_max": "kN", "load_min": "kN", "load_mean": "kN"}),
+    ],
+)
+def test_the_largest_and_the_smallest_share_a_unit(command: str, name: str, part: int, units: dict[str, str]) -> None:
+    """P_0,max = 600.0 N stood above P_0,min = −6.000 kN."""
+    shown = [
+        report_of(case_of(name), Frame(command, (0.0,), (), system)).all_parts[part] for system in ("metric", "si")
+    ]
+    told, in_si = ({one.id: one for one in one.key_values} for one in shown)
+    assert {id: told[id].unit for id in units} == units
+    for id in units:
+        assert told[id].value * 1000 == pytest.approx(in_si[id].value, rel=1e-15)  # type: ignore[operator]

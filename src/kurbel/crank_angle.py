@@ -26,19 +26,17 @@ class CrankAngle(NamedTuple):
     rod: "tuple[Any, Any] | None" = None
 
     @classmethod
-    def of(cls, degrees: "float | Array", beyond: "float | Array" = 0.0) -> "CrankAngle":
+    def of(cls, degrees: "float | Array") -> "CrankAngle":
         """Return the angle for a number or an array of degrees.
-
-        beyond: degrees to be added that are too small to show in `degrees`: 90 and 1e-20 are an angle just beyond 90°.
 
         >>> CrankAngle.of(180.0)
         CrankAngle(degrees=180.0, sin=0.0, cos=-1.0, rod=None)
 
         Raises ValueError for nan or inf.
         """
-        if isinstance(degrees, (int, float)) and isinstance(beyond, (int, float)):
-            return cls(degrees, *_sin_cos_scalar(degrees, beyond))
-        return cls(degrees, *_sin_cos_array(degrees, beyond))
+        if isinstance(degrees, (int, float)):
+            return cls(degrees, *_sin_cos_scalar(degrees))
+        return cls(degrees, *_sin_cos_array(degrees))
 
     @classmethod
     def at_nodes(cls, pieces: "Pieces") -> "CrankAngle":
@@ -82,26 +80,26 @@ def within_cycle(degrees: "Array", cycle: float) -> "Array":
     return np.asarray(np.mod(degrees, cycle))
 
 
-def _sin_cos_scalar(degrees: float, beyond: float) -> tuple[float, float]:
+def _sin_cos_scalar(degrees: float) -> tuple[float, float]:
     if not math.isfinite(degrees):
         raise ValueError("a crank angle must be finite")
     rest = math.remainder(degrees, 360.0)
     quarter = round(rest / 90.0)
-    rest = (rest - 90.0 * quarter + beyond) * _RADIANS_PER_DEGREE
+    rest = (rest - 90.0 * quarter) * _RADIANS_PER_DEGREE
     sin, cos = math.sin(rest), math.cos(rest)
     # adding 0.0 turns -0.0 into 0.0
     pair = ((sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin))[quarter % 4]
     return pair[0] + 0.0, pair[1] + 0.0
 
 
-def _sin_cos_array(degrees: "float | Array", beyond: "float | Array") -> "tuple[Array, Array]":
+def _sin_cos_array(degrees: "Array") -> "tuple[Array, Array]":
     import numpy as np
 
     if not np.isfinite(degrees).all():
         raise ValueError("a crank angle must be finite")
     degrees = degrees if np.abs(degrees).max(initial=0.0) <= 720.0 else np.fmod(degrees, 360.0)
     right_angle = 90.0 * np.rint(degrees / 90.0)
-    return _turned(right_angle, degrees - right_angle + beyond)
+    return _turned(right_angle, degrees - right_angle)
 
 
 def _turned(right_angle: "Array", offset: "Array") -> "tuple[Array, Array]":

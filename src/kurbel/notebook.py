@@ -61,13 +61,13 @@ def _key_values(results: Results, caption: str) -> str:
 
     from kurbel.render import Look
     from kurbel.render.html import key_values
-    from kurbel.report.shown import shown_key_value
+    from kurbel.report.shown import shown_key_values
 
     with np.errstate(all="ignore"):
         try:
             every = results.key_values().values()
             values = [one.value if one.degrees is None else Extreme(one.value, one.degrees) for one in every]
-            found = [shown_key_value(one.quantity, value, "metric") for one, value in zip(every, values)]
+            found = shown_key_values(zip((one.quantity for one in every), values), "metric")
         except KurbelError as error:
             return f"<p>{escape(str(error))}</p>"
     return "".join(key_values(caption, found, Look("html")))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import kurbel
-from kurbel.designs.plan import Plan, read_input, shard
+from kurbel.designs.plan import Plan, read_axis, read_input, shard
 from kurbel.designs.sampling import _digits, latin_hypercube, sobol
 from kurbel.errors import UsageError
 
@@ -53,12 +53,16 @@ def test_bad_values(text: str, message: str) -> None:
 
 
 def test_grid_list_and_sample() -> None:
-    a, b = read_input("a=1,2"), read_input("b=5,6,7")
+    a, b = read_axis("a=1,2"), read_axis("b=5,6,7")
     grid = Plan([a, b])
     assert [grid.texts(row) for row in range(grid.rows)] == [(x, y) for x in "12" for y in "567"]
-    side_by_side = Plan([a, read_input("b=5,6")], side_by_side=True)
+    side_by_side = Plan([a, read_axis("b=5,6")], side_by_side=True)
     assert [side_by_side.texts(row) for row in range(side_by_side.rows)] == [("1", "5"), ("2", "6")]
-    both = Plan([a, read_input("c=normal(10, 1)")], sample=50, seed=3)
+    together = Plan([read_axis("a=1:2:1; b=5,6"), read_axis("c=7,8,9")])
+    rows = [together.texts(row) for row in range(together.rows)]
+    assert rows == [(x, y, z) for x, y in ("15", "26") for z in "789"]
+    assert [one.texts for one in read_axis("name=a;b; speed=1 rpm")] == [("a;b",), ("1 rpm",)]
+    both = Plan([a, read_axis("c=normal(10, 1)")], sample=50, seed=3)
     drawn = np.array([[float(text) for text in both.texts(row)] for row in range(both.rows)])
     assert both.rows == 100
     assert (drawn[:50, 1] == drawn[50:, 1]).all()
@@ -73,11 +77,16 @@ def test_grid_list_and_sample() -> None:
         (["a=1,2", "b=3"], {"side_by_side": True}, "one length; a has 2, b has 1"),
         (["a=normal(1, 1)"], {}, "needs --sample"),
         (["a=1"], {"sample": 5}, "no key has a distribution"),
+        (["a=1,2; b=3"], {}, "--vary a; b: the lists must be of one length; a has 2, b has 1"),
+        (["a=1,2; b=3,4", "c=5"], {"side_by_side": True}, "--zip: .*; a has 2, b has 2, c has 1"),
+        (["a=1,2; a=3,4"], {}, "varied twice"),
+        (["a=1; b=normal(1, 1)"], {"sample": 5}, "--vary a=1; b=normal.*: a distribution has a --vary of its own"),
+        (["a=1; =2"], {}, "--vary =2: write KEY="),
     ],
 )
 def test_plans_that_are_none(inputs: list[str], options: dict[str, int], message: str) -> None:
     with pytest.raises(UsageError, match=message):
-        Plan(list(map(read_input, inputs)), **options)  # type: ignore[arg-type]
+        Plan(list(map(read_axis, inputs)), **options)  # type: ignore[arg-type]
 
 
 def test_shards_are_the_whole() -> None:

@@ -55,6 +55,18 @@ def test_rows_are_what_forces_tells_of_each() -> None:
         assert one["failure"] is None
 
 
+def test_keys_that_go_together_in_a_grid() -> None:
+    """Bore and rod of one size beside each other, each with every speed."""
+    found = rows(
+        "--vary", "bore=400,450 mm; head_end_rod=70,80 mm", "--vary", "speed=40,50 rpm", "--columns", "A_head,c_max"
+    )
+    assert [(one["bore_m"], one["head_end_rod_m"]) for one in found] == [(0.4, 0.07)] * 2 + [(0.45, 0.08)] * 2
+    for one in found:
+        area = np.pi / 4 * (one["bore_m"] ** 2 - one["head_end_rod_m"] ** 2)
+        assert one["A_head_m^2"] == pytest.approx(area, rel=1e-14)
+    assert found[1]["c_max_m/s"] == pytest.approx(found[0]["c_max_m/s"] * 5 / 4, rel=1e-14)
+
+
 def test_without_a_cylinder_rows_are_what_flywheel_tells(tmp_path: Path) -> None:
     """T = 9 + 5 cos 2φ N m: ΔE = 5 N m, W = 18π J; a machine without key values of `forces` was a fault of kurbel."""
     machine = tmp_path / "effort.yaml"
@@ -286,13 +298,13 @@ def test_chunks_that_others_compute_keep_their_order(monkeypatch: pytest.MonkeyP
 
 def test_a_row_is_computed_in_the_same_company_by_every_run() -> None:
     """The last digits hang on how many rows are computed at once: with numpy 1.24 one alone differs from many."""
-    found = swept("rod_ratio=3:6:0.005", "stroke")
-    company = [range(0, 20), range(20, 200), range(200, 400), range(400, 600), range(600, 601)]
+    found = swept("rod_ratio=3:6:0.001", "stroke")
+    company = [range(0, 20), range(20, 1000), range(1000, 2000), range(2000, 3000), range(3000, 3001)]
     assert list(found.chunks(range(found.rows))) == [*zip(company, company)]
     assert list(found.chunks(range(19, 21))) == [(company[0], range(19, 20)), (company[1], range(20, 21))]
-    assert list(found.chunks(range(399, 401))) == [(company[2], range(399, 400)), (company[3], range(400, 401))]
-    assert list(found.chunks(range(20, 200))) == [(company[1], company[1])]
-    assert [row.number for row in workers.rows_of(found, range(598, 601))] == [599, 600, 601]
+    assert list(found.chunks(range(1999, 2001))) == [(company[2], range(1999, 2000)), (company[3], range(2000, 2001))]
+    assert list(found.chunks(range(20, 1000))) == [(company[1], company[1])]
+    assert [row.number for row in workers.rows_of(found, range(2998, 3001))] == [2999, 3000, 3001]
 
 
 @pytest.mark.parametrize(
@@ -300,6 +312,9 @@ def test_a_row_is_computed_in_the_same_company_by_every_run() -> None:
     [
         (("--vary", "rod_ratoi=3,4"), "did you mean 'rod_ratio'"),
         (("--vary", "rod_ratio=3:6:-1"), "never reaches 6"),
+        (("--vary", "rod_ratio=3,4; bore=400 mm"), "--vary rod_ratio; bore: the lists must be of one length;"),
+        (("--vary", "rod_ratio=3,4; bore=400,5 kg"), "kg is a unit of mass"),
+        (("--vary", "rod_ratio=3,4; bore"), "expected a number, got '3 ; bore'"),
         (("--vary", "bore=400,450 kg"), "kg is a unit of mass"),
         (("--vary", "bore=normal(450 mm, -1 mm)", "--sample", "3"), "must be more than 0, got -1"),
         (("--vary", "rod_ratio=3:6:1e-4", "--vary", "speed=40:50:0.01 rpm"), "30031001 rows; --yes computes more"),
@@ -391,6 +406,13 @@ def test_what_varies_stands_in_the_unit_of_its_size(tmp_path: Path) -> None:
         ["bar", "m/s²"],
         *([str(row), f"{value}.00", "208.2"] for row, value in ((1, 25), (2, 30), (3, 35))),
     ]
+
+
+def test_the_largest_and_the_smallest_stand_in_one_unit() -> None:
+    """600 N stood beside −6 kN; alone it has the unit of its own size."""
+    shaper = str(CONFIGS / "shaper.yaml")
+    for columns, units in (("P_0,max,P_0,min", ["mm", "kN", "kN"]), ("P_0,max", ["mm", "N"])):
+        assert run("--vary", "crank=300 mm", "--columns", columns, file=shaper).stdout.splitlines()[1].split() == units
 
 
 def test_two_points_are_no_range() -> None:

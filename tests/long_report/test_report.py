@@ -147,7 +147,7 @@ def test_the_input_is_told_as_it_was_read() -> None:
         "masses.piston": "1 kg",
     }
     page = page_of_case(Case(machine))
-    assert "set over it: bore=450 mm" in page
+    assert "set over it: bore=450 mm" in text_in(page)
     assert "Diameter of the cylinder" in page
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from kurbel.render import Look, render
 from kurbel.render.book import _book_sizes, _fitting_sizes
 from kurbel.render.charset import Charset, width
+from kurbel.render.prose import folded
 from kurbel.report.zusammenstellung import zusammenstellung
 from render.sample_report import ONE, REPORT, texts
 
@@ -63,6 +65,26 @@ def test_tables_fit_the_terminal(columns: int) -> None:
     for report in (ONE, zusammenstellung()):
         lines = render(report, Look(width=columns)).splitlines()[1:]
         assert max(map(width, lines)) <= columns
+
+
+SAID = "Of order 3 (-1.78 %) within 10 % of 110 rpm it bears 2.35 kN m at 30.5 °, 12 m/s² and 9 lbf ft/rad in 4 parts."
+
+
+@pytest.mark.parametrize("columns", range(24, 81, 4))
+def test_no_line_ends_between_a_number_and_its_unit(columns: int) -> None:
+    """`10` stood at the end of a line and `%` before the next one."""
+    lines = folded(SAID, columns)
+    assert max(map(width, lines)) <= columns
+    assert " ".join(lines) == SAID
+    for one in ("-1.78 %)", "10 %", "110 rpm", "2.35 kN m", "30.5 °,", "12 m/s²", "9 lbf ft/rad"):
+        assert any(one in line for line in lines), one
+
+
+def test_a_browser_keeps_a_unit_beside_its_number() -> None:
+    page = render(ONE._replace(notes=(SAID,)), Look("html"))
+    kept = re.findall('<span class="n">(.*?)</span>', page)
+    assert {"10 %", "110 rpm", "2.35 kN m", "12 m/s²", "9 lbf ft/rad"} <= set(kept)
+    assert ",.n{white-space:nowrap}" in page
 
 
 def test_a_pipe_is_not_folded() -> None:

@@ -12,7 +12,7 @@ from kurbel.declared.quantity import by_id
 from kurbel.machine_file import loads
 from kurbel.render import Look, render
 from kurbel.report.check import checked
-from kurbel.report.shown import shown_key_value
+from kurbel.report.shown import shown_key_values
 from kurbel.report.tables import Column, Part, Report
 
 CONFIGS = Path(__file__).parents[2] / "configs"
@@ -24,7 +24,7 @@ LOOKS = (Look(), Look(layout="rows"), Look(digits=17), Look(comma=True), Look(en
 def report(residual: float) -> Report:
     values = (("work", 12345.678), ("loss_crosshead", 0.0123), ("energy_residual", residual))
     phi = Column("phi", "φ", "phi", "deg", (0, 90))
-    part = Part("one", (phi,), tuple(shown_key_value(KEY_VALUES[name], value, "si") for name, value in values))
+    part = Part("one", (phi,), tuple(shown_key_values([(KEY_VALUES[name], value) for name, value in values], "si")))
     return Report("Forces", "forces", "Demo", "cylinders", (part,))
 
 
@@ -55,7 +55,7 @@ def test_a_limit_is_not_compared_with_rounding_in_sight() -> None:
 
 def test_only_residuals_are_taken_for_rounding() -> None:
     """A disturbance that dies away to 1e-60 in a cycle is no rounding."""
-    assert not shown_key_value(KEY_VALUES["multiplier"], 1e-60, "si").noise
+    assert not shown_key_values([(KEY_VALUES["multiplier"], 1e-60)], "si")[0].noise
     assert [name for name, quantity in KEY_VALUES.items() if quantity.residual] == [
         "energy_residual",
         "equilibrium_residual",

@@ -121,12 +121,13 @@ def test_a_four_stroke_order_above_44() -> None:
     assert two.elastic.M_coupling_max.value == pytest.approx(one.elastic.M_coupling_max.value, rel=1e-9)
 
 
-def test_a_wish_that_the_driven_inertia_outdoes_is_told_without_advice() -> None:
+@pytest.mark.parametrize("count", few([7, 13], [7]))
+def test_a_wish_that_the_driven_inertia_outdoes_is_told_without_advice(count: int) -> None:
     """With the coupling all but rigid and J₂ = 500 kg m² no flywheel makes δ as much as the wanted 0.1."""
     machine = of_points([(0, 120), (360, 120)], RPM, delta=0.1, coupling=STIFF, load=load_of(PUNCH))
     assert machine.misses_the_wish
     assert machine.J_exact is None
-    for inertia in np.geomspace(1e-3, 1e3, 7):
+    for inertia in np.geomspace(1e-3, 1e3, count):
         other = of_points([(0, 120), (360, 120)], RPM, inertia=inertia, coupling=STIFF, load=load_of(PUNCH))
         assert other.delta < 0.09
 

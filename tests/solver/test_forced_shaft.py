@@ -21,7 +21,9 @@ from kurbel.numerics.jet import Jet
 from kurbel.numerics.waves import crests
 from kurbel.solver.case import Case
 from kurbel.solver.shaft_line.chain import Chain, responding, twisting
+from kurbel.solver.shaft_line.modes import Modes
 from kurbel.solver.shaft_line.periodic import ChainEquation
+from kurbel.solver.torsion.forced import Excitation, Vibration
 from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.torsion.vibration import ShaftVibration
 from kurbel.solver.turning.flywheel import MachineTurning
@@ -55,7 +57,7 @@ def test_every_order_solves_its_equations(count: int, ground: str) -> None:
     frequencies = np.array([[0.7, 20.0], [150.0, 900.0]])
     draw = np.random.default_rng(4)
     torques = draw.normal(size=(count, 2, 2)) + 1j * draw.normal(size=(count, 2, 2))
-    found = responding(chain, frequencies, torques)
+    found = responding(chain, frequencies, torques).angles
     for place, w in np.ndenumerate(frequencies):
         springs = chain.stiffnesses * (1 + 1j * chain.loss) + 1j * w * chain.piece_damping
         whole = chain.twists.T @ np.diag(springs) @ chain.twists
@@ -73,7 +75,7 @@ def test_a_piece_of_the_chain_in_resonance_by_itself_is_no_harm() -> None:
     frequencies = np.array([(math.sqrt(5) - 1) / 2, 1.0])
     torques = np.zeros((4, 2), dtype=complex)
     torques[0] = 1.0
-    found = responding(chain, frequencies, torques)
+    found = responding(chain, frequencies, torques).angles
     for column, w in enumerate(frequencies):
         whole = chain.twists.T @ chain.twists + np.diag(1j * w * chain.mass_damping - w * w)
         assert whole @ found[:, column] == pytest.approx(torques[:, column], abs=1e-14)
@@ -239,7 +241,7 @@ def test_longer_chains_over_the_angle_have_the_same_orders(ground: str) -> None:
     orders = np.arange(1.0, 13.0)
     torques = np.zeros((3, 12), dtype=complex)
     torques[0], torques[2] = (spectrum(one.effort, orders).amplitudes for one in efforts)
-    wanted = twisting(chain, orders * omega, responding(chain, orders * omega, torques))
+    wanted = twisting(chain, orders * omega, responding(chain, orders * omega, torques).angles)
     for piece, amplitudes in enumerate(wanted):
         assert spectrum(InPiece(piece), orders).amplitudes == pytest.approx(
             amplitudes, abs=1e-12 * np.abs(wanted).max()
@@ -277,6 +279,37 @@ def test_two_masses_in_closed_form() -> None:
     assert at_resonance.M_vibratory == pytest.approx(static * abs(1 + 1j * loss) / loss, rel=1e-12)
 
 
+@pytest.mark.parametrize("stiff", [1.0, 1e4])
+def test_what_rounding_bounds_is_not_told(stiff: float) -> None:
+    """At the resonance of a loss factor of 10⁻⁵ … 10⁻¹⁶: four digits against mpmath, or no answer.
+
+    A stiff piece before the two masses takes digits of the soft one.
+    """
+    told = []
+    for exponent in range(5, 17):
+        loss = 10.0**-exponent
+        inertias, stiffnesses = np.array([1.0, 2.0, 7.0]), np.array([2e3 * stiff, 2e3])
+        chain = Chain(inertias, stiffnesses, np.zeros(2), np.zeros(3), np.full(2, loss))
+        speed = float(Modes(chain).omegas[1])
+        line = ShaftLine(tuple(ShaftMass("", one) for one in chain.inertias), (ShaftPiece(1.0),) * 2)
+        torques = np.array([[5.0 - 2j], [-4.0], [1.0]])
+        nothing = np.zeros(3)
+        found = Vibration(
+            chain, line, Excitation(1.0, np.ones(1), torques, 0 * torques, nothing, nothing), np.array([speed])
+        )
+        told.append(not found.endless[0])
+        with mpmath.workdps(40):
+            springs = mpmath.diag([one * (1 + mpmath.mpc(0, loss)) for one in chain.stiffnesses.tolist()])
+            twists = mpmath.matrix(chain.twists.tolist())
+            inertia = mpmath.diag([mpmath.mpf(speed) ** 2 * one for one in chain.inertias.tolist()])
+            angles = mpmath.lu_solve(twists.T * springs * twists - inertia, mpmath.matrix(torques[:, 0].tolist()))
+            exact = np.array([complex(one) for one in springs * (twists * angles)])
+        if told[-1]:
+            assert found.torques[:, 0, 0] == pytest.approx(exact, abs=1e-4 * np.abs(exact).max())
+    assert told == sorted(told, reverse=True)
+    assert (told[1], told[-3]) == (True, False)
+
+
 def test_a_gear_is_the_chain_referred_to_one_shaft() -> None:
     """The torque behind the gear is that of the referred chain over u, its stress that of its own section."""
     effort = Harmonics(10.0, ((1.0, 3.0, 2.0), (3.0, 1.0, -2.0)))
@@ -306,6 +339,13 @@ def test_the_mean_torque_goes_to_the_load() -> None:
     assert [one.M_shaft_mean for one in found.pieces] == pytest.approx([10.0, 0.0], abs=1e-14)
     held = shaft(effort, 5.0, "ground", piece, masses[0], piece, masses[2])
     assert [one.M_shaft_mean for one in held.pieces] == pytest.approx([-10.0, 0.0], abs=1e-14)
+
+
+@pytest.mark.parametrize("torques", [(7.1, 3.3, 7.1), (0.3, -0.3, 0.3)])
+def test_the_mean_torque_is_one_number_in_every_command(torques: tuple[float, ...]) -> None:
+    """5.2 stood beside 5.200000000000001: `torsion` summed it anew."""
+    case = Case(machine_of(effort=Effort((0.0, 130.0, 360.0), torques)))
+    assert case.torsion.pieces[0].M_shaft_mean == case.harmonics().M_mean == case.flywheel.M_mean
 
 
 def test_crests_against_many_samples() -> None:

@@ -146,6 +146,17 @@ def test_gross_and_net(tmp_path: Path) -> None:
     assert found["mean_pressure_gross"].value == pytest.approx(total - exchange, rel=1e-12)
 
 
+@pytest.mark.parametrize("level", [1.0, 3.7])
+def test_without_a_pumping_loop_there_is_no_pressure_of_it(tmp_path: Path, level: float) -> None:
+    """The same pressure through exhaust and intake: 1e-16 bar were told."""
+    one = np.where((FINE >= 180) & (FINE <= 540), level, absolute(ENGINE, FINE))
+    found = forces(tmp_path, np.column_stack((FINE, one)))
+    assert found["mean_pressure_exchange"].value == 0
+    assert found["mean_pressure_gross"].value == found["mean_pressure"].value
+    nearly = forces(tmp_path, np.column_stack((FINE, np.where((FINE > 200) & (FINE < 300), one + 1e-9, one))))
+    assert nearly["mean_pressure_exchange"].value < 0
+
+
 def test_extremes_of_a_cycle_against_another_search(tmp_path: Path) -> None:
     """T and N along the straight lines between samples, by scipy in every piece that may hold the extreme."""
     angles, each = many()

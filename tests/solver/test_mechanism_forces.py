@@ -23,6 +23,8 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
+from kurbel.numerics.gauss import GAUSS
+from kurbel.numerics.grid import Pieces
 from kurbel.solver.cylinder.forces import CylinderForces
 from machines import AT, STEAM_CARD
 from representative import law_of_each
@@ -266,11 +268,19 @@ def test_extremes_of_the_motion_are_exact(mechanism: Mechanism) -> None:
 
 
 def test_a_hair_beyond_a_right_angle() -> None:
-    """What is too small to show in the degrees still shows in the cosine, for a number as for an array."""
-    alone, among = CrankAngle.of(90.0, 1e-20), CrankAngle.of(np.array([90.0]), 1e-20)
-    assert alone.cos == pytest.approx(-1e-20 * math.pi / 180, rel=1e-15)
-    assert alone.cos == among.cos[0]
-    assert CrankAngle.of(90.0, np.array([0.0, 1e-20])).cos.tolist() == [0.0, alone.cos]
+    """Nodes on a piece of 2⁻⁴⁰ degrees: what is too small to show in their angles still shows in their cosines."""
+    pieces = Pieces(np.array([90.0]), np.array([90 + 2.0**-40]), GAUSS)
+    beyond = np.radians(2.0**-41 * (1 + pieces.nodes))
+    assert CrankAngle.at_nodes(pieces).cos[0] == pytest.approx(-beyond, rel=1e-14, abs=0)
+    assert CrankAngle.of(pieces.degrees).cos[0] != pytest.approx(-beyond, rel=1e-4, abs=0)
+
+
+def test_no_dead_centre_has_a_negative_zero() -> None:
+    """A quarter turn forward and backward, as a number and in an array: +0, of which nothing is printed as −0."""
+    angles = [-0.0, *(90.0 * quarter for quarter in range(-8, 9))]
+    for one in (CrankAngle.of(np.array(angles)), *map(CrankAngle.of, angles)):
+        for part in (one.sin, one.cos):
+            assert not np.signbit(np.asarray(part)[np.asarray(part) == 0]).any()
 
 
 @pytest.mark.parametrize("degrees", [20.0, 70.0, 160.0, 290.0])

@@ -12,7 +12,7 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.numerics.cycles import Flat, cycles_of_turns, located
-from kurbel.numerics.gauss import LOBATTO_9
+from kurbel.numerics.gauss import GAUSS, LOBATTO_4, LOBATTO_9, Rule
 from kurbel.numerics.grid import Cuts, Grid
 from machines import one_cylinder
 from representative import case_of
@@ -76,3 +76,14 @@ def test_places_among_variants_are_those_of_each_alone() -> None:
     asked = [(0, 9.0, 1), (0, 10.0, 0), (0, 350.0, 1), (1, 4.0, 2), (1, 5.0, 2), (2, 0.0, 3), (2, 299.9, 3)]
     variant, values, places = map(np.array, zip(*asked))
     assert located(table, variant, values).tolist() == places.tolist()
+
+
+@pytest.mark.parametrize("rule", [LOBATTO_4, LOBATTO_9, GAUSS])
+def test_no_polynomial_passes_its_values_at_the_nodes_by_more_than_is_told(rule: Rule) -> None:
+    """Values 0 and 1, of which those are 0 whose share is negative at the worst of many places."""
+    grid = Grid(np.array([0.0, 36.0]), rule)
+    nodes, places = np.array(rule[0]), np.linspace(-1, 1, 5001)
+    shares = np.array([np.polyval(np.polyfit(nodes, one, len(nodes) - 1), places) for one in np.eye(len(nodes))])
+    worst = np.where(shares[:, np.minimum(shares, 0).sum(axis=0).argmin()] < 0, 0.0, 1.0)
+    beyond = (worst @ shares).max() - 1
+    assert beyond <= grid.overshoot <= 1.002 * beyond

@@ -46,6 +46,20 @@ def test_extremes_between_nodes_take_one_evaluation_or_two() -> None:
     assert len(calls) <= 2
 
 
+def test_of_two_ends_of_a_piece_that_are_alike_but_for_rounding_the_first_is_told() -> None:
+    """2x² − 1 over 135° … 180° with its end 20 units in the last place higher, zero elsewhere."""
+    rise = 20 * np.finfo(float).eps
+
+    def valley(degrees: np.ndarray, within: np.ndarray) -> dict[str, Sampled]:
+        x, inside = (degrees - 157.5) / 22.5, (within > 135) & (within < 180)
+        value = 2 * x * x - 1 + np.where(x == 1, rise, 0.0)
+        return {"valley": Sampled(np.where(inside, value, 0.0), np.where(inside, 4 * x / np.radians(22.5), 0.0))}
+
+    found = extremes(GRID, valley(GRID.degrees, GRID.within), valley)["valley"]
+    assert found.largest == (1.0 + rise, 135.0)
+    assert found.smallest == (-1.0, 157.5)
+
+
 def test_zeros_between_nodes_are_exact() -> None:
     assert zeros(GRID, on_nodes(waves), waves)["grown"] == pytest.approx([10.0, 190.0], rel=1e-15)
 

@@ -173,7 +173,8 @@ def test_integrals_follow_the_straight_lines() -> None:
     forces = solved(trace(0.1))
     gas = forces.drive.gas[0]
     assert gas.head is not None
-    straight = gas.head.straight_area * gas.piston.head_area * 0.4  # type: ignore[attr-defined]
+    weights, pressures = gas.head.straight_weights, gas.head.pressures  # type: ignore[attr-defined]
+    straight = float(weights @ pressures) * gas.piston.head_area * 0.4
     mean = (forces.energy_residual or 0.0) * forces.grid.integral(np.abs(forces.at(forces.grid.degrees).M)) + (
         forces.work or 0.0
     )

@@ -28,7 +28,8 @@ _what_varies = stacked(
         required=True,
         metavar="KEY=VALUES",
         shell_complete=complete_override,
-        help="rod_ratio=3:6:0.25, speed=40,50,60 rpm, bore=normal(450 mm, 0.2 mm) or uniform(...); may be repeated.",
+        help="rod_ratio=3:6:0.25, speed=40,50,60 rpm, bore=normal(450 mm, 0.2 mm) or uniform(...); may be repeated, "
+        "for all combinations; in one, 'bore=400,450 mm; head_end_rod=70,80 mm' go together.",
     ),
     click.option("--zip", "side_by_side", is_flag=True, help="First values with first values; else all combinations."),
     click.option("--sample", type=click.IntRange(1), metavar="N", help="Points of a Latin hypercube of distributions."),

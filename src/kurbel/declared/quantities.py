@@ -228,6 +228,11 @@ class Lists(NamedTuple):
         """The same for a machine whose pressures are absolute."""
         return Lists(*(tuple(one.absolute() for one in each) for each in self))
 
+    @property
+    def of_ram(self) -> "Lists":
+        """The same for a machine that drives a ram and has no piston."""
+        return Lists(*(tuple(one.of_ram() for one in each) for each in self))
+
     def columns(self, command: str) -> dict[str, Quantity]:
         """Return the columns of a command, by id."""
         return by_id(*(one for one in self.all_columns if command in one.commands))

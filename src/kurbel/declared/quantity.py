@@ -66,6 +66,18 @@ class Quantity(NamedTuple):
         """The symbol for an output that cannot show Greek letters."""
         return self.plain or self.symbol.translate(_PLAIN)
 
+    @property
+    def family(self) -> str:
+        """What its largest, smallest and mean value have in common: their column, or their id but for its end.
+
+        >>> force = Quantity("F_pin", "F_z", "force", "Force on the pin", called="force")
+        >>> force.extreme("smallest", "min", ("forces",)).family, Quantity("wear_mean", "f N c_m", "power", "").family
+        ('F_pin', 'wear')
+        """
+        name = self.asks[1] if len(self.asks) > 1 else self.id
+        stem, _, end = name.rpartition("_")
+        return stem if end in ("max", "min", "peak", "mean") else name
+
     def is_noise(self, value: float) -> bool:
         """Whether this value is a residual of rounding alone."""
         return self.residual and abs(value) < 10.0**NOISE_POWER
@@ -74,6 +86,11 @@ class Quantity(NamedTuple):
         """Return the quantity of a machine whose pressures are absolute."""
         text = self.text.replace("Gauge", "Absolute").replace("gauge", "absolute")
         return self._replace(text=text, mark="abs") if self.gauge else self
+
+    def of_ram(self) -> "Quantity":
+        """Return the quantity of a machine that drives a ram and has no piston."""
+        text = self.text.replace("piston force", "force along the stroke line").replace("piston speed", "ram speed")
+        return self._replace(text=text)
 
     def marked(self, unit: str) -> str:
         """Return the unit as it is shown."""

@@ -1,6 +1,6 @@
 """Unit systems: in which unit people read a value that kurbel holds in its base."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
@@ -41,6 +41,18 @@ def shown_unit(kind: str, system: str, largest: float = 0.0) -> str:
         return units
     fitting = [unit for unit in units[1:] if abs(largest) >= _taken_from(unit, kind)]
     return fitting[-1] if fitting else str(units[0])
+
+
+def units_of(sized: Sequence[tuple[str, str, float]], system: str) -> list[str]:
+    """Return the units of values of which kind, family and size in their base are given; a family has one unit.
+
+    >>> units_of([("force", "P", 600.0), ("force", "P", 6000.0), ("force", "T", 600.0)], "metric")
+    ['kN', 'kN', 'N']
+    """
+    largest: dict[tuple[str, str], float] = {}
+    for kind, family, size in sized:
+        largest[kind, family] = max(size, largest.get((kind, family), 0.0))
+    return [shown_unit(kind, system, largest[kind, family]) for kind, family, _ in sized]
 
 
 def _taken_from(unit: str, kind: str) -> float:

@@ -1,6 +1,6 @@
 """What varies, `KEY=…` as a list, a range or a distribution, and which designs there are.
 
-These are a grid of all values, or values side by side, each with every point of the sample.
+These are a grid of all values, or of values side by side, each with every point of the sample.
 """
 
 import math
@@ -22,6 +22,7 @@ MOST_ROWS = 10_000_000
 MOST_VALUES = 10_000_000
 """Values of one key; a range of more is a slip of its step."""
 _CALL = re.compile(r"(normal|uniform)\s*\((.*)\)\s*")
+_NEXT_KEY = re.compile(r";(?=[^;=]*=)")
 _UNKNOWN_CALL = re.compile(r"([a-z_]+)\s*\(.*\)\s*")
 
 
@@ -53,6 +54,18 @@ class Input(NamedTuple):
         """Return the value below which this share of all lies, as a text of the machine file."""
         assert self.distribution is not None
         return f"{self.distribution.at(share)!r} {self.unit}".rstrip()
+
+
+def read_axis(text: str) -> tuple[Input, ...]:
+    """Return the keys that go together, in `bore=400,450 mm; head_end_rod=70,80 mm`; raises UsageError.
+
+    >>> [one.key for one in read_axis("bore=400,450 mm; head_end_rod=70,80 mm")]
+    ['bore', 'head_end_rod']
+    """
+    together = tuple(read_input(part.strip()) for part in _NEXT_KEY.split(text))
+    if len(together) > 1 and any(one.distribution for one in together):
+        raise _refused(text, "a distribution has a --vary of its own; write a list or a range of each key")
+    return together
 
 
 def read_input(text: str) -> Input:
@@ -137,31 +150,30 @@ def _distribution(text: str, name: str, inside: str) -> tuple[Distribution, str]
 
 
 class Plan:
-    """The rows of a sweep, by their number from 0 on; the last key of a grid runs fastest.
+    """The rows of a sweep, by their number from 0 on; the last axis of a grid runs fastest.
 
-    side_by_side: the first values of all keys make the first row, the second ones the second, … sample, seed, sobol:
-    size, seed and kind of the sample of the distributions. Raises UsageError for lists that do not fit together.
+    axes: the keys that go together on each: their first values make the first place on it, the second ones the second,
+    … side_by_side: all lists are one axis. sample, seed, sobol: size, seed and kind of the sample of the distributions.
+    Raises UsageError for lists that do not fit together.
     """
 
     def __init__(
         self,
-        inputs: Sequence[Input],
+        axes: Sequence[tuple[Input, ...]],
         side_by_side: bool = False,
         sample: int | None = None,
         seed: int = 0,
         sobol: bool = False,
     ) -> None:
-        self.inputs = tuple(inputs)
+        self.inputs = tuple(one for axis in axes for one in axis)
         self._sample, self._seed, self._sobol = sample, seed, sobol
-        self._side_by_side = side_by_side
-        self._listed = [one for one in inputs if one.distribution is None]
-        self._drawn = [one for one in inputs if one.distribution is not None]
-        self._refuse()
-        lengths = [len(one.texts) for one in self._listed]
-        self._combinations = (lengths or [1])[0] if side_by_side else math.prod(lengths)
-        self.rows = self._combinations * (sample or 1)
+        self._drawn = [one for one in self.inputs if one.distribution is not None]
+        listed = [axis for axis in axes if axis[0].distribution is None]
+        self._axes = [tuple(one for axis in listed for one in axis)] if side_by_side and listed else listed
+        self._refuse("--zip" if side_by_side else "")
+        self.rows = math.prod(len(axis[0].texts) for axis in self._axes) * (sample or 1)
 
-    def _refuse(self) -> None:
+    def _refuse(self, option: str) -> None:
         keys = [one.key for one in self.inputs]
         if twice := next((key for place, key in enumerate(keys) if key in keys[:place]), ""):
             raise UsageError(f"--vary {twice}: this key is varied twice")
@@ -169,10 +181,11 @@ class Plan:
             raise UsageError(f"--vary {self._drawn[0].key}: a distribution needs --sample N, such as --sample 1000")
         if self._sample and not self._drawn:
             raise UsageError("--sample: no key has a distribution, such as bore=normal(450 mm, 0.2 mm)")
-        lengths = {one.key: len(one.texts) for one in self._listed}
-        if self._side_by_side and len(set(lengths.values())) > 1:
-            each = ", ".join(f"{key} has {count}" for key, count in lengths.items())
-            raise UsageError(f"--zip: the lists must be of one length; {each}")
+        for axis in self._axes:
+            if len({len(one.texts) for one in axis}) > 1:
+                each = ", ".join(f"{one.key} has {len(one.texts)}" for one in axis)
+                where = option or f"--vary {'; '.join(one.key for one in axis)}"
+                raise UsageError(f"{where}: the lists must be of one length; {each}")
 
     @cached_property
     def _points(self) -> "Array":
@@ -183,12 +196,10 @@ class Plan:
     def texts(self, row: int) -> tuple[str, ...]:
         """Return the texts of the keys in a row, in the order of the inputs."""
         combination, point = divmod(row, self._sample or 1)
-        found = {}
-        for one in reversed(self._listed):
-            combination, place = (
-                (combination, combination) if self._side_by_side else divmod(combination, len(one.texts))
-            )
-            found[one.key] = one.texts[place]
+        found: dict[str, str] = {}
+        for axis in reversed(self._axes):
+            combination, place = divmod(combination, len(axis[0].texts))
+            found.update((one.key, one.texts[place]) for one in axis)
         for column, one in enumerate(self._drawn):
             found[one.key] = one.text(float(self._points[point, column]))
         return tuple(found[one.key] for one in self.inputs)

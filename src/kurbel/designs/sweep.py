@@ -6,18 +6,19 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI, convert, shown_unit
+from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder
 from kurbel.designs.columns import Answer, asked_answers, subjects
-from kurbel.designs.plan import Input, Plan, read_input
+from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot
+from kurbel.numerics.extreme import size_of
 
-CHUNK = 200
+CHUNK = 1000
 """Rows that are computed together: what memory holds at once, and what a run computes anew that begins amid them."""
 _FIRST = 20
 """Rows of the first chunk, so that a reader sees something at once."""
@@ -30,8 +31,8 @@ _STARTS = 100
 class Spec(NamedTuple):
     """All that a sweep is made of, in texts, so that any process can make it anew.
 
-    vary: `KEY=…` each; given: inputs beside these. columns: ids or symbols; with_angles: beside extremes the angle
-    where each stands; system: of units; the others: see `Plan`.
+    vary: `KEY=…` each, or several that go together; given: inputs beside these. columns: ids or symbols; with_angles:
+    beside extremes the angle where each stands; system: of units; the others: see `Plan`.
     """
 
     origin: Origin
@@ -76,8 +77,8 @@ class Sweep:
 
     def __init__(self, spec: Spec) -> None:
         self.spec = spec
-        inputs = [*map(read_input, spec.vary), *spec.given]
-        self.plan = Plan(inputs, spec.side_by_side, spec.sample, spec.seed, spec.sobol)
+        axes = [*map(read_axis, spec.vary), *((one,) for one in spec.given)]
+        self.plan = Plan(axes, spec.side_by_side, spec.sample, spec.seed, spec.sobol)
         self.rows = self.plan.rows
         self._binder = self._started()
         machine = self._binder.machine
@@ -121,8 +122,9 @@ class Sweep:
         if self.spec.system == "si":
             return tuple(SI[one.kind] for one in self.asked)
         first = answers_of([Lot(self._binder.machine, (0,))], self.asked)[0]
-        sizes = [0.0] * len(self.asked) if isinstance(first, str) else map(_size, first)
-        return tuple(shown_unit(one.kind, self.spec.system, size) for one, size in zip(self.asked, sizes, strict=True))
+        sizes = [0.0] * len(self.asked) if isinstance(first, str) else map(size_of, first)
+        sized = [(one.kind, one.quantity.family, size) for one, size in zip(self.asked, sizes, strict=True)]
+        return tuple(units_of(sized, self.spec.system))
 
     def chunk(self, company: range, wanted: range) -> list[Row]:
         """Return the wanted rows of a chunk, counted from 0."""
@@ -227,10 +229,6 @@ def _in_unit(number: Any, kind: str, unit: str) -> Any:
     if isinstance(number, tuple):
         return tuple(convert(part, kind, unit) + 0.0 for part in number)
     return None if number is None else convert(number, kind, unit) + 0.0
-
-
-def _size(value: Any) -> float:
-    return max(map(abs, value), default=0.0) if isinstance(value, tuple) else abs(value or 0.0)
 
 
 def _limit_answers(machine: Machine) -> Iterable[tuple[Answer, float]]:

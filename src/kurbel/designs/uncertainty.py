@@ -14,7 +14,7 @@ import numpy as np
 
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI, convert, shown_unit
+from kurbel.declared.unit_systems import SI, convert, units_of
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import answers_of, stands_beside
 from kurbel.designs.binding import Binder, written
@@ -265,9 +265,9 @@ def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], sys
     if not own:
         return part
     names, values, spreads = [], [], []
-    for one in own:
+    units = units_of([(one.answer.kind, one.answer.quantity.family, abs(one.value)) for one in own], system)
+    for one, unit in zip(own, units):
         quantity = one.answer.quantity
-        unit = shown_unit(quantity.kind, system, abs(one.value))
         names.append((quantity.id, quantity.symbol, unit or "1"))
         values.append(convert(one.value, quantity.kind, unit))
         spreads.append(convert(one.spread, quantity.kind, unit))

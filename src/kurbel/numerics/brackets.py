@@ -162,7 +162,9 @@ def may_be_zero(grid: Grid, samples: Sequence[OnNodes], high: Array, low: Array,
 def slope_brackets(grid: Grid, rows: Rows, evaluate: Evaluate) -> Brackets:
     """Return where slopes pass zero between two nodes, once or to and fro."""
     plain = _crossing(grid, rows)
-    twice, share = _dips(grid, rows)
+    bends = grid.slopes(rows.slope, rows.piece)
+    toward = _toward(grid, rows, bends)
+    twice, share = _dips(grid, rows, bends, *toward) if len(toward[0]) else (plain, ())
     if not len(share):
         return plain
     middle = twice.low + share * (twice.high - twice.low)
@@ -179,21 +181,24 @@ def _crossing(grid: Grid, rows: Rows) -> Brackets:
     return _between(grid, rows, *_worth(grid, rows, once))
 
 
-def _dips(grid: Grid, rows: Rows) -> tuple[Brackets, Array]:
-    """Return the intervals in which the tangents to a slope of one sign at both ends meet beyond zero.
+def _toward(grid: Grid, rows: Rows, bends: Array) -> tuple[Indices, Indices]:
+    """Return the intervals at both ends of which a slope has one sign and comes nearer to zero inward."""
+    rising, bending = rows.slope > 0, bends > 0
+    before, after = rising[:, :-1], rising[:, 1:]
+    return _worth(grid, rows, (before == after) & (before != bending[:, :-1]) & (after == bending[:, 1:]))
+
+
+def _dips(grid: Grid, rows: Rows, bends: Array, places: Indices, nodes: Indices) -> tuple[Brackets, Array]:
+    """Return those of these intervals in which the tangents to a slope at both ends meet beyond zero.
 
     Also where between the ends a line through its derivatives there is zero, (n,) as a share of the way.
     """
-    bends = grid.slopes(rows.slope, rows.piece)
-    ends = (part[:, side] for part in (rows.slope, bends) for side in (slice(-1), slice(1, None)))
-    low, high, bend, next_bend = ends
-    toward = (low * high > 0) & (low * bend < 0) & (high * next_bend > 0)
-    places, nodes = _worth(grid, rows, toward)
-    low, high, bend, next_bend = (part[places, nodes] for part in (low, high, bend, next_bend))
+    low, high = rows.slope[places, nodes], rows.slope[places, nodes + 1]
+    bend, next_bend = bends[places, nodes], bends[places, nodes + 1]
     width = grid.half_widths[rows.piece[places]] * grid.gaps[nodes]
-    lowest = low + bend * (high - low - next_bend * width) / (bend - next_bend)
-    beyond = lowest * low <= 0
     share = bend / (bend - next_bend)
+    lowest = low + share * (high - low - next_bend * width)
+    beyond = (lowest * low <= 0) & (low * high > 0)
     return _between(grid, rows, places[beyond], nodes[beyond]), share[beyond]
 
 

@@ -21,6 +21,12 @@ def number_of(answer: Any) -> Any:
     return answer.value if isinstance(answer, Extreme) else answer
 
 
+def size_of(answer: Any) -> float:
+    """Return the magnitude of an answer, of a list the largest, 0 of none."""
+    number = number_of(answer)
+    return max(map(abs, number), default=0.0) if isinstance(number, tuple) else abs(number or 0.0)
+
+
 def largest(first: Extreme, *others: Extreme) -> Extreme:
     """Return the one with the largest value, the first of equal ones; one that is nan counts for nothing."""
     for other in others:

@@ -76,7 +76,7 @@ def _angle_tables(report: Report, look: Look, across: int | None) -> Iterator[Ta
 def _place_tables(report: Report, look: Look, across: int | None) -> Iterator[Table]:
     from kurbel.render.place_table import text_of
 
-    for one in (one for part in report.all_parts for one in part.place_tables):
+    for one in report.printed_tables:
         names, columns = text_of(one, look)
         for part in _parts(len(columns), across):
             yield Table(look.charset.text(one.title), [*names, *columns[part]])

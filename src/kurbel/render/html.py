@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from kurbel.render import Look
 from kurbel.render.document import ON_PAPER, Table, document, key_value_table
+from kurbel.render.prose import measures
 from kurbel.render.sheet import MARK, Row
 from kurbel.report.tables import KeyValue, Report
 
@@ -56,7 +57,7 @@ def style() -> str:
         "table{border-collapse:collapse;font-variant-numeric:tabular-nums}"
         "caption{text-align:left;font-weight:600;padding:.3rem 0}\n"
         "th,td{padding:.12rem .5rem;text-align:left;vertical-align:top;overflow-wrap:normal}"
-        "td.r,th.r{text-align:right}td.r,tbody th.r,thead small{white-space:nowrap}\n"
+        "td.r,th.r{text-align:right}td.r,tbody th.r,thead small,.n{white-space:nowrap}\n"
         "thead th{border-top:2px solid var(--ink);border-bottom:1px solid var(--ink);vertical-align:bottom}"
         "tbody tr:last-child>*{border-bottom:2px solid var(--ink)}tbody th{font-weight:400}\n"
         "@media screen and (max-width:40rem){.wide td:not(.r):last-child{min-width:12rem}}\n"
@@ -85,7 +86,7 @@ class _Html(NamedTuple):
         yield f"<h{self.level}>{escape(text)}</h{self.level}>\n"
 
     def paragraph(self, text: str) -> Iterator[str]:
-        yield f"<p>{escape(text)}</p>\n"
+        yield f"<p>{_prose(text)}</p>\n"
 
     def table(self, table: Table) -> Iterator[str]:
         return grid(table)
@@ -135,8 +136,8 @@ def _cells(row: Sequence[str], of_row: int, numbers: Collection[int]) -> str:
     cells = []
     for k, text in enumerate(row):
         text = text.strip()
-        shown = f"<b>{escape(text[:-1])}</b>" if text.endswith(MARK) else escape(text)
         right = _RIGHT if k in numbers else ""
+        shown = f"<b>{escape(text[:-1])}</b>" if text.endswith(MARK) else escape(text) if right else _prose(text)
         if k < of_row:
             shown = shown if right else shown.replace(".", ".<wbr>")  # long keys fold
             cells.append(f'<th scope="row"{right}>{shown}</th>')
@@ -145,7 +146,12 @@ def _cells(row: Sequence[str], of_row: int, numbers: Collection[int]) -> str:
     return "".join(cells)
 
 
+def _prose(text: str) -> str:
+    """Return a text of which no unit leaves its number."""
+    return measures().sub(r'<span class="n">\g<0></span>', escape(text))
+
+
 def item_list(title: str, lines: Iterable[str], level: int) -> str:
     """Return a list of sentences under its title, a heading of this level."""
-    items = "".join(f"<li>{escape(one)}</li>\n" for one in lines)
+    items = "".join(f"<li>{_prose(one)}</li>\n" for one in lines)
     return f"<h{level}>{escape(title)}</h{level}>\n<ul>\n{items}</ul>\n"

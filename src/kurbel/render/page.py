@@ -22,7 +22,7 @@ def page(report: Report, look: Look) -> Iterator[Line]:
     for sheet in sheets(report, look):
         yield BLANK
         yield from table(sheet, look)
-    if any(part.place_tables for part in report.all_parts):
+    if any(report.printed_tables):
         from kurbel.render.place_table import place_tables
 
         for place_lines in place_tables(report, look):

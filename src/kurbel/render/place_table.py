@@ -53,7 +53,7 @@ def _own_scale(column: Column) -> bool:
 
 def place_tables(report: Report, look: Look) -> Iterator[list[Line]]:
     """Yield the lines of every table of places, each with its title."""
-    for table in (table for part in report.all_parts for table in part.place_tables):
+    for table in report.printed_tables:
         title = [line(one, "name") for one in folded(look.charset.text(table.title), look.width)]
         names, columns = text_of(table, look)
         side = [_beside(name, table.headed, len(names) > 1 and name is names[0]) for name in names]

@@ -14,7 +14,7 @@ from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.report.provenance import provenance
-from kurbel.report.shown import shown_columns, shown_key_value
+from kurbel.report.shown import shown_columns, shown_key_values
 from kurbel.report.tables import Column, Later, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.figures import answered
 
@@ -121,7 +121,7 @@ class Frame(NamedTuple):
         return Part(
             subject.name,
             columns,
-            self.later(lambda: (shown_key_value(*one, self.system) for one in subject.key_values(self.command))),
+            self.later(lambda: shown_key_values(subject.key_values(self.command), self.system)),
             self.later(subject.left_out),
             self.later(subject.warnings),
             subject.place_tables,

@@ -4,7 +4,7 @@ import math
 
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.report.shown import place_table, shown_key_value
+from kurbel.report.shown import place_table, shown_key_values
 from kurbel.report.tables import LeftOut, Part, Report
 from kurbel.solver.cylinder.friction import holding_force
 
@@ -37,7 +37,7 @@ def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -
     }
     names = ((name,) for name in asked)
     table = place_table("plane", "Force P over the weight Q", ("direction",), names, found.items(), "si")
-    rho = shown_key_value(_RHO, math.degrees(math.atan(coefficient)), "si")
+    (rho,) = shown_key_values([(_RHO, math.degrees(math.atan(coefficient)))], "si")
     whole = Part("inclined plane", (), (rho,), tuple(left), place_tables=(table,))
     head = (
         f"Incline {incline:g} deg, coefficient {coefficient:g} (Redtenbacher 1862)",

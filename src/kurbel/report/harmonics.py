@@ -34,7 +34,7 @@ def harmonics_report(
     each = [_cylinder(case.machine, one, frame.system) for one in found.cylinders]
     (whole,) = subjects(case, found)
     tables = (_machine_table(found, frame.system), *_speed_tables(case.machine, found, speeds, frame.system))
-    whole = whole._replace(place_tables=tables)
+    whole = whole._replace(place_tables=tuple(table._replace(said=_uniform(found)) for table in tables))
     return frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
 
 
@@ -134,7 +134,15 @@ def _speed_tables(
     yield place_table("orders_by_speed", title, ("kind",), names, columns.items(), system)
 
 
+def _uniform(found: MachineOrders) -> bool:
+    """Return whether no order is there, at no speed."""
+    return not any(one.amplitudes.any() for one in found.machine if one)
+
+
 def _notes(found: MachineOrders) -> Iterable[str]:
+    if _uniform(found):
+        yield "The turning effort has none of these orders: they are all zero."
+        return
     yield "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
     if found.machine.inertia is not None:
         yield "M_b goes with the square of the speed; M_g, of gas, weight and friction, counts the same at every speed."

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from kurbel.declared.quantity import Quantity
-from kurbel.declared.unit_systems import convert, shown_unit
+from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import UsageError
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import Extreme, size_of
 from kurbel.report.tables import Column, KeyValue, PlaceTable
 
 _AT_ONCE = 8192
@@ -93,13 +93,19 @@ def place_table(
     return PlaceTable(id, title, heads, tuple(names), tuple(column(*one) for one in found), headed)
 
 
-def shown_key_value(quantity: Quantity, value: Any, system: str) -> KeyValue:
+def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list[KeyValue]:
+    """Return key values, the largest and the smallest of a column in one unit; found: as numbers in SI, or as below."""
+    given = tuple(found)
+    units = units_of([(quantity.kind, quantity.family, size_of(value)) for quantity, value in given], system)
+    return [_key_value(*one, unit) for one, unit in zip(given, units)]
+
+
+def _key_value(quantity: Quantity, value: Any, unit: str) -> KeyValue:
     """Return the key value; value: a number in SI, an Extreme, or a tuple. Raises UsageError as above."""
     at, raw = (value.degrees, value.value) if isinstance(value, Extreme) else (None, value)
     each: tuple[float, ...] = raw if isinstance(raw, tuple) else (raw,)
     if not all(math.isfinite(one) for one in each):
         raise too_large(quantity)
-    unit = shown_unit(quantity.kind, system, max(map(abs, each), default=0.0))
     shown = [float(convert(one, quantity.kind, unit)) + 0.0 for one in each]
     number = tuple(shown) if isinstance(raw, tuple) else raw if isinstance(raw, int) else shown[0]  # a count
     noise = any(map(quantity.is_noise, shown))

@@ -9,9 +9,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from kurbel.declared.quantity import Quantity
-from kurbel.declared.unit_systems import convert, shown_unit
+from kurbel.declared.unit_systems import convert, units_of
 from kurbel.errors import KurbelError
-from kurbel.numerics.extreme import number_of
+from kurbel.numerics.extreme import number_of, size_of
 from kurbel.report.alike import grouped, together
 from kurbel.report.document import Document, Grid, Pair, Section
 from kurbel.report.frame import Subject, subjects_of
@@ -84,10 +84,9 @@ def _had(found: Callable[[], Iterable[Item]]) -> list[Item]:
 
 def _rows(left: Subject | None, right: Subject | None, command: str, system: str) -> Iterator[tuple[str, ...]]:
     found = [_values(one, command) for one in (left, right)]
-    for quantity in dict.fromkeys((*found[0], *found[1])):
-        values = [one.get(quantity) for one in found]
-        given = [value for value in values if value is not None]
-        unit = shown_unit(quantity.kind, system, max(map(abs, given)))
+    told = {quantity: [one.get(quantity) for one in found] for quantity in (*found[0], *found[1])}
+    units = units_of([(one.kind, one.family, max(map(size_of, values))) for one, values in told.items()], system)
+    for (quantity, values), unit in zip(told.items(), units):
         texts = [_NONE if value is None else f"{convert(value, quantity.kind, unit):.5g}" for value in values]
         yield quantity.symbol, *texts, quantity.marked(unit), _difference(values), quantity.text
 

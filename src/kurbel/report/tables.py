@@ -81,7 +81,7 @@ class PlaceTable(NamedTuple):
 
     heads: what the names are, such as (part, place), or none; names: those of each row, one to a head, with _ for a
     blank; columns: as over the crank angle, one value to a row; headed: the heads are printed too, and the names are
-    texts as they stand.
+    texts as they stand; said: a note says all of it, so that it is not printed.
     """
 
     id: str
@@ -90,6 +90,7 @@ class PlaceTable(NamedTuple):
     names: tuple[tuple[str, ...], ...]
     columns: tuple[Column, ...]
     headed: bool = False
+    said: bool = False
 
 
 class Part(NamedTuple):
@@ -150,6 +151,11 @@ class Report(NamedTuple):
     def all_parts(self) -> tuple[Part, ...]:
         """The parts, and the whole machine after them."""
         return self.parts if self.whole is None else (*self.parts, self.whole)
+
+    @property
+    def printed_tables(self) -> Iterator[PlaceTable]:
+        """The tables of places as people read them."""
+        return (table for part in self.all_parts for table in part.place_tables if not table.said)
 
     def of_cylinder(self, name: str) -> "Report":
         """Return the results of one part alone, or of all that belong to a cylinder, by its name or its number.

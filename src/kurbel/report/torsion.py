@@ -20,6 +20,8 @@ from kurbel.solver.torsion.forced import Vibration, stress
 from kurbel.solver.torsion.vibration import RUN_UP, Critical, ShaftVibration
 
 _Values = dict[Quantity, Sequence[Any]]
+_Borne = tuple[float | None, float | None]
+"""Largest vibratory torque in N m and stress in Pa of any piece, None where none is told."""
 _HIGHEST = 12
 """Order up to which critical speeds are told unless orders are asked for."""
 _MODES = 3
@@ -44,10 +46,11 @@ def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Repor
     found = case.torsion_of(orders_of(case.machine, wanted.orders))
     critical = found.critical_speeds(wanted.modes, _HIGHEST if wanted.orders is None else math.inf)
     (whole,) = subjects(case, found, critical)
-    whole = whole._replace(place_tables=tuple(_tables(found, critical, wanted, frame.system)))
+    borne = _borne(found, critical)
+    whole = whole._replace(place_tables=tuple(_tables(found, critical, borne, wanted, frame.system)))
     pieces = found.pieces if frame.columns else ()
     each = [Subject(one.name, (), one.at) for one in pieces]
-    return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found, wanted, critical))
+    return frame.report(case.machine, "Drehschwingungen", each, whole, _notes(found, wanted, critical, borne))
 
 
 def subjects(
@@ -72,13 +75,18 @@ def torsion_warnings(case: Case) -> Iterable[str]:
 
 def _refuse_endless(found: ShaftVibration) -> None:
     if found.vibration is not None and found.vibration.endless.any():
-        raise NoSolutionError("an order of the torque meets a natural vibration that nothing damps: give it 'damping'")
+        raise NoSolutionError(
+            "an order of the torque meets a natural vibration that next to nothing damps: give it 'damping'; or pieces "
+            "of the shaft are too unequal to compute with: look at the units of their stiffnesses"
+        )
 
 
-def _tables(found: ShaftVibration, critical: tuple[Critical, ...], wanted: Wanted, system: str) -> Iterable[PlaceTable]:
+def _tables(
+    found: ShaftVibration, critical: Sequence[Critical], borne: Sequence[_Borne], wanted: Wanted, system: str
+) -> Iterable[PlaceTable]:
     yield _modes_table(found, system)
     yield _holzer_table(found, wanted.mode, system)
-    yield _critical_table(found, critical, system)
+    yield _critical_table(critical, borne, system)
     if found.pieces:
         yield _pieces_table(found, system)
     if wanted.speeds is not None and not found.obstacle:
@@ -138,25 +146,29 @@ def _holzer_table(found: ShaftVibration, mode: int, system: str) -> PlaceTable:
     return _table("holzer", title, "mass", names, values, system)
 
 
-def _critical_table(found: ShaftVibration, critical: tuple[Critical, ...], system: str) -> PlaceTable:
-    """Return the critical speeds, and what the pieces bear where the machine meets them."""
-    torques: list[float | None] = [None] * len(critical)
-    stresses: list[float | None] = [None] * len(critical)
+def _borne(found: ShaftVibration, critical: Sequence[Critical]) -> list[_Borne]:
+    """Return what the pieces bear at critical speeds: nothing is told of those not met, and of those without an end."""
+    borne: list[_Borne] = [(None, None)] * len(critical)
     met = [index for index, one in enumerate(critical) if found.met(one)]
     if met:
         vibration = found.forced([critical[index].speed for index in met])
         found_there = zip(met, vibration.vibratory.max(axis=0).tolist(), _stresses(vibration), vibration.endless)
         for index, torque, strain, endless in found_there:
             if not endless:
-                torques[index], stresses[index] = torque, strain
+                borne[index] = torque, strain
+    return borne
+
+
+def _critical_table(critical: Sequence[Critical], borne: Sequence[_Borne], system: str) -> PlaceTable:
+    """Return the critical speeds, and what the pieces bear where the machine meets them."""
     values: _Values = {
         CRITICAL_SPEEDS["order"]: [one.order for one in critical],
         CRITICAL_SPEEDS["mode"]: [float(one.mode) for one in critical],
         CRITICAL_SPEEDS["speed"]: [one.speed for one in critical],
         CRITICAL_SPEEDS["phase_sum"]: [one.phase_sum for one in critical],
         CRITICAL_SPEEDS["distance"]: [one.distance for one in critical],
-        CRITICAL_SPEEDS["M_vibratory"]: torques,
-        CRITICAL_SPEEDS["tau_vibratory"]: stresses,
+        CRITICAL_SPEEDS["M_vibratory"]: [torque for torque, _ in borne],
+        CRITICAL_SPEEDS["tau_vibratory"]: [strain for _, strain in borne],
     }
     names = ["near" if one.near else "" for one in critical]
     return _table("critical_speeds", "Critical speeds", "note", names, values, system)
@@ -230,13 +242,15 @@ def _listed(orders: Sequence[str]) -> str:
     return f"order{'s' if len(orders) > 1 else ''} {', '.join(orders)}"
 
 
-def _notes(found: ShaftVibration, wanted: Wanted, critical: Sequence[Critical]) -> Iterable[str]:
+def _notes(
+    found: ShaftVibration, wanted: Wanted, critical: Sequence[Critical], borne: Sequence[_Borne]
+) -> Iterable[str]:
     if wanted.orders is None:
         yield f"Critical speeds of orders up to {_HIGHEST}; --orders tells others, --modes of more modes."
-    if any(map(found.met, critical)) and not all(map(found.met, critical)):
+    if any(map(found.met, critical)) and None in {torque for torque, _ in borne}:
         yield (
             "What the shaft bears at a critical speed holds all orders, when running there; – stands where the machine "
-            f"does not come, beyond {RUN_UP:g} times the working speed, and where nothing damps the mode."
+            f"does not come, beyond {RUN_UP:g} times the working speed, and where next to nothing damps the mode."
         )
     if any(piece.ratio != 1 for piece in found.line.pieces):
         yield "Masses and stiffnesses beyond the gear are referred to the cranks' shaft by u²; torques are true ones."

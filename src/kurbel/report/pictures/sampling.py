@@ -2,11 +2,12 @@
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.numerics.grid import cut_equally
 from kurbel.report.pictures.picture import Piece
 
 _WIDEST = 7.5  # degrees between two points at first: narrow enough that no wave hides between them
@@ -31,8 +32,9 @@ def sampled(breaks: Array, values: Values, fineness: float) -> Samples:
 
     breaks: crank angles (m,) in degrees between which all quantities are smooth.
     """
-    low, high = _intervals(breaks)
-    within = np.repeat((breaks[:-1] + breaks[1:]) / 2, _counts(breaks))
+    counts = np.ceil(np.diff(breaks) / _WIDEST).astype(int)
+    edges, within = cut_equally(breaks, counts), np.repeat((breaks[:-1] + breaks[1:]) / 2, counts)
+    low, high = edges[:-1], edges[1:]
     at_low, at_high = np.split(values(np.append(low, high), np.append(within, within)), 2, axis=1)
     known = [(low, within, at_low), (high, within, at_high)]
     height = np.ptp(np.concatenate((at_low, at_high), axis=1), axis=1)[:, None] * fineness
@@ -49,20 +51,6 @@ def sampled(breaks: Array, values: Values, fineness: float) -> Samples:
         )
         within = np.concatenate((within[missed],) * 2)
     return _in_order(*(np.concatenate(parts, axis=-1) for parts in zip(*known)))
-
-
-def _counts(breaks: Array) -> Any:
-    return np.asarray(np.ceil(np.diff(breaks) / _WIDEST)).astype(int)
-
-
-def _intervals(breaks: Array) -> tuple[Array, Array]:
-    """Return the ends (n,) of intervals that cut every piece evenly."""
-    counts = _counts(breaks)
-    first = np.repeat(np.cumsum(counts) - counts, counts)
-    place = np.arange(counts.sum()) - first
-    start, end, count = (np.repeat(part, counts) for part in (breaks[:-1], breaks[1:], counts))
-    width = end - start
-    return start + width * (place / count), np.where(place + 1 == count, end, start + width * ((place + 1) / count))
 
 
 def _in_order(degrees: Array, within: Array, values: Array) -> Samples:

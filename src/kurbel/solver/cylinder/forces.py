@@ -44,7 +44,9 @@ class CylinderForces(Searched, Results):
     @property
     def lists(self) -> Lists:
         """The quantities that a machine with this mechanism may have, its pressures counted as in the machine file."""
-        known = quantities_of(self.drive.mechanism)
+        known, cylinder = quantities_of(self.drive.mechanism), self.drive.cylinder
+        if not cylinder.pistons and (cylinder.ram_force or self.drive.mechanism.quick_return):
+            return known.of_ram
         gas = self.drive.own_gas
         return known.absolute if gas and gas.absolute else known
 

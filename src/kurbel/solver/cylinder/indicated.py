@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Indices
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -72,10 +73,12 @@ class Indicated:
     @cached_property
     def mean_pressure_exchange(self) -> float | None:
         """Share of p_i in Pa of exhaust and intake; None in two strokes."""
-        if self.gas is None or not self._traces or self._traces[0].exchange_weights is None:
+        weighed = ((one, one.exchange_weights) for one in self._traces)
+        each = [self._share(one) * weights * one.pressures for one, weights in weighed if weights is not None]
+        if not each:
             return None
-        weighed = [(self._share(one), one.exchange_weights) for one in self._traces]
-        return math.fsum(share * float(w @ one.pressures) for one, (share, w) in zip(self._traces, weighed))
+        parts = np.concatenate(each).tolist()
+        return float(unless_cancelled(math.fsum(parts), math.fsum(map(abs, parts))))
 
     @property
     def mean_pressure_gross(self) -> float | None:

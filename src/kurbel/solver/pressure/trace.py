@@ -167,11 +167,6 @@ class TracePressure:
         """Weights (n,) of the samples in ∮ p dz along straight lines, by a Gauss rule that is exact to rounding."""
         return self._straight_weights(0.0, self.setting.cycle)
 
-    @property
-    def straight_area(self) -> float:
-        """∮ p dz in Pa with straight lines between the samples."""
-        return math.fsum((self.straight_weights * self.pressures).tolist())
-
     @cached_property
     def exchange_weights(self) -> Array | None:
         """Weights (n,) of the samples in ∫ p dz over exhaust and intake, along straight lines; None in two strokes."""

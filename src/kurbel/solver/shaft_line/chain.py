@@ -4,9 +4,9 @@
 larger of two rows first.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from kurbel.machine.shaft_line import ShaftLine
 
 _AT_ONCE = 2048
 """Orders at speeds that are solved together: what the nearest memory holds."""
+_EPSILON = float(np.finfo(float).eps)
+_STILL = float(np.finfo(float).tiny)
 _ARRAYS = ("inertias", "stiffnesses", "piece_damping", "mass_damping", "loss")
 
 
@@ -73,8 +75,19 @@ class Chain:
         return Chain(**turned, ground=ground)
 
 
-def responding(chain: Chain, frequencies: Array, torques: ComplexArray, held: Array | float = 0.0) -> ComplexArray:
-    """Return the angles (n, …) in rad of the masses under torques (n, …) in N m at angular frequencies νω (…) in rad/s.
+class Response(NamedTuple):
+    """The angles of the masses in rad, (n, …), and about what rounding moves them by.
+
+    A θ = M is solved for a chain and torques whose last digits are unsure: A δθ = δM − δA θ, all of it taken in phase
+    with the angles, as it is where they meet a natural vibration.
+    """
+
+    angles: ComplexArray
+    moved: ComplexArray
+
+
+def responding(chain: Chain, frequencies: Array, torques: ComplexArray, held: Array | float = 0.0) -> Response:
+    """Return what the masses do under torques (n, …) in N m at angular frequencies νω (…) in rad/s.
 
     held: damping of the masses beside their own, (n, …) in N m s/rad. Without any damping a resonance has no answer: it
     is not finite.
@@ -83,16 +96,22 @@ def responding(chain: Chain, frequencies: Array, torques: ComplexArray, held: Ar
     sides, held = (np.broadcast_to(one, shape).reshape(shape[0], -1) for one in (torques, held))
     parts = (slice(start, start + _AT_ONCE) for start in range(0, max(1, len(flat)), _AT_ONCE))
     each = [_responding(chain, flat[part], sides[:, part], held[:, part]) for part in parts]
-    return np.concatenate(each, axis=1).reshape(shape)
+    return Response(*(np.concatenate(of, axis=1).reshape(shape) for of in zip(*each)))
 
 
-def _responding(chain: Chain, frequencies: Array, torques: ComplexArray, held: Array) -> ComplexArray:
-    """Return the angles (n, m) at frequencies (m,)."""
+def _responding(chain: Chain, frequencies: Array, torques: ComplexArray, held: Array) -> Response:
+    """Return it at frequencies (m,)."""
     spring, damping = _springs(chain, frequencies), chain.mass_damping[:, None] + held
     own = -np.multiply.outer(chain.inertias, frequencies**2) + 1j * damping * frequencies
     before, after = chain.fixed
     beside = np.pad(spring, ((1 - before, 1 - after), (0, 0)))
-    return _three_diagonals(own + beside[:-1] + beside[1:], -spring[chain.between], torques)
+    springs = beside[:-1] + beside[1:]
+    solved = _three_diagonals(own + springs, -spring[chain.between])
+    angles = solved(torques)
+    phases = angles / np.maximum(np.abs(angles), _STILL)
+    return Response(
+        angles, solved(_EPSILON * ((np.abs(own) + 2 * np.abs(springs)) * angles + np.abs(torques) * phases))
+    )
 
 
 def twisting(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
@@ -106,25 +125,35 @@ def _springs(chain: Chain, frequencies: Array) -> ComplexArray:
     return np.asarray(still + 1j * np.multiply.outer(chain.piece_damping, frequencies))
 
 
-def _three_diagonals(own: ComplexArray, beside: ComplexArray, sides: ComplexArray) -> ComplexArray:
-    """Return x (n, m) with beside_{i−1} x_{i−1} + own_i x_i + beside_i x_{i+1} = sides_i."""
+def _three_diagonals(own: ComplexArray, beside: ComplexArray) -> Callable[[ComplexArray], ComplexArray]:
+    """Return what solves beside_{i−1} x_{i−1} + own_i x_i + beside_i x_{i+1} = sides_i for x (n, m)."""
     count, width = own.shape
-    # of each row that is done with: the factors of x_i, x_{i+1}, x_{i+2}, and its right side
-    done = np.zeros((count, 4, width), dtype=complex)
-    row, lower = np.zeros((2, 4, width), dtype=complex)
-    row[0], row[3] = own[0], sides[0]
+    # of each row that is done with: the factors of x_i, x_{i+1}, x_{i+2}
+    done = np.zeros((count, 3, width), dtype=complex)
+    row, lower = np.zeros((2, 3, width), dtype=complex)
+    swaps, shares = np.zeros((count, width), dtype=bool), np.zeros((count, width), dtype=complex)
+    row[0] = own[0]
     row[1] = beside[0] if count > 1 else 0.0
     for index in range(1, count):
-        lower[0], lower[1], lower[3] = beside[index - 1], own[index], sides[index]
+        lower[0], lower[1] = beside[index - 1], own[index]
         lower[2] = beside[index] if index + 1 < count else 0.0
-        swap = np.abs(lower[0]) > np.abs(row[0])
-        above = np.where(swap, lower, row)
+        swap = swaps[index] = np.abs(lower[0]) > np.abs(row[0])
+        above = done[index - 1] = np.where(swap, lower, row)
         below = np.where(swap, row, lower)
-        done[index - 1] = above
-        row[[0, 1, 3]] = below[1:] - below[0] / above[0] * above[1:]
+        shares[index] = below[0] / above[0]
+        row[:2] = below[1:] - shares[index] * above[1:]
     done[-1] = row
-    found = np.zeros((count + 2, width), dtype=complex)
-    for index in range(count - 1, -1, -1):
-        first, second, third, right = done[index]
-        found[index] = (right - second * found[index + 1] - third * found[index + 2]) / first
-    return np.asarray(found[:-2])
+
+    def solved(sides: ComplexArray) -> ComplexArray:
+        right = sides.astype(complex)
+        for index in range(1, count):
+            above = np.where(swaps[index], right[index], right[index - 1])
+            right[index] = np.where(swaps[index], right[index - 1], right[index]) - shares[index] * above
+            right[index - 1] = above
+        found = np.zeros((count + 2, width), dtype=complex)
+        for index in range(count - 1, -1, -1):
+            first, second, third = done[index]
+            found[index] = (right[index] - second * found[index + 1] - third * found[index + 2]) / first
+        return np.asarray(found[:-2])
+
+    return solved

@@ -9,12 +9,12 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray, Flags
 from kurbel.machine.shaft_line import ShaftLine
 from kurbel.numerics.waves import crests
-from kurbel.solver.shaft_line.chain import Chain, responding, twisting
+from kurbel.solver.shaft_line.chain import Chain, Response, responding, twisting
 from kurbel.solver.turning.harmonics import MachineOrders, Spectrum, spectrum
 from kurbel.solver.turning.speed_lines import speed_law
 
-_ENDLESS = 1e9
-"""Torque in a piece, over the largest that drives, beyond which nothing but rounding bounds it."""
+_LOST = 1e-4
+"""What rounding moves a torque by, over the largest one, beyond which its fourth digit is none: tables print four."""
 
 
 class Excitation(NamedTuple):
@@ -53,7 +53,7 @@ def excitation(found: MachineOrders, line: ShaftLine) -> Excitation:
         if one.in_machine.inertia:
             inertia[place] += one.in_machine.inertia.amplitudes
     if not found.cylinders:
-        gas[0], means[0] = found.machine.gas.amplitudes, found.machine.gas.mean
+        gas[0], means[0] = found.machine.gas.amplitudes, turned.excess.mean
     if turned.machine.load and turned.machine.load.diagram:
         gas[line.load] -= spectrum(turned.excess.load, found.orders).amplitudes
     law, slopes = speed_law(turned), np.zeros(len(line.masses))
@@ -90,21 +90,29 @@ class Vibration:
         return self.acting.torques(self.omegas)
 
     @cached_property
+    def _response(self) -> Response:
+        return responding(self.chain, self._frequencies, self.driving, self._held)
+
+    @property
     def angles(self) -> ComplexArray:
         """Amplitudes of the masses in rad."""
-        return responding(self.chain, self._frequencies, self.driving, self._held)
+        return self._response.angles
+
+    def _passing(self, angles: ComplexArray) -> ComplexArray:
+        """Return the torques in the pieces in N m that angles of the masses make."""
+        return np.asarray(twisting(self.chain, self._frequencies, angles) / self._ratios[:, None, None])
 
     @cached_property
     def torques(self) -> ComplexArray:
         """Amplitudes of the torques in the pieces in N m."""
-        referred = twisting(self.chain, self._frequencies, self.angles)
-        return np.asarray(referred / self._ratios[:, None, None])
+        return self._passing(self.angles)
 
     @cached_property
     def endless(self) -> Flags:
-        """Where an order meets a mode that nothing damps, so that only rounding bounds it, (s,)."""
-        bound = _ENDLESS * np.abs(self.driving).max(axis=(0, 2))
-        return np.asarray(np.isfinite(bound) & ~(np.abs(self.torques).max(axis=(0, 2)) <= bound))
+        """Where an order meets a mode that next to nothing damps, so that rounding bounds the torques, (s,)."""
+        moved = self._passing(self._response.moved)
+        largest, unsure = (np.abs(torques).max(axis=(0, 2)) for torques in (self.torques, moved))
+        return np.asarray(np.isfinite(self.driving).all(axis=(0, 2)) & ~(unsure <= _LOST * largest))
 
     @cached_property
     def means(self) -> Array:

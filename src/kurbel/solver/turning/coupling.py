@@ -135,7 +135,7 @@ class ElasticCoupling:
         frequencies, torques = self._orders * self.shaft.omega, np.stack((effort, -load))
         held = np.multiply.outer([0.0, damping], np.ones(len(frequencies)))
         with np.errstate(all="ignore"):
-            angles = responding(self.chain, frequencies, torques, held)
+            angles = responding(self.chain, frequencies, torques, held).angles
             return np.abs(effort), np.abs(load), np.abs(twisting(self.chain, frequencies, angles)[0])
 
     @cached_property
