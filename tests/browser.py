@@ -15,6 +15,7 @@ from pathlib import Path
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 _QUIET = (
     *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
+    "--disable-dev-shm-usage",  # a container may have too little of it for several at once
     *("--disable-background-networking", "--disable-component-update", "--enable-logging=stderr"),
 )
 _CONSOLE = re.compile(r'CONSOLE[^"]*"(.*?)", source')

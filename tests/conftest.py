@@ -9,11 +9,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
-# random examples have no deadline either; .ci/run draws twelve times as many
-settings.register_profile("brief", deadline=None, max_examples=8)
-settings.register_profile("thorough", deadline=None, max_examples=100)
+# random examples are the same at every run, and no clock is asked; .ci/run draws twelve times as many. Others every
+# time: --hypothesis-profile=other
+EVERY = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("brief", EVERY, max_examples=8, derandomize=True)
+settings.register_profile("thorough", EVERY, max_examples=100, derandomize=True)
+settings.register_profile("other", EVERY, max_examples=100, derandomize=False)
 settings.load_profile("brief")
 
 # processes that the tests start are an installed kurbel's: they find it compiled, instead of compiling it each anew

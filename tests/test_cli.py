@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -101,14 +102,22 @@ def test_a_fault_in_kurbel_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> N
     assert "Traceback" not in result.stderr
 
 
-def test_interrupt_is_130(monkeypatch: pytest.MonkeyPatch) -> None:
+def interrupted(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def interrupted_while_a_class_is_made(*_: object) -> None:
+    """As it comes to a class with a cached property while it is imported; Python 3.11 makes another error of it."""
+    type("Class", (), {"attribute": type("Attribute", (), {"__set_name__": interrupted})()})
+
+
+@pytest.mark.parametrize("end", [interrupted, interrupted_while_a_class_is_made])
+def test_interrupt_is_130(end: Callable[..., None], monkeypatch: pytest.MonkeyPatch) -> None:
     from kurbel.report import zusammenstellung
 
-    def interrupted(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(zusammenstellung, "zusammenstellung", interrupted)
-    assert CliRunner().invoke(kurbel, ["table"]).exit_code == 130
+    monkeypatch.setattr(zusammenstellung, "zusammenstellung", end)
+    result = CliRunner().invoke(kurbel, ["table"])
+    assert (result.exit_code, result.output) == (130, "")
 
 
 def one_after_another(*commands: list[str]) -> str:

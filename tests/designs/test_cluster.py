@@ -45,7 +45,7 @@ def test_a_killed_worker_loses_no_row(cluster: tuple[str, list[subprocess.Popen[
     sweep = [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *asked]
     file = tmp_path / "rows.csv"
     process = subprocess.Popen([*sweep, "--dask", address, "-o", str(file)])
-    while not (file.exists() and file.stat().st_size):
+    while process.poll() is None and not (file.exists() and file.stat().st_size):
         time.sleep(0.02)
     os.kill(workers[0].pid, signal.SIGKILL)
     assert process.wait(300) == 0

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 import json
 import os
 import re
 import signal
 import subprocess
 import sys
+import threading
 import time
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Future
 from pathlib import Path
 
 import numpy as np
@@ -173,22 +175,27 @@ def test_resuming_ends_in_the_same_file(tmp_path: Path) -> None:
     assert refused.exit_code == 2
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("jobs", ["1", "2"])
-def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
-    file = tmp_path / "rows.csv"
+def in_the_midst(file: Path, jobs: str) -> subprocess.Popen[str]:
+    """Return a sweep that has written its first rows to a file."""
     asked = ["--vary", "rod_ratio=3:6:0.00002", "--columns", "T_max", "-o", str(file)]
-    command = [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *asked, "--jobs", jobs]
     # what runs in the background overlooks interrupts, and so do those that it starts
     process = subprocess.Popen(
-        command,
+        [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *asked, "--jobs", jobs],
         start_new_session=True,
         stderr=subprocess.PIPE,
         text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    while not (file.exists() and file.stat().st_size):
+    while process.poll() is None and not (file.exists() and file.stat().st_size):
         time.sleep(0.05)
+    return process
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
+    file = tmp_path / "rows.csv"
+    process = in_the_midst(file, jobs)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does, the processes that compute among them
     assert process.communicate() == (None, "")
     assert process.returncode == 130
@@ -197,23 +204,46 @@ def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
     assert all(line.count(",") == 3 for line in text.splitlines())
 
 
+@pytest.mark.slow
+def test_no_process_outlives_the_one_that_started_it(tmp_path: Path) -> None:
+    """Those of a sweep that was killed, by a scheduler say, waited for work for ever."""
+    process = in_the_midst(tmp_path / "rows.csv", "2")
+    process.kill()
+    process.communicate(timeout=60)  # comes to the end of what each of them may write to when none is left
+
+
 @pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="signals cannot wait on this system")
-def test_an_interrupt_while_processes_start_is_heard(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It was overlooked then, as those processes are to overlook it, and the sweep went on to its end."""
+@pytest.mark.parametrize("moment", ["submit", "shutdown"])
+def test_an_interrupt_waits_while_processes_start_and_end(moment: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It was overlooked where they start, as they are to overlook it, and a second one ended half of their end."""
 
-    def submit(pool: ProcessPoolExecutor, *task: object) -> None:
-        inherited.append(signal.pthread_sigmask(signal.SIG_BLOCK, ()))
-        os.kill(os.getpid(), signal.SIGINT)  # a thread that does not wait may hear it at once
+    class Pool:
+        def __init__(self, *_: object, **__: object) -> None:
+            pass
 
-    inherited = list[set[int]]()
-    monkeypatch.setattr(ProcessPoolExecutor, "submit", submit)
+        def submit(self, *_: object) -> Future[list[object]]:
+            self.done("submit")
+            rows = Future[list[object]]()
+            rows.set_result([])
+            return rows
+
+        def shutdown(self, **_: object) -> None:
+            self.done("shutdown")
+
+        def done(self, what: str) -> None:
+            if what == moment:  # to this thread: others, as pytest-xdist has them, would hear it at once
+                signal.pthread_kill(threading.get_ident(), signal.SIGINT)
+            waiting[what] = signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+    waiting = dict[str, bool]()
+    monkeypatch.setattr(concurrent.futures, "ProcessPoolExecutor", Pool)
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):
             list(workers.rows_of(swept("rod_ratio=3:6:0.1", "stroke"), range(31), 2))
     finally:
         signal.signal(signal.SIGINT, before)
-    assert [signal.SIGINT in one for one in inherited] == [True]
+    assert waiting == {"submit": True, "shutdown": True}
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 

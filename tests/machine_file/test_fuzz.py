@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import yaml
 from good_machines import ALL
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kurbel.errors import KurbelError, MachineFileError
@@ -16,9 +16,7 @@ from kurbel.machine import Machine
 from kurbel.machine_file import reader, source
 from representative import few
 
-SETTINGS = settings(
-    max_examples=3 * settings.default.max_examples, suppress_health_check=[HealthCheck.too_slow], derandomize=True
-)
+SETTINGS = settings(max_examples=3 * settings.default.max_examples)
 INFINITE_BY_WORD = {"rod", "link"}  # `rod: infinite`
 SNIPPETS = [
     *(

@@ -61,27 +61,50 @@ def _processes(jobs: int) -> Iterator[Callable[..., Any]]:
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import active_children, get_context
 
-    pool = ProcessPoolExecutor(jobs, get_context("spawn"))
+    pool = ProcessPoolExecutor(jobs, get_context("spawn"), initializer=_end_with_parent)
 
     def submit(*task: Any) -> Any:
-        # an interrupt is for this process alone: those that are started here inherit that it waits for ever; one
-        # that comes meanwhile is heard afterwards
-        if not hasattr(signal, "pthread_sigmask"):
+        with _interrupts_wait():  # for ever in the processes that are started here: one is for this process alone
             return pool.submit(*task)
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
-        try:
-            return pool.submit(*task)
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
     try:
         yield submit
     except BaseException:  # nobody waits for what they still compute
-        for worker in active_children():
-            worker.terminate()
+        with _interrupts_wait():
+            for worker in active_children():
+                worker.terminate()
         raise
     finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+        with _interrupts_wait():  # the second of an impatient user would leave half of it behind
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that started it does, killed or not: nobody else would tell it to."""
+    from multiprocessing import parent_process
+    from threading import Thread
+
+    parent = parent_process()
+    assert parent is not None
+
+    def follow() -> None:
+        parent.join()
+        os._exit(1)
+
+    Thread(target=follow, daemon=True).start()
+
+
+@contextmanager
+def _interrupts_wait() -> Iterator[None]:
+    """Hear an interrupt that comes meanwhile afterwards, where the system can keep it."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager

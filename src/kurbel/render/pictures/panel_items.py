@@ -78,12 +78,12 @@ def _grid(panel: Panel, scales: Scales, look: Look) -> Iterator[Item]:
 def _along(places: list[float], texts: Sequence[str], edge: float, base: float) -> Iterator[Item]:
     """Yield what stands below the ticks, inside the edge of the picture; of two that meet the outer one stands."""
     taken: list[tuple[float, float]] = []
-    for place, text in sorted(zip(places, texts), key=lambda one: min(one[0] - places[0], places[-1] - one[0])):
-        half = CHARACTER * cells(text) / 2
-        middle = min(place, edge - half)
+    for k in sorted(range(len(places)), key=lambda k: min(k, len(places) - 1 - k)):
+        half = CHARACTER * cells(texts[k]) / 2
+        middle = min(places[k], edge - half)
         if all(middle + half <= left or middle - half >= right for left, right in taken):
             taken.append((middle - half, middle + half))
-            yield Text(middle, base, text, "t", "middle", plain=True)
+            yield Text(middle, base, texts[k], "t", "middle", plain=True)
 
 
 def _shade(shade: Shade, scales: Scales) -> Iterator[Item]:

@@ -33,7 +33,8 @@ class Scale:
             share = (np.log10(values) - low) / (high - low)
         else:
             share = (values - self.low) / (self.high - self.low)
-        return self.start + share * (self.end - self.start)
+        # what lies between two dots goes to the same one on every processor, whose sines differ in the last digit
+        return np.round(self.start + share * (self.end - self.start), 9)
 
     def reach(self, start: float, end: float) -> "Scale":
         """Return the scale with other ends on paper."""
