@@ -165,9 +165,8 @@ def _silent_interrupt() -> Iterator[None]:
         yield
     except KeyboardInterrupt:
         raise click.Abort from None
-    except (
-        RuntimeError
-    ) as error:  # what Python before 3.12 makes of one that comes while attributes of a class are named
+    except RuntimeError as error:
+        # what Python before 3.12 makes of one that comes while attributes of a class are named
         if isinstance(error.__cause__, KeyboardInterrupt):
             raise click.Abort from None
         raise
