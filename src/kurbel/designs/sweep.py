@@ -5,6 +5,8 @@ from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
@@ -157,7 +159,7 @@ class Sweep:
     def _values(self, found: Sequence[Sequence[Any]]) -> Iterable[tuple[Any, ...]]:
         """Return what stands under the heads of the answers, row by row, of the answers (rows, asked) in SI."""
         columns = zip(self.asked, self._units, zip(*found))
-        return zip(*([_in_unit(value, one.kind, unit) for value in column] for one, unit, column in columns))
+        return zip(*(_column_in_unit(column, one.kind, unit) for one, unit, column in columns))
 
     def _broken(self, found: Sequence[Any]) -> str:
         from kurbel.report.compared import breaks
@@ -223,6 +225,12 @@ def _one_in_base(text: str, kind: str) -> float | None:
         return parse_quantity(text, kind)
     except KurbelError:
         return None
+
+
+def _column_in_unit(column: Sequence[Any], kind: str, unit: str) -> list[Any]:
+    if set(map(type, column)) == {float}:  # as most are
+        return (convert(np.array(column), kind, unit) + 0.0).tolist()  # type: ignore[no-any-return]
+    return [_in_unit(value, kind, unit) for value in column]
 
 
 def _in_unit(number: Any, kind: str, unit: str) -> Any:
