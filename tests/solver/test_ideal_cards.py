@@ -199,6 +199,32 @@ def test_given_points_joined_polytropically() -> None:
     assert forces.at(halfway).p_head[0] == pytest.approx(12 * BAR * (0.1 / 0.5) ** n, rel=1e-13)
 
 
+def polytropic(clearance: float, expansion: list[tuple[float, float]], compression: list[tuple[float, float]]) -> Card:
+    lines = {"expansion": expansion, "compression": compression}
+    return Card.from_keys(unit=(BAR, 1), interpolate="polytropic", clearance=clearance, **lines)
+
+
+def test_a_steep_polytropic_line_ends_with_the_pressure_that_is_given() -> None:
+    """Over 1e-10 of the stroke n is 1e10; a rounding of V/V′ raised to it was the fifth digit."""
+    forces = cylinder(
+        polytropic(0.06, [(0, 2), (0.5, 2), (0.5 + 1e-10, 9), (1, 1)], [(1, 1), (0.3 + 1e-10, 1), (0.3, 7), (0, 2)])
+    )
+    pieces = forces.samples.p_head
+    assert pieces[1:, 0] == pytest.approx(pieces[:-1, -1], rel=4e-15)
+    assert pieces.max() == pytest.approx(9 * BAR, rel=4e-15)
+
+
+def test_compression_into_a_millionth_of_the_stroke() -> None:
+    """Its end and its work: ln(V′/V) = ln(1 − 0.999999) has ten digits, − ln(1 + 999999) all."""
+    card = polytropic(1e-6, [(0, 1), (1, 1)], [(1, 1), (0, 9)])
+    forces = cylinder(card, absolute=True)
+    assert forces.at([0.0], np.array([359.0])).p_head[0] == pytest.approx(9 * BAR, rel=4e-15)
+    with mpmath.workdps(40):
+        c = mpf(1e-6)
+        n = mpmath.log(9) / mpmath.log((1 + c) / c)
+        assert abs(forces.mean_pressure / (BAR * (1 + polytropic_work(mpf(1), 1 + c, c, n))) - 1) <= 4e-15
+
+
 def test_polytropic_points_of_one_pressure_are_an_isobar() -> None:
     card = Card.from_keys(
         unit=(BAR, 1), expansion=[(0, 5), (1, 5)], compression=[(1, 2), (0.5, 2), (0, 5)],

@@ -62,6 +62,16 @@ def arsinh(value: Any) -> Any:
     return _of(value, "asinh", "arcsinh")
 
 
+def exp(value: Any) -> Any:
+    """Return the exponential of a float, an array or a jet."""
+    return _of(value, "exp")
+
+
+def log1p(value: Any) -> Any:
+    """Return ln(1 + value) of a float, an array or a jet, exact for the smallest values."""
+    return _of(value, "log1p")
+
+
 def ulp(value: Any) -> Any:
     """Return the unit in the last place of a positive float or array."""
     return _of(value, "ulp", "spacing")

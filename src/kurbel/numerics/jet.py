@@ -58,10 +58,14 @@ class Jet:
         quotient = other / self.value
         return Jet(quotient, -quotient * self.slope / self.value)
 
-    def __pow__(self, exponent: Any) -> Jet:
-        """Return the power of a positive jet; exponent: a number or an array of constants."""
-        power = self.value**exponent
-        return Jet(power, exponent * (power / self.value) * self.slope)
+    def exp(self) -> Jet:
+        """Return e to the power of the jet."""
+        power = np.exp(self.value)
+        return Jet(power, power * self.slope)
+
+    def log1p(self) -> Jet:
+        """Return ln(1 + jet)."""
+        return Jet(np.log1p(self.value), self.slope / (1 + self.value))
 
     def __abs__(self) -> Jet:
         sign = 2.0 * (self.value >= 0) - 1.0

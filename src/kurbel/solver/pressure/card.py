@@ -14,11 +14,11 @@ from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.indicator import STROKES, Card, Line
 from kurbel.machine.rectangle import Rectangle
 from kurbel.mechanisms import fan
-from kurbel.numerics.arithmetic import sqrt, where
+from kurbel.numerics.arithmetic import exp, sqrt, where
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.pressure import Setting
 from kurbel.solver.pressure.places import segments_over
-from kurbel.solver.pressure.segments import Process, Processes, Segment, Stroke, polytropic_exponent
+from kurbel.solver.pressure.segments import Process, Processes, Segment, Stroke, growth, polytropic_exponent
 
 
 class Held(NamedTuple):
@@ -86,12 +86,10 @@ class ProcessPressure:
 
     def _curved(self, straight: Any, share: Any, held: Held) -> Any:
         """Return P (V/V′)^n less the ambient on polytropic segments, and the straight value elsewhere."""
-        exponents, clearance = held.exponent, self._clearance
-        curved = exponents != 0  # what is straight may begin without any volume
-        # beside a dead centre rounding may put x a hair outside the stroke; the clearance keeps the volume positive
-        swelling = _chosen(curved, share + clearance, 1.0) / np.where(curved, held.z + clearance, 1.0)
-        power = (held.p + self._lift) * swelling**-exponents - self.setting.ambient
-        return _chosen(curved, power, straight)
+        curved, sense = held.exponent != 0, np.where(held.next_z < held.z, -1.0, 1.0)
+        clearance = np.where(curved, self._clearance, 1.0)  # what is straight may begin without any volume
+        power = (held.p + self._lift) * exp(growth(held.z, share, clearance, sense) * -held.exponent)
+        return _chosen(curved, power - self.setting.ambient, straight)
 
     @cached_property
     def bends(self) -> tuple[Any, ...]:

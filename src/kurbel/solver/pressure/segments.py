@@ -9,6 +9,7 @@ import numpy as np
 from kurbel.arrays import Indices
 from kurbel.frozen import frozen
 from kurbel.machine.variants import count_of
+from kurbel.numerics.arithmetic import log1p, where
 from kurbel.solver.pressure import Setting
 
 
@@ -54,10 +55,10 @@ class Process:
     def _polytropic_terms(self, segment: Segment) -> tuple[float, float]:
         """Return P V ln(V′/V) (e^u − 1)/u with u = (1 − n) ln(V′/V) and P absolute, and what the lift takes off."""
         volume, way = segment.z + self.clearance, segment.next_z - segment.z
-        growth = math.log1p(way / volume)
-        u = (1 - segment.exponent) * growth
+        grown = growth(segment.z, segment.next_z, self.clearance, math.copysign(1.0, way))
+        u = (1 - segment.exponent) * grown
         mean = math.expm1(u) / u if u else 1.0
-        return (segment.p + self.lift) * volume * growth * mean, -self.lift * way
+        return (segment.p + self.lift) * volume * grown * mean, -self.lift * way
 
 
 @frozen
@@ -111,7 +112,20 @@ def polytropic_exponent(z: float, p: float, next_z: float, next_p: float, cleara
     >>> polytropic_exponent(0.0, 8.0, 1.0, 4.0, 1.0)
     1.0
     """
-    return math.log(p / next_p) / math.log1p((next_z - z) / (z + clearance))
+    exponent: float = math.log(p / next_p) / growth(z, next_z, clearance, math.copysign(1.0, next_z - z))
+    return exponent
+
+
+def growth(z: Any, next_z: Any, clearance: Any, sense: Any) -> Any:
+    """Return ln(V′/V) between stroke fractions z and z′, floats, arrays or jets; sense: +1 where it grows, else −1.
+
+    Only ln(1 + what is more than the smaller volume) has its digits both for steep lines and for small clearances.
+
+    >>> round(growth(1.0, 0.0, 1.0, -1.0), 9)
+    -0.693147181
+    """
+    smaller = where(sense < 0, next_z, z) + clearance
+    return sense * log1p(sense * (next_z - z) / smaller)
 
 
 def _straight_terms(segment: Segment) -> Iterable[float]:
