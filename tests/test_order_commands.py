@@ -56,6 +56,13 @@ def test_the_columns_that_scripts_rely_on() -> None:
 UNIFORM = "speed: 60 rpm\neffort: {unit: N m, points: [[0, 5], [360, 5]]}\n"
 
 
+def test_a_cylinder_without_orders_is_said_to_have_none() -> None:
+    """Coupled wheels turn evenly: a table of zeros stood for their one cylinder."""
+    told = run("harmonics", "configs/coupled-axle.yaml").stdout
+    assert "The torque of cylinder 1 has none of these orders: they are all zero." in told
+    assert "Orders of the torque" not in told
+
+
 @pytest.mark.parametrize("options", [(), ("--speeds", "30, 90 rpm")])
 def test_an_effort_without_orders_is_said_to_have_none(options: tuple[str, ...]) -> None:
     """Two dozen rows of zeros were printed; scripts still have them."""

@@ -36,7 +36,11 @@ def test_values(text: str, texts: tuple[str, ...]) -> None:
         ("rod_ratio=3:6:0", "never reaches 6"),
         ("rod_ratio=3:6:-1", "never reaches 6"),
         ("rod_ratio=3:6", "a range has three numbers"),
-        ("rod_ratio=3:6:1e-9", "this range has 3000000001 values"),
+        ("rod_ratio=3:6:1e-9", "more than 10000000 values"),
+        ("rod_ratio=3:6:1e-300", "more than 10000000 values"),
+        ("rod_ratio=3:6:1e-999999", "never reaches 6"),
+        ("rod_ratio=3:1e999999:1", "too large to compute with"),
+        ("speed=40;50 rpm", "values are parted by commas"),
         ("bore=300 mm:500 in:10", "one unit"),
         ("bore=normal(450 mm, -0.2 mm)", "must be more than 0, got -0.2"),
         ("bore=normal(450 mm, 0 mm)", "must be more than 0"),
@@ -82,6 +86,9 @@ def test_grid_list_and_sample() -> None:
         (["a=1,2; a=3,4"], {}, "varied twice"),
         (["a=1; b=normal(1, 1)"], {"sample": 5}, "--vary a=1; b=normal.*: a distribution has a --vary of its own"),
         (["a=1; =2"], {}, "--vary =2: write KEY="),
+        (["bore=400,450 mm;"], {}, "--vary bore=400,450 mm;: a key is missing beside ';'"),
+        (["; bore=400,450 mm"], {}, "a key is missing beside ';'"),
+        (["a=1,2;; b=3,4"], {}, "a key is missing beside ';'"),
     ],
 )
 def test_plans_that_are_none(inputs: list[str], options: dict[str, int], message: str) -> None:

@@ -10,7 +10,6 @@ import click
 from kurbel.cli.completion import complete_override
 from kurbel.cli.output_options import format_of, machine_file, output_option, stacked, units_option, with_bar
 from kurbel.cli.readings import words
-from kurbel.errors import UsageError
 from kurbel.render import Look
 
 if TYPE_CHECKING:
@@ -32,7 +31,9 @@ _what_varies = stacked(
         "for all combinations; in one, 'bore=400,450 mm; head_end_rod=70,80 mm' go together.",
     ),
     click.option("--zip", "side_by_side", is_flag=True, help="First values with first values; else all combinations."),
-    click.option("--sample", type=click.IntRange(1), metavar="N", help="Points of a Latin hypercube of distributions."),
+    click.option(
+        "--sample", type=click.IntRange(1, 10**8), metavar="N", help="Points of a Latin hypercube of distributions."
+    ),
     click.option("--seed", type=click.IntRange(0), default=0, help="Of the sample; 0 if not given."),
     click.option("--sobol", is_flag=True, help="The sequence of Sobol instead of a Latin hypercube."),
 )
@@ -153,13 +154,11 @@ class _Asked(NamedTuple):
         gc.freeze()
         gc.enable()  # what thousands of machines leave behind in circles would fill the memory
         from kurbel.designs.chosen import read_aim, read_condition, summary, unbettered
-        from kurbel.designs.plan import MOST_ROWS, shard
+        from kurbel.designs.plan import shard
         from kurbel.designs.sweep import Sweep
         from kurbel.designs.workers import likely_jobs, rows_of
 
         found = Sweep(self._spec())
-        if found.rows > MOST_ROWS and not self.yes:
-            raise UsageError(f"these are {found.rows} rows; --yes computes more than {MOST_ROWS}")
         rows = shard(self.shard, found.rows) if self.shard else range(found.rows)
         conditions = [read_condition(one, found.heads) for one in self.conditions]
         aims = [read_aim(one, found.heads, "--pareto") for one in self.pareto or ()]
@@ -178,6 +177,7 @@ class _Asked(NamedTuple):
         out.write(kept)
 
     def _spec(self) -> "Spec":
+        from kurbel.designs.plan import MOST_ROWS
         from kurbel.designs.sweep import Spec
         from kurbel.machine_file import source
         from kurbel.render.output import refuse_overwriting
@@ -186,7 +186,8 @@ class _Asked(NamedTuple):
         system = self.units or ("si" if self._written in ("csv", "json", "parquet") else "metric")
         plan = self.vary, self.side_by_side, self.sample, self.seed, self.sobol
         origin = source.read(self.file).set_over(self.overrides)
-        return Spec(origin, *plan, self.columns or (), self.with_angles, system)
+        most = None if self.yes else MOST_ROWS
+        return Spec(origin, *plan, self.columns or (), self.with_angles, system, most=most)
 
     def _out(self, found: "Sweep", rows: range, conditions: "Sequence[Condition]") -> "tuple[SweepOutput, range]":
         """Return where the rows go, and those that are not there yet."""

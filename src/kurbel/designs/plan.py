@@ -22,7 +22,7 @@ MOST_ROWS = 10_000_000
 MOST_VALUES = 10_000_000
 """Values of one key; a range of more is a slip of its step."""
 _CALL = re.compile(r"(normal|uniform)\s*\((.*)\)\s*")
-_NEXT_KEY = re.compile(r";(?=[^;=]*=)")
+_NEXT_KEY = re.compile(r";(?=[^;=]*=|\s*(?:;|$))")
 _UNKNOWN_CALL = re.compile(r"([a-z_]+)\s*\(.*\)\s*")
 
 
@@ -62,7 +62,10 @@ def read_axis(text: str) -> tuple[Input, ...]:
     >>> [one.key for one in read_axis("bore=400,450 mm; head_end_rod=70,80 mm")]
     ['bore', 'head_end_rod']
     """
-    together = tuple(read_input(part.strip()) for part in _NEXT_KEY.split(text))
+    parts = [part.strip() for part in _NEXT_KEY.split(text)]
+    if len(parts) > 1 and not all(parts):
+        raise _refused(text, "a key is missing beside ';'; write KEY=…; KEY=…, or leave it out")
+    together = tuple(map(read_input, parts))
     if len(together) > 1 and any(one.distribution for one in together):
         raise _refused(text, "a distribution has a --vary of its own; write a list or a range of each key")
     return together
@@ -101,6 +104,8 @@ def _with_unit(parts: list[str], text: str) -> tuple[str, ...]:
     """Return the values of a list; the unit of the last one is that of those before it that have none."""
     if not all(parts) or any(len(part) > LONGEST_VALUE for part in parts):
         raise _refused(text, "a value is missing between two commas; write decimal points, such as 1.5")
+    if any(";" in part and NUMBER.match(part) for part in parts):
+        raise _refused(text, "values are parted by commas; after ';' stands a further KEY=…")
     unit = _number_and_unit(parts[-1])[1] if NUMBER.match(parts[-1]) else ""
     return tuple(f"{part} {unit}".rstrip() if unit and NUMBER.fullmatch(part) else part for part in parts)
 
@@ -123,12 +128,12 @@ def _range(text: str, values: str) -> tuple[str, ...]:
         first, last, step = (Decimal(number) for number, _ in pairs)
     except InvalidOperation:
         raise _refused(text, "a range has three numbers, first:last:step, such as 3:6:0.25") from None
-    if not step or (last - first) / step < 0:
+    if large := next((number for number in (first, last, step) if math.isinf(float(number))), None):
+        raise _refused(text, f"{large} is too large to compute with")
+    if not float(step) or (last - first) / step < 0:
         raise _refused(text, f"a range from {first} by steps of {step} never reaches {last}")
     if (last - first) / step >= MOST_VALUES:
-        raise _refused(
-            text, f"this range has {int((last - first) / step) + 1} values; no key has more than {MOST_VALUES}"
-        )
+        raise _refused(text, f"this range has more than {MOST_VALUES} values, as no key may")
     unit = units.pop() if units else ""
     return tuple(f"{first + step * i:f} {unit}".rstrip() for i in range(int((last - first) / step) + 1))
 

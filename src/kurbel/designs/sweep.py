@@ -34,7 +34,8 @@ class Spec(NamedTuple):
     """All that a sweep is made of, in texts, so that any process can make it anew.
 
     vary: `KEY=…` each, or several that go together; given: inputs beside these. columns: ids or symbols; with_angles:
-    beside extremes the angle where each stands; system: of units; the others: see `Plan`.
+    beside extremes the angle where each stands; system: of units; most: rows, None for any number; the others: see
+    `Plan`.
     """
 
     origin: Origin
@@ -47,6 +48,7 @@ class Spec(NamedTuple):
     with_angles: bool = False
     system: str = "si"
     given: tuple[Input, ...] = ()
+    most: int | None = None
 
 
 class Head(NamedTuple):
@@ -82,6 +84,8 @@ class Sweep:
         axes = [*map(read_axis, spec.vary), *((one,) for one in spec.given)]
         self.plan = Plan(axes, spec.side_by_side, spec.sample, spec.seed, spec.sobol)
         self.rows = self.plan.rows
+        if spec.most and self.rows > spec.most:
+            raise UsageError(f"these are {self.rows} rows; --yes computes more than {spec.most}")
         self._binder = self._started()
         machine = self._binder.machine
         asked = asked_answers(machine, spec.columns)

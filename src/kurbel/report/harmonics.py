@@ -35,7 +35,7 @@ def harmonics_report(
     each = [_cylinder(case.machine, one, frame.system) for one in found.cylinders]
     (whole,) = subjects(case, found)
     tables = (_machine_table(found, frame.system), *_speed_tables(case.machine, found, speeds, frame.system))
-    tables = tuple(table._replace(said=_uniform(found)) for table in tables)
+    tables = tuple(table._replace(said=_uniform(found.machine)) for table in tables)
     whole = replace(whole, place_tables=tables)
     return frame.report(case.machine, "Drehkraft nach Ordnungen", each, whole, _notes(found))
 
@@ -63,7 +63,8 @@ def _cylinder(machine: Machine, one: CylinderOrders, system: str) -> Subject:
     cylinder = one.forces.drive.cylinder
     title = f"Orders of the torque of {cylinder.name}, φ from its own inner dead centre"
     table = _table(title, one.own, one.area, [""] * len(one.own.gas.orders), system)
-    return Subject(cylinder.name, (), left_out=lambda: left_out(machine, cylinder), place_tables=(table,))
+    tables = (table._replace(said=_uniform(one.own)),)
+    return Subject(cylinder.name, (), left_out=lambda: left_out(machine, cylinder), place_tables=tables)
 
 
 def _machine_table(found: MachineOrders, system: str) -> PlaceTable:
@@ -136,14 +137,17 @@ def _speed_tables(
     yield place_table("orders_by_speed", title, ("kind",), names, columns.items(), system)
 
 
-def _uniform(found: MachineOrders) -> bool:
+def _uniform(found: Orders) -> bool:
     """Return whether no order is there, at no speed."""
-    return not any(one.amplitudes.any() for one in found.machine if one)
+    return not any(one.amplitudes.any() for one in found if one)
 
 
 def _notes(found: MachineOrders) -> Iterable[str]:
-    if _uniform(found):
-        yield "The turning effort has none of these orders: they are all zero."
+    torques = [(f"The torque of {one.forces.drive.cylinder.name}", one.own) for one in found.cylinders]
+    torques.append(("The turning effort", found.machine))
+    uniform = [what for what, orders in torques if _uniform(orders)]
+    yield from (f"{what} has none of these orders: they are all zero." for what in uniform)
+    if len(uniform) == len(torques):
         return
     yield "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
     if found.machine.inertia is not None:
