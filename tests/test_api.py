@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -181,3 +182,10 @@ def test_notebooks_show_tables_that_are_escaped() -> None:
 def test_a_record_tells_what_was_given_to_it() -> None:
     cylinder = kurbel.Cylinder(kurbel.SliderCrank(crank=0.4, rod=2.0), name="HP")
     assert repr(cylinder) == "Cylinder(mechanism=SliderCrank(crank=0.4, rod=2.0), name='HP')"
+
+
+def test_a_case_that_has_answered_is_handed_to_other_processes() -> None:
+    """Its states were asked for a column before they had their fields, for ever."""
+    case = kurbel.solve(kurbel.load("configs/waterworks.yaml"))
+    largest = case["T_max"].value
+    assert pickle.loads(pickle.dumps(case))["T_max"].value == copy.deepcopy(case)["T_max"].value == largest

@@ -441,3 +441,10 @@ def test_memory_does_not_grow_with_the_rows() -> None:
     assert len(ran.stdout.splitlines()) == 6002
     (peak,) = re.findall(r"VmHWM:\s+(\d+) kB", ran.stderr)
     assert int(peak) < 250_000
+
+
+@pytest.mark.skipif(not Path("/dev/stdout").exists(), reason="no device")
+def test_a_device_takes_rows_as_a_file_does() -> None:
+    args = ["-m", "kurbel", "sweep", "configs/waterworks.yaml", "--vary", "rod_ratio=3,4", "-o", "/dev/stdout"]
+    done = subprocess.run([sys.executable, *args, "-f", "csv", "--columns", "T_max"], capture_output=True, text=True)
+    assert (done.returncode, done.stderr, len(done.stdout.splitlines())) == (0, "", 3)

@@ -137,3 +137,7 @@ def test_what_kurbel_writes_takes_one_cell_each_by_the_tables_of_unicode_too() -
 
 def test_width_counts_cells() -> None:
     assert (width("θ̇"), width("漢"), width("abc")) == (1, 2, 3)
+
+
+def test_no_line_breaks_between_the_numbers_of_a_long_list_and_their_unit() -> None:
+    assert folded("16 from -1.044 to 1.041  kJ", 24) == ["16 from -1.044 to", "1.041  kJ"]

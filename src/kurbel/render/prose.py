@@ -162,7 +162,7 @@ def measures() -> re.Pattern[str]:
     of_kinds = [each for system in SYSTEMS.values() for each in system.values()]
     units = {unit for each in of_kinds for unit in ([each] if isinstance(each, str) else each)}
     printed = {"%", "°", *units, *map(Charset().unit, units)} - {""}
-    return re.compile(rf"\S*\d (?:{'|'.join(map(re.escape, sorted(printed, key=len, reverse=True)))})(?!\w)")
+    return re.compile(rf"\S*\d  ?(?:{'|'.join(map(re.escape, sorted(printed, key=len, reverse=True)))})(?!\w)")
 
 
 def sentence(head: str, text: str, look: Look) -> Iterator[Line]:

@@ -172,10 +172,10 @@ class SweepOutput:
                 sys.stdout.flush()
                 yield getattr(sys.stdout, "buffer", sys.stdout)
                 return
-            mode = "r+b" if self._kept else "wb"
-            with open(self._file_name, mode) as file:
-                file.seek(self._kept)
-                file.truncate()
+            with open(self._file_name, "r+b" if self._kept else "wb") as file:
+                if self._kept:  # a device or a pipe begins anew by itself and has no place to go to
+                    file.seek(self._kept)
+                    file.truncate()
                 yield file
         except BrokenPipeError:
             silence(sys.stdout)

@@ -57,9 +57,11 @@ class State:
 
     def __getattr__(self, id: str) -> Any:
         """Return a column that the mechanism offers; None for one that only others do."""
+        if id.startswith("_") or "drive" not in vars(self):  # pickle and copy ask before the fields are there
+            raise AttributeError(f"no column is called {id}")
         offer = next((one for one in self.drive.mechanism.OFFERS if one.quantity.id == id), None)
         if offer is None:
-            if id.startswith("_") or id not in by_id(*every_quantity().all_columns):
+            if id not in by_id(*every_quantity().all_columns):
                 raise AttributeError(f"no column is called {id}")
             return None
         times = [getattr(self, name) for name in offer.times]
