@@ -325,3 +325,14 @@ def test_what_cannot_be_computed_with_is_a_fault_with_its_place(key: str, indica
     (fault,) = caught.value.faults
     assert ".".join(map(str, fault.path)) == f"indicator.head_end.{key}"
     assert "it must be at" in fault.message
+
+
+def test_no_pressure_passes_the_corner_of_a_steep_line_at_a_dead_centre() -> None:
+    """Where x stands still, its rounding is 1e8 times as much in the pressure: a turn beside it stood higher."""
+    card = Card.from_keys(
+        unit=(1.0, 1), expansion=[(0, 1e5), (1 - 1e-8, 2e5), (1, 8e5)], compression=[(1, 8e5), (0, 1e5)]
+    )
+    for crank in np.linspace(0.05, 0.5, 25).tolist():
+        own = Cylinder(SliderCrank(crank, 2 * crank), pistons=(Piston(0.2, indicator=Indicator(card)),))
+        forces = CylinderForces(Machine((own,)), own)
+        assert forces.extremes_of("P").largest.value == pytest.approx(8e5 * forces.A_head, rel=4e-16)

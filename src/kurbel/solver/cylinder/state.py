@@ -176,9 +176,13 @@ class State:
             return None
         at_nodes = self.phi.shape != self.inside.angle.degrees.shape
         if at_nodes and self.inside.gas_line is None and all(gas.straight for gas in self.drive.gas):
-            begin = _value(self.z)[:, :1]
-            force = self._force_of_gas(Jet(begin, 1.0), self.phi[:, :1])
-            self.inside.gas_line = GasLine(force.value, force.slope, begin)
+            # through both ends as they are: over a steep line a rounding of z is many of the force
+            ends = np.s_[:, :: self.phi.shape[1] - 1]
+            z = _value(self.z)[ends]
+            force = self._force_of_gas(z, self.phi[ends])
+            way = np.diff(z)
+            rise = np.diff(force) / np.where(way == 0, 1.0, way)
+            self.inside.gas_line = GasLine(force[:, :1], rise, z[:, :1])
         line = self.inside.gas_line
         if line is None:
             return self._force_of_gas(self.z, self.phi)
