@@ -25,6 +25,10 @@ class GasLine(NamedTuple):
     rise: Array
     z: Array
 
+    def at(self, z: Any) -> Any:
+        """Return the force in N at shares of the stroke, arrays or jets."""
+        return (z - self.z) * self.rise + self.force
+
 
 class Inside:
     """The pieces that hold some crank angles (n,), or (pieces, 1) once for all nodes of each.

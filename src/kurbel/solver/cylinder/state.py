@@ -175,21 +175,23 @@ class State:
         if not self.drive.gas:
             return None
         at_nodes = self.phi.shape != self.inside.angle.degrees.shape
-        if at_nodes and self.inside.gas_line is None and all(gas.straight for gas in self.drive.gas):
-            # through both ends as they are: over a steep line a rounding of z is many of the force
-            ends = np.s_[:, :: self.phi.shape[1] - 1]
-            z = _value(self.z)[ends]
-            force = self._force_of_gas(z, self.phi[ends])
-            way = np.diff(z)
-            rise = np.diff(force) / np.where(way == 0, 1.0, way)
-            self.inside.gas_line = GasLine(force[:, :1], rise, z[:, :1])
+        if at_nodes and all(gas.straight for gas in self.drive.gas):
+            return self._gas_at_nodes()
         line = self.inside.gas_line
-        if line is None:
-            return self._force_of_gas(self.z, self.phi)
-        force = (self.z - line.z) * line.rise + line.force
-        if at_nodes:  # pieces may end, as they may begin, at a corner of a card, where the force is that of the card
-            _value(force)[:, -1:] = self._force_of_gas(_value(self.z)[:, -1:], self.phi[:, -1:])
-        return force
+        return line.at(self.z) if line else self._force_of_gas(self.z, self.phi)
+
+    def _gas_at_nodes(self) -> Any:
+        """Return P_gas on pieces on which it is straight over the stroke, and let all others inside these know."""
+        ends = np.s_[:, :: self.phi.shape[1] - 1]
+        z = _value(self.z)[ends]
+        force = self._force_of_gas(z, self.phi[ends])  # at a corner of a card that of the card
+        way = np.diff(z)
+        # through both ends as they are: over a steep line a rounding of z is many of the force
+        rise = np.diff(force) / np.where(way == 0, 1.0, way)
+        self.inside.gas_line = GasLine(force[:, :1], rise, z[:, :1])
+        found = self.inside.gas_line.at(self.z)
+        _value(found)[ends] = force
+        return found
 
     def _force_of_gas(self, z: Any, degrees: Array) -> Any:
         """Return the force of the gas on all pistons in N at these shares of the stroke and crank angles in degrees."""
