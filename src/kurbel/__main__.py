@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def main() -> NoReturn:
     """Run the command line; an interrupt ends it silently with status 130, while it is being imported too."""
     gc.disable()  # a run is too short for its garbage to matter; looking for it costs a twentieth of the time
-    # matrices of twelve rows are no work for many: threads cost their making, and wait for each other in a sweep
+    # matrices of nine rows are no work for many: threads cost their making, and wait for each other in a sweep
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         from kurbel.late_patterns import late_patterns
