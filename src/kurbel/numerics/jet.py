@@ -97,3 +97,8 @@ class Jet:
 def once_each(within: Array) -> Array:
     """Return the angles of pieces (n, 1) that a grid has spread over its nodes, or (n,) angles as they are."""
     return within[:, :1] if within.ndim == 2 and within.strides[1] == 0 else within
+
+
+def value_of(jet: Any) -> Any:
+    """Return a jet, or an array as it is, without its slope."""
+    return getattr(jet, "value", jet)

@@ -1,13 +1,49 @@
-"""What a state of a cylinder tells of its chambers beside the pressure; None where it has no such chamber."""
+"""What a state of a cylinder tells of its chambers beside the pressures; None where it has no such chamber."""
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import add
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.numerics.jet import value_of
+from kurbel.solver.cylinder.inside import GasLine
+
 if TYPE_CHECKING:
+    from kurbel.arrays import Array
     from kurbel.solver.cylinder.state import State
+
+
+def gas_force(state: State) -> Any:
+    """Return the force of gas, steam or water on all pistons in N, R 296."""
+    if not state.drive.gas:
+        return None
+    at_nodes = state.phi.shape != state.inside.angle.degrees.shape
+    if at_nodes and all(gas.straight for gas in state.drive.gas):
+        return _at_nodes(state)
+    line = state.inside.gas_line
+    return line.at(state.z) if line else _force(state, state.z, state.phi)
+
+
+def _at_nodes(state: State) -> Any:
+    """Return it on pieces on which it is straight over the stroke, and let all others inside these know."""
+    ends = np.s_[:, :: state.phi.shape[1] - 1]
+    z = value_of(state.z)[ends]
+    force = _force(state, z, state.phi[ends])  # at a corner of a card that of the card
+    way = np.diff(z)
+    # through both ends as they are: over a steep line a rounding of z is many of the force
+    rise = np.diff(force) / np.where(way == 0, 1.0, way)
+    line = state.inside.gas_line = GasLine(force[:, :1], rise, z[:, :1])
+    found = line.at(state.z)
+    value_of(found)[ends] = force
+    return found
+
+
+def _force(state: State, z: Any, degrees: Array) -> Any:
+    """Return the force in N at shares z of the stroke and crank angles in degrees, by the pressures."""
+    return reduce(add, (gas.force(lambda end: end(z, degrees, state.inside.held(end))) for gas in state.drive.gas))
 
 
 def head_volume(state: State) -> Any:

@@ -1,7 +1,7 @@
 """Everything that can be said of one cylinder at given crank angles, each quantity computed when it is asked for."""
 
 from functools import cached_property, reduce
-from operator import add, mul
+from operator import mul
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,9 +11,9 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
 from kurbel.mechanisms import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
-from kurbel.numerics.jet import Jet, once_each
+from kurbel.numerics.jet import Jet, once_each, value_of
 from kurbel.solver.cylinder import chamber, guide, rod_point
-from kurbel.solver.cylinder.inside import GasLine, Inside
+from kurbel.solver.cylinder.inside import Inside
 from kurbel.solver.cylinder.rod_load import rod_load
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ class State:
     crosshead_power = cached_property(guide.crosshead_power)
     p_guide = cached_property(guide.shoe_pressure)
     wear = cached_property(guide.wear)
+    P_gas = cached_property(chamber.gas_force)
     V = cached_property(chamber.head_volume)
     V_crank = cached_property(chamber.crank_volume)
     dV = cached_property(chamber.head_volume_change)
@@ -89,7 +90,7 @@ class State:
     def _plain(self) -> CrankAngle:
         """The same without the slopes of jets."""
         degrees, sin, cos, rod = self._posed
-        return CrankAngle(degrees, _value(sin), _value(cos), rod and (_value(rod[0]), _value(rod[1])))
+        return CrankAngle(degrees, value_of(sin), value_of(cos), rod and (value_of(rod[0]), value_of(rod[1])))
 
     @property
     def _is_jet(self) -> bool:
@@ -168,34 +169,6 @@ class State:
         """Pressure at the crank end of the cylinder's own piston in Pa, counted as in the machine file."""
         gas = self.drive.own_gas
         return self.pressure(gas.crank) + gas.base if gas and gas.crank else None
-
-    @cached_property
-    def P_gas(self) -> Any:
-        """Force of gas, steam or water on all pistons in N, R 296."""
-        if not self.drive.gas:
-            return None
-        at_nodes = self.phi.shape != self.inside.angle.degrees.shape
-        if at_nodes and all(gas.straight for gas in self.drive.gas):
-            return self._gas_at_nodes()
-        line = self.inside.gas_line
-        return line.at(self.z) if line else self._force_of_gas(self.z, self.phi)
-
-    def _gas_at_nodes(self) -> Any:
-        """Return P_gas on pieces on which it is straight over the stroke, and let all others inside these know."""
-        ends = np.s_[:, :: self.phi.shape[1] - 1]
-        z = _value(self.z)[ends]
-        force = self._force_of_gas(z, self.phi[ends])  # at a corner of a card that of the card
-        way = np.diff(z)
-        # through both ends as they are: over a steep line a rounding of z is many of the force
-        rise = np.diff(force) / np.where(way == 0, 1.0, way)
-        self.inside.gas_line = GasLine(force[:, :1], rise, z[:, :1])
-        found = self.inside.gas_line.at(self.z)
-        _value(found)[ends] = force
-        return found
-
-    def _force_of_gas(self, z: Any, degrees: Array) -> Any:
-        """Return the force of the gas on all pistons in N at these shares of the stroke and crank angles in degrees."""
-        return reduce(add, (gas.force(lambda end: end(z, degrees, self.inside.held(end))) for gas in self.drive.gas))
 
     @property
     def P_gas_book(self) -> Any:
@@ -369,11 +342,6 @@ class State:
         """What couple and weight of an exact rod give to T in N."""
         assert self.drive.rod is not None
         return self.drive.rod.tangential(self.rod_angle, self.angle)
-
-
-def _value(jet: Any) -> Any:
-    """Return a jet, or an array as it is, without its slope."""
-    return getattr(jet, "value", jet)
 
 
 def _sum(first: Any, second: Any) -> Any:
