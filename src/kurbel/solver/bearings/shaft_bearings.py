@@ -11,6 +11,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.grid import Pieces, integral
+from kurbel.numerics.jet import value_of
 from kurbel.solver.bearings.bearing import Bearing, Loads, Size
 from kurbel.solver.bearings.directions import Plane
 from kurbel.solver.cylinder.following import Following
@@ -103,7 +104,7 @@ class MainBearing(Bearing):
         def size(pieces: Pieces) -> Array:
             force = self._force(pieces.degrees, pieces.within, rubbed=False)
             found = norm(*force)
-            return np.asarray(getattr(found, "value", found))
+            return np.asarray(value_of(found))
 
         return float(integral(self._grid, size)) * coefficient * self.size.diameter / 2
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from kurbel.errors import NoSolutionError
 from kurbel.numerics.cycles import Unlike
+from kurbel.numerics.jet import value_of
 
 if TYPE_CHECKING:
     from kurbel.solver.cylinder.drive import Drive
@@ -41,7 +42,7 @@ def guide_force(state: State) -> Any:
     if not drive.rubs:
         return state.after_steady_friction * (sin_psi / cos_psi) + _guide_load(state)
     below = cos_psi + sin_psi * (state.inside.guide_side(state) * state.direction * drive.crosshead_friction)
-    locked = getattr(below, "value", below) <= 0
+    locked = value_of(below) <= 0
     if not locked.any():
         return state.guide_sense / below
     if drive.variant is not None:

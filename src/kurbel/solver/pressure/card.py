@@ -16,6 +16,7 @@ from kurbel.machine.rectangle import Rectangle
 from kurbel.mechanisms import fan
 from kurbel.numerics.arithmetic import exp, sqrt, where
 from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.jet import value_of
 from kurbel.solver.pressure import Setting
 from kurbel.solver.pressure.places import segments_over
 from kurbel.solver.pressure.segments import Process, Processes, Segment, Stroke, growth, polytropic_exponent
@@ -71,7 +72,7 @@ class ProcessPressure:
     def __call__(self, z: Any, degrees: Array, held: Held) -> Any:
         """Return the gauge pressure in Pa where z (n,) of the stroke is passed, on the segments that are held."""
         share = z + 0.0 if self.setting.head_end else 1 - z  # a new one
-        self._put_corners(getattr(share, "value", share), degrees, held)
+        self._put_corners(value_of(share), degrees, held)
         straight = (held.p - self.setting.base) + held.gradient * (share - held.z)
         return straight if self.straight else self._curved(straight, share, held)
 

@@ -14,6 +14,7 @@ from kurbel.frozen import frozen
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
+from kurbel.numerics.jet import value_of
 from kurbel.numerics.piecewise import Piecewise
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.state import State
@@ -153,6 +154,6 @@ def dead_centre_force(forces: CylinderForces, cycle: float) -> Extreme | None:
     angles = np.repeat(centres, 2)
     sides = angles + np.tile([-1e-6, 1e-6], len(centres))
     force = drive.jets_at(angles, sides).P_gas
-    values = np.asarray(getattr(force, "value", force))
+    values = np.asarray(value_of(force))
     largest = int(np.argmax(np.abs(values)))
     return Extreme(float(values[largest]), float(np.mod(angles[largest], cycle)))
