@@ -67,6 +67,13 @@ def test_keys_that_go_together_in_a_grid() -> None:
     assert found[1]["c_max_m/s"] == pytest.approx(found[0]["c_max_m/s"] * 5 / 4, rel=1e-14)
 
 
+def test_ratios_vary_in_percent() -> None:
+    asked = ("--columns", "N_max")
+    percent = rows("--vary", "friction.crosshead=10,11,12 %", *asked)
+    assert percent == rows("--vary", "friction.crosshead=0.1,0.11,0.12", *asked)
+    assert [one["friction.crosshead"] for one in percent] == [0.1, 0.11, 0.12]
+
+
 def test_without_a_cylinder_rows_are_what_flywheel_tells(tmp_path: Path) -> None:
     """T = 9 + 5 cos 2φ N m: ΔE = 5 N m, W = 18π J; a machine without key values of `forces` was a fault of kurbel."""
     machine = tmp_path / "effort.yaml"

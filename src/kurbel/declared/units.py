@@ -244,10 +244,11 @@ def plain_quantities(texts: Iterable[str], kind: str) -> list[float] | None:
     >>> plain_quantities(["450 mm", "0.5 m"], "length"), plain_quantities(["2 1/4 in"], "length")
     ([0.45, 0.5], None)
     """
+    units = {"": (1, 1)} if kind == "ratio" else _units_of(kind)
     values = []
     for text in texts:
         number, _, unit = text.partition(" ")
-        factor = (1, 1) if kind == "ratio" and not unit else _units_of(kind).get(unit) if unit else None
+        factor = units.get(unit)
         if factor is None or not NUMBER.fullmatch(number):
             return None
         values.append(float(number) * factor[0] / factor[1])
