@@ -7,6 +7,7 @@ import io
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from statistics import NormalDist
 from typing import Any
 
 import mpmath as mp
@@ -53,6 +54,23 @@ def test_the_errors_of_the_data_are_those_of_the_file_too() -> None:
         """)
     found = {one.quantity: one.error for one in data_uncertainty(machine)}
     assert found == pytest.approx({"c_max": 0.01, "b_max": 0.02, "T_max": 0.004, "ΔE": 0.004}, rel=1e-6)
+
+
+def test_a_point_of_a_card_may_be_off() -> None:
+    """A_i = s (A_H + A_C) ∮ p df: the line between f = 0.35 and 0.7 is drawn over its point at 0.5 on both sides."""
+    found = of({"indicator.head_end.expansion.2.1": "0.1"}, "work", "A_head", "A_crank")
+    areas = found["A_head"].value + found["A_crank"].value
+    assert found["work"].spread == pytest.approx(0.1 * 98066.5 * (0.7 - 0.35) / 2 * 0.8 * areas, rel=1e-8)
+
+
+def test_drawn_machines_that_fail_are_told_of() -> None:
+    """Of bores of 450 ± 900 mm 35 % are thinner than the rod; of 1e308 mm no machine is left, which was not told."""
+    (one,) = of({"bore": "200 %"}, "A_head").values()
+    lost = 2000 - one.sample
+    assert lost == pytest.approx(2000 * NormalDist(450, 900).cdf(100), abs=1)
+    assert one.failed.startswith(f"{lost} of 2000 drawn machines fail and count for nothing (bore: -")
+    told = CliRunner().invoke(command, ["forces", str(WATERWORKS), "--key-values", "--uncertainty", "bore=1e308 mm"])
+    assert "2000 of 2000 drawn machines fail" in told.stdout
 
 
 def test_what_bends_is_told_by_a_sample() -> None:
@@ -194,6 +212,9 @@ def test_its_lines_are_found_by_symbol() -> None:
         (("bore=-1 mm",), "write KEY=SPREAD, above 0"),
         (("bore",), "write KEY=SPREAD"),
         (("name=1 mm",), "is no number that could be off"),
+        (("bore=1 mm", "bore=2 mm"), "--uncertainty bore: this key is given twice"),
+        (("tandem.0.bore=1 mm", "tandem[0].bore=2 mm"), "--uncertainty tandem[0].bore: this key is given twice"),
+        (("tandem.bore=1 mm",), "did you mean 'tandem.0.bore'?"),
     ],
 )
 def test_bad_uncertainties(args: tuple[str, ...], message: str) -> None:

@@ -40,7 +40,13 @@ _what_varies = stacked(
 _what_is_told = stacked(
     click.option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
     click.option("--angles", "with_angles", is_flag=True, help="Beside every extreme the crank angle where it stands."),
-    click.option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only rows with 'c_max < 5 m/s'."),
+    click.option(
+        "--where",
+        "conditions",
+        multiple=True,
+        metavar="CONDITION",
+        help="Only rows with 'c_max < 5 m/s' or 'keeps = yes'.",
+    ),
     click.option("--sort", metavar="ID", help="The smallest of this column first; -ID: the largest."),
     click.option("--top", type=click.IntRange(1), metavar="N", help="Only the first N rows of --sort."),
     click.option("--pareto", type=words, metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."),
@@ -160,7 +166,7 @@ class _Asked(NamedTuple):
 
         found = Sweep(self._spec())
         rows = shard(self.shard, found.rows) if self.shard else range(found.rows)
-        conditions = [read_condition(one, found.heads) for one in self.conditions]
+        conditions = [read_condition(one, found.heads, found.texts) for one in self.conditions]
         aims = [read_aim(one, found.heads, "--pareto") for one in self.pareto or ()]
         order = read_aim(self.sort, found.heads, "--sort") if self.sort else None
         out, rows = self._out(found, rows, conditions)
@@ -169,12 +175,9 @@ class _Asked(NamedTuple):
         if self.file_name or not sys.stdout.isatty():  # else the rows themselves go to the terminal
             told = with_bar(told, "designs", length=len(rows), update_min_steps=100)
         kept: Iterable[Any] = (row for row in told if all(one.holds(row) for one in conditions))
-        if self.summary:
-            kept = summary(kept, found.heads)
-        else:
-            kept = unbettered(kept, aims) if aims else kept
-            kept = sorted(kept, key=order.of)[: self.top] if order else kept
-        out.write(kept)
+        kept = unbettered(kept, aims) if aims else kept
+        kept = sorted(kept, key=order.of)[: self.top] if order else kept
+        out.write(summary(kept, found.heads) if self.summary else kept)
 
     def _spec(self) -> "Spec":
         from kurbel.designs.plan import MOST_ROWS
@@ -194,9 +197,9 @@ class _Asked(NamedTuple):
         from kurbel.designs.chosen import summary_heads
         from kurbel.render.sweep_output import SweepOutput, Titles
 
-        titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.limited)
+        titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.texts)
         if self.summary:
-            titles = Titles(summary_heads(found.heads), row="column", failing=False)
+            titles = Titles(summary_heads(found.heads), row="column")
         if not self.resume:
             return SweepOutput(titles, self._look, self.file_name, headed=rows.start == 0), rows
         from kurbel.render.kept_rows import KeptRows

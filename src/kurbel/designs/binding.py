@@ -10,13 +10,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.declared.keys import Form
+from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot, joined, one_kind, sort_of
 from kurbel.machine_file.given import leaves, tree_of
-from kurbel.machine_file.overrides import by_numbers, read_override
+from kurbel.machine_file.overrides import by_numbers, dotted, path_of
 from kurbel.machine_file.reader import read_machine, reading_of
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.varied import Parted
@@ -98,17 +99,19 @@ class Binder:
         """Of the numbers that stand under the keys, '' of words."""
         self._slots: dict[tuple[int, str], _Slot] = {}
         for number, key in enumerate(keys):
-            self._place(number, read_override(f"{key}=0").path, births)
+            self._place(number, path_of(key), births)
         self._steps = self._planned(births)
 
     def _place(self, number: int, path: Path, births: list[Birth]) -> None:
         """Note in which slots a key stands: that of its record, and those of what is `like` that."""
         owner, name = _owner(path, births)
-        self.kinds.append(owner.form.keys[name].form.kind)
+        inner = path[len(owner.path) + 1 :]
+        bare = inner and NUMBER.fullmatch(_at(owner.mapping.get(name), inner) or "")  # the number of a point, say
+        self.kinds.append(owner.form.keys[name].form.kind or ("ratio" if bare else ""))
         for birth in births:
             if _reads(birth, name) and birth.mapping.get(name) is owner.mapping.get(name):
                 slot = self._slots.setdefault((id(birth), name), _Slot(birth, name, []))
-                slot.varied.append((number, path[len(owner.path) + 1 :]))
+                slot.varied.append((number, inner))
 
     def _planned(self, births: list[Birth]) -> list[_Step]:
         steps: list[_Step] = []
@@ -209,23 +212,30 @@ def written_texts(origin: Origin, keys: Sequence[str]) -> list[str]:
 
 def written(tree: Tree, key: str) -> str:
     """Return what stands under a dotted key; raises UsageError where no value does."""
-    node: Any = tree
-    try:
-        for step in read_override(f"{key}=0").path:
-            node = node[step]
-    except (KeyError, IndexError, TypeError):
-        node = None
-    if not isinstance(node, str):
+    text = _at(tree, path_of(key))
+    if text is None:
         raise UsageError(f"no value stands under this key in the file{_meant(tree, key)}")
-    return node
+    return text
+
+
+def _at(tree: Any, path: Path) -> str | None:
+    """Return the text at a path in a tree; None where there is none."""
+    try:
+        for step in path:
+            tree = tree[step]
+    except (KeyError, IndexError, TypeError):
+        return None
+    return tree if isinstance(tree, str) else None
 
 
 def _meant(tree: Tree, key: str) -> str:
     """Return which key with a value was probably meant by one without, or an empty text."""
-    texts = (path for path, value in leaves(tree) if isinstance(value, str) and path[0] != "uncertainty")
-    known = tuple(".".join(map(str, path)) for path in texts)
-    ending = next((f"; did you mean '{one}'?" for one in known if one.endswith(f".{key}")), "")
-    return ending or did_you_mean(by_numbers(tree, key), known)
+    paths = [path for path, value in leaves(tree) if isinstance(value, str) and path[0] != "uncertainty"]
+    for path in paths:
+        names = ".".join(step for step in path if isinstance(step, str))
+        if f".{names}".endswith(f".{key}"):
+            return f"; did you mean '{dotted(path)}'?"
+    return did_you_mean(by_numbers(tree, key), tuple(map(dotted, paths)))
 
 
 def _owner(path: Path, births: list[Birth]) -> tuple[Birth, str]:

@@ -8,66 +8,79 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.declared.numerals import NUMBER, plain
+from kurbel.declared.quantity import called
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import example, parse_quantity
 from kurbel.designs.sweep import Head, Row
 from kurbel.errors import UnitError, UsageError
+from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
 
 _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "<=": operator.le,
     ">=": operator.ge,
     "!=": operator.ne,
+    "==": operator.eq,
+    "≤": operator.le,
+    "≥": operator.ge,
+    "≠": operator.ne,
     "<": operator.lt,
     ">": operator.gt,
     "=": operator.eq,
 }
-_CONDITION = re.compile(r"(.+?)\s*(<=|>=|!=|<|>|=)\s*(.+)")
+_CONDITION = re.compile(rf"(.+?)\s*({'|'.join(_RELATIONS)})\s*(.*)")
 
 
 class Condition(NamedTuple):
-    """A comparison of a column with a value in the unit of its head, or with a text."""
+    """A comparison of a column with a value in the unit of its head, or with a text; place: or a `Row.text`."""
 
-    place: int
+    place: int | str
     relation: str
     value: Any
 
     def holds(self, row: Row) -> bool:
         """Return whether it holds; a row without that value keeps no condition."""
-        value = row.values[self.place]
-        if value is None or isinstance(value, tuple) or isinstance(value, str) != isinstance(self.value, str):
+        value = row.text(self.place) if isinstance(self.place, str) else row.values[self.place]
+        if value is None or isinstance(value, str) != isinstance(self.value, str):
             return False
         return bool(_RELATIONS[self.relation](value, self.value))
 
 
-def read_condition(text: str, heads: Sequence[Head]) -> Condition:
-    """Return what `c_max < 5 m/s` says; raises UsageError."""
+def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Condition:
+    """Return what `c_max < 5 m/s` or, of the texts of a row, `keeps = yes` says; raises UsageError."""
     found = _CONDITION.fullmatch(plain(text).strip())
     if not found:
         raise UsageError(
             f"--where: expected a column, a relation and a value, such as 'c_max < 5 m/s', got {shown(text)!r}"
         )
-    place = place_of(found[1].strip(), heads, "--where")
-    head, written = heads[place], found[3].strip()
+    name, relation, written = (part.strip() for part in found.groups())
+    if name in texts:
+        return Condition(name, relation, written)
+    place = place_of(name, heads, "--where", texts)
+    head = heads[place]
     if not head.kind:
-        return Condition(place, found[2], written)
+        return Condition(place, relation, written)
     try:
         value = parse_quantity(written, head.kind)
     except UnitError as error:
         hint = f"; write for instance {example(head.kind)}" if NUMBER.fullmatch(written) else ""
         raise UsageError(f"--where {shown(text)}: {error}{hint}") from None
-    return Condition(place, found[2], convert(value, head.kind, head.unit))
+    return Condition(place, relation, convert(value, head.kind, head.unit))
 
 
-def place_of(name: str, heads: Sequence[Head], option: str) -> int:
-    """Return which column a name is; raises UsageError."""
+def place_of(name: str, heads: Sequence[Head], option: str, texts: Sequence[str] = ()) -> int:
+    """Return which column of single values a name or a printed symbol is; raises UsageError."""
     ids = [one.id for one in heads]
-    if name not in ids:
-        raise UsageError(
-            f"{option}: no column '{shown(name)}'{did_you_mean(name, tuple(ids))} (there are {', '.join(ids)})"
-        )
-    return ids.index(name)
+    owner, dot, own = name.rpartition(".")
+    meant = (name, *(f"{owner}{dot}{id}" for id in called(own, every_quantity().all_key_values)))
+    found = next((one for one in meant if one in ids), "")
+    if not found:
+        near, there = did_you_mean(name, (*ids, *texts)), ", ".join((*ids, *texts))
+        raise UsageError(f"{option}: no column '{shown(name)}'{near} (there are {there})")
+    if heads[ids.index(found)].listed:
+        raise UsageError(f"{option}: {found} is a list of values, which is neither more nor less than another one")
+    return ids.index(found)
 
 
 class Aim(NamedTuple):
@@ -87,7 +100,10 @@ class Aim(NamedTuple):
 def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
     """Return what `T_max` or `-T_max` says, the largest value first; raises UsageError."""
     name = text.strip()
-    return Aim(place_of(name.removeprefix("-"), heads, option), name.startswith("-"))
+    place = place_of(name.removeprefix("-"), heads, option)
+    if not heads[place].kind:
+        raise UsageError(f"{option}: {heads[place].id} has words, of which none is the best")
+    return Aim(place, name.startswith("-"))
 
 
 def unbettered(rows: Iterable[Row], aims: Sequence[Aim]) -> Iterator[Row]:

@@ -53,35 +53,48 @@ def subjects(case: Case, command: str) -> Iterable[Any]:
     return import_module(f"kurbel.report.{command}").subjects(case)  # type: ignore[no-any-return]
 
 
-def asked_answers(machine: Machine, names: Sequence[str]) -> tuple[Answer, ...]:
+def asked_answers(machine: Machine, names: Sequence[str], with_angles: bool = False) -> tuple[Answer, ...]:
     """Return the key values that are asked for by id or symbol, of every cylinder that has them; none: the usual ones.
 
     Those are all of `forces`; of a machine without a cylinder, whose turning effort is given, all of `flywheel`.
+    with_angles: beside each that is an extreme the angle where it stands.
 
     Raises UsageError for one that there is not, or that this machine has not.
     """
     case = Case(machine)
+    once: dict[Answer, tuple[Answer, ...]] = {}
     with np.errstate(all="ignore"):
-        if not names:
-            return tuple(_usual(case))
         declared = every_quantity().all_key_values
-        return tuple(one for name in joined(names, declared) for one in _named(case, name))
+        found = (one for name in joined(names, declared) for one in _named(case, name)) if names else _usual(case)
+        for one, value in found:
+            angle = (one._replace(angle=True),) if with_angles and _stands(value) else ()
+            once.setdefault(one._replace(alone=False), (one, *angle))
+    return tuple(part for parts in once.values() for part in parts)
 
 
-def _usual(case: Case) -> Iterator[Answer]:
+def _stands(value: Any) -> bool:
+    """Return whether a value stands at an angle, or other designs may have one that does."""
+    return isinstance(value, (Extreme, KurbelError))
+
+
+def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
+    """Yield who answers what a command tells unasked, each with what this machine has there: see `_answer`."""
     command = "forces" if case.machine.cylinders else "flywheel"
     for subject in subjects(case, command):
-        for quantity, _ in subject.key_values(command):
-            if not quantity.residual:
-                yield Answer(quantity, command, subject.name)
+        for quantity in subject.lists.key_values(command).values():
+            value = None if quantity.residual else _answer(subject, quantity, unasked=True)
+            if value is not None:
+                yield Answer(quantity, command, subject.name), value
 
 
-def _named(case: Case, name: str) -> list[Answer]:
+def _named(case: Case, name: str) -> list[tuple[Answer, Any]]:
+    """Return who answers a key value, each with what this machine has there: see `_answer`."""
     declared = every_quantity().all_key_values
     ids = called(name, declared)
     owner, _, own = name.rpartition(".")
-    if not ids and called(own, declared) and (found := [one for one in _named(case, own) if one.subject == owner]):
-        return [one._replace(alone=True) for one in found]
+    of_owner = _named(case, own) if not ids and called(own, declared) else ()
+    if found := [(one._replace(alone=True), value) for one, value in of_owner if one.subject == owner]:
+        return found
     if not ids or ambiguity(name, ids):
         near = did_you_mean(name, tuple(one.id for one in declared))
         raise UsageError(f"--columns: {ambiguity(name, ids) or f'no key value {shown(name)!r}{near}'}")
@@ -89,20 +102,22 @@ def _named(case: Case, name: str) -> list[Answer]:
     command = ("forces", *command) if "forces" in command and case.machine.cylinders else command
     for word in dict.fromkeys(command):
         found = [
-            Answer(quantity, word, subject.name)
+            (Answer(quantity, word, subject.name), value)
             for subject in subjects(case, word)
-            if (quantity := subject.lists.key_values(word).get(ids[0])) and _has(subject, quantity)
+            if (quantity := subject.lists.key_values(word).get(ids[0]))
+            and (value := _answer(subject, quantity)) is not None
         ]
         if found:
             return found
     raise UsageError(f"--columns: this machine has no {ids[0]}; kurbel check says why")
 
 
-def _has(subject: Any, quantity: Quantity) -> bool:
+def _answer(subject: Any, quantity: Quantity, unasked: bool = False) -> Any:
+    """Return what a machine has for a key value, None for nothing; or the error, where other designs may have it."""
     try:
-        return subject.answer(quantity) is not None
-    except KurbelError:  # other designs may have it
-        return True
+        return None if unasked and not subject.says(quantity) else subject.answer(quantity)
+    except KurbelError as error:
+        return error
 
 
 def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:

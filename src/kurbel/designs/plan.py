@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.errors import UsageError
+from kurbel.machine_file.overrides import path_of
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -23,7 +24,7 @@ MOST_VALUES = 10_000_000
 """Values of one key; a range of more is a slip of its step."""
 _CALL = re.compile(r"(normal|uniform)\s*\((.*)\)\s*")
 _NEXT_KEY = re.compile(r";(?=[^;=]*=|\s*(?:;|$))")
-_UNKNOWN_CALL = re.compile(r"([a-z_]+)\s*\(.*\)\s*")
+_UNKNOWN_CALL = re.compile(r"([A-Za-z_]+)\s*\(.*\)\s*")
 
 
 class Distribution(NamedTuple):
@@ -179,9 +180,9 @@ class Plan:
         self.rows = math.prod(len(axis[0].texts) for axis in self._axes) * (sample or 1)
 
     def _refuse(self, option: str) -> None:
-        keys = [one.key for one in self.inputs]
-        if twice := next((key for place, key in enumerate(keys) if key in keys[:place]), ""):
-            raise UsageError(f"--vary {twice}: this key is varied twice")
+        paths = [path_of(one.key) for one in self.inputs]
+        if twice := next((one for place, one in enumerate(self.inputs) if paths[place] in paths[:place]), None):
+            raise UsageError(f"--vary {twice.key}: this key is varied twice")
         if self._drawn and not self._sample:
             raise UsageError(f"--vary {self._drawn[0].key}: a distribution needs --sample N, such as --sample 1000")
         if self._sample and not self._drawn:

@@ -11,7 +11,7 @@ from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of, is_slow
-from kurbel.designs.binding import Binder
+from kurbel.designs.binding import Binder, written_texts
 from kurbel.designs.columns import Answer, asked_answers, subjects
 from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, UsageError
@@ -19,6 +19,7 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot
 from kurbel.numerics.extreme import size_of
+from kurbel.solver.case import Case
 
 CHUNK = 1000
 """Rows that are computed together: what memory holds at once, and what a run computes anew that begins amid them."""
@@ -28,6 +29,7 @@ _SLOWLY = 10
 """Rows that are handed over together where they are answered one after another."""
 _STARTS = 100
 """Rows that are tried for one that makes a machine."""
+_GOLDEN = (5**0.5 - 1) / 2
 
 
 class Spec(NamedTuple):
@@ -54,13 +56,14 @@ class Spec(NamedTuple):
 class Head(NamedTuple):
     """A column of the table: its id, the unit of its values, '' for none; input: whether it is what varies.
 
-    kind: of the values, '' of texts.
+    kind: of the values, '' of texts; listed: whether each is a list of values.
     """
 
     id: str
     unit: str
     input: bool
     kind: str = ""
+    listed: bool = False
 
 
 class Row(NamedTuple):
@@ -75,6 +78,13 @@ class Row(NamedTuple):
     broken: str = ""
     failure: str = ""
 
+    def text(self, name: str) -> str:
+        """Return what stands in the row under `keeps`, `broken` or `failure`."""
+        return _KEPT[self.keeps] if name == "keeps" else str(getattr(self, name))
+
+
+_KEPT = {True: "yes", False: "no", None: ""}
+
 
 class Sweep:
     """Rows of one machine; heads: what stands over their values. Raises UsageError for what makes none."""
@@ -88,23 +98,33 @@ class Sweep:
             raise UsageError(f"these are {self.rows} rows; --yes computes more than {spec.most}")
         self._binder = self._started()
         machine = self._binder.machine
-        asked = asked_answers(machine, spec.columns)
-        self.asked = tuple(part for one in asked for part in (_with_angle(one) if spec.with_angles else (one,)))
+        self.asked = asked_answers(machine, spec.columns, spec.with_angles)
         self._limits = tuple(_limit_answers(machine))
         self.limited = bool(machine.limits)
+        self.texts = ("keeps", "broken", "failure") if self.limited else ("failure",)
+        """Heads of the texts after the values, as `Row.text` tells them."""
 
     def _started(self) -> Binder:
         """Return what binds texts, starting from the first row that makes a machine."""
         keys = [one.key for one in self.plan.inputs]
         failed = ""
-        for row in range(min(self.rows, _STARTS)):
+        for texts in self._starts(keys):
             try:
-                return Binder(self.spec.origin, keys, self.plan.texts(row))
+                return Binder(self.spec.origin, keys, texts)
             except MachineFileError as error:
-                failed = failed or _as_varied(str(error), zip(keys, self.plan.texts(row)))
+                failed = failed or _as_varied(str(error), zip(keys, texts))
             except UsageError as error:
-                raise UsageError(_as_varied(str(error), zip(keys, self.plan.texts(row)))) from None
+                raise UsageError(_as_varied(str(error), zip(keys, texts))) from None
         raise UsageError(failed or "there is no row to compute")
+
+    def _starts(self, keys: Sequence[str]) -> Iterator[Sequence[str]]:
+        """Yield texts that may make a machine: those of the file of one that was read, else rows of the whole plan."""
+        if self.spec.given:
+            yield written_texts(self.spec.origin, keys)
+        elif self.rows <= _STARTS:
+            yield from map(self.plan.texts, range(self.rows))
+        else:  # by the golden section: all over the plan, and not at the same value of a key each time
+            yield from (self.plan.texts(int(self.rows * (number * _GOLDEN % 1))) for number in range(_STARTS))
 
     @cached_property
     def heads(self) -> tuple[Head, ...]:
@@ -114,7 +134,7 @@ class Sweep:
         for one, unit in zip(self.asked, self._units):
             owned = one.alone or ids.count(one.quantity.id) > 1
             name = f"{one.subject}.{one.quantity.id}" if owned else one.quantity.id
-            heads.append(Head(f"{name}_at" if one.angle else name, unit, False, one.kind))
+            heads.append(Head(f"{name}_at" if one.angle else name, unit, False, one.kind, one.quantity.listed))
         return tuple(heads)
 
     def _input_head(self, number: int, one: Input) -> Head:
@@ -145,8 +165,7 @@ class Sweep:
     def _row(self, number: int, inputs: tuple[Any, ...], found: Values, values: Iterator[tuple[Any, ...]]) -> Row:
         if isinstance(found, str):
             return self._unanswered(number, inputs, found)
-        broken = self._broken(found[len(self.asked) :])
-        return Row(number, (*inputs, *next(values)), not broken if self.limited else None, broken)
+        return Row(number, (*inputs, *next(values)), *self._judged(found[len(self.asked) :]))
 
     def unanswered(self, row: int) -> Row:
         """Return the row with this index from 0 on without its answers: what varies is known unsolved."""
@@ -165,13 +184,16 @@ class Sweep:
         columns = zip(self.asked, self._units, zip(*found))
         return zip(*(_column_in_unit(column, one.kind, unit) for one, unit, column in columns))
 
-    def _broken(self, found: Sequence[Any]) -> str:
+    def _judged(self, found: Sequence[Any]) -> tuple[bool | None, str, str]:
+        """Return whether the limits are kept, the first that is not, and which cannot be judged."""
         from kurbel.report.compared import breaks
 
-        for (answer, bound), value in zip(self._limits, found, strict=True):
-            if value is not None and breaks(answer.quantity, bound, value):
-                return answer.quantity.id
-        return ""
+        there = [(one.quantity, bound, value) for (one, bound), value in zip(self._limits, found) if value is not None]
+        broken = next((quantity.id for quantity, bound, value in there if breaks(quantity, bound, value)), "")
+        known = {quantity.id for quantity, _, _ in there}
+        unknown = dict.fromkeys(one.quantity.id for one, _ in self._limits if one.quantity.id not in known)
+        keeps = None if not self.limited or (unknown and not broken) else not broken
+        return keeps, broken, "; ".join(f"limits.{id}: this machine has no {id}" for id in unknown)
 
     def chunks(self, rows: range) -> Iterator[tuple[range, range]]:
         """Yield the chunks that these rows are computed in, each with those rows that are wanted of it.
@@ -190,16 +212,6 @@ class Sweep:
         """Rows that are answered and handed over at once: few where each takes long."""
         every = (*self.asked, *(answer for answer, _ in self._limits))
         return _SLOWLY if any(is_slow(self._binder.machine, one) for one in every) else CHUNK
-
-
-_AT = ("p_max", "p_guide_max", "P_inertia_max", "P_inertia_min", "c_max", "c_min", "b_max", "b_min")
-
-
-def _with_angle(one: Answer) -> Iterator[Answer]:
-    """Yield a key value, and of an extreme the angle where it stands."""
-    yield one
-    if one.quantity.asks[:1] == ("extremes_of",) or one.quantity.id in _AT:
-        yield one._replace(angle=True)
 
 
 def _as_varied(message: str, texts: Iterable[tuple[str, str]]) -> str:
@@ -244,16 +256,24 @@ def _in_unit(number: Any, kind: str, unit: str) -> Any:
 
 
 def _limit_answers(machine: Machine) -> Iterable[tuple[Answer, float]]:
-    """Yield whose value each limit of the file is for, with its bound."""
-    from kurbel.report.compared import commands_for
-    from kurbel.solver.case import Case
-
-    case = Case(machine)
+    """Yield whose value each limit of the file is for, with its bound; raises UsageError where nobody has it."""
     for name, bound in machine.limits:
-        for command in commands_for(machine, name):
-            for subject in subjects(case, command):
-                if quantity := subject.lists.key_values(command).get(name):
-                    yield Answer(quantity, command, subject.name), bound
+        try:
+            answers = list(_limited(Case(machine), name))
+        except UsageError as error:
+            raise UsageError(f"limits.{name}: {error}") from None
+        if not answers:
+            raise UsageError(f"limits.{name}: this machine has no {name}")
+        yield from ((one, bound) for one in answers)
+
+
+def _limited(case: Case, name: str) -> Iterable[Answer]:
+    from kurbel.report.compared import commands_for
+
+    for command in commands_for(case.machine, name):
+        for subject in subjects(case, command):
+            if quantity := subject.lists.key_values(command).get(name):
+                yield Answer(quantity, command, subject.name)
 
 
 _sweep = lru_cache(maxsize=4)(Sweep)

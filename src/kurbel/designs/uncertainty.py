@@ -16,7 +16,7 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import answers_of, stands_beside
+from kurbel.designs.answers import Values, answers_of, stands_beside
 from kurbel.designs.binding import Binder, written
 from kurbel.designs.columns import Answer, subjects
 from kurbel.designs.sampling import latin_hypercube
@@ -24,6 +24,7 @@ from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.given import tree_of
+from kurbel.machine_file.overrides import path_of
 from kurbel.machine_file.positions import located
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
@@ -54,7 +55,8 @@ _NOISE = 1e-12
 class Uncertain(NamedTuple):
     """The standard uncertainty of a key value in SI, and the share of each input in its square.
 
-    sample: from how many drawn machines both are told, 0 where they are of first order.
+    sample: from how many drawn machines both are told, 0 where they are of first order; failed: of how many no answer
+    came, and why, '' where all have one.
     """
 
     answer: Answer
@@ -62,6 +64,7 @@ class Uncertain(NamedTuple):
     spread: float
     shares: tuple[float, ...]
     sample: int = 0
+    failed: str = ""
 
 
 class WrongUncertainty(UsageError):
@@ -80,6 +83,8 @@ class Uncertainty:
 
     def __init__(self, origin: Origin, spreads: Mapping[str, str]) -> None:
         tree, wrong = tree_of(origin), dict[str, str]()
+        first = {path_of(key): key for key in reversed([*spreads])}
+        wrong |= {key: "this key is given twice" for key in spreads if key not in first.values()}
         texts = _of_each(spreads, lambda key: written(tree, key), wrong)
         self.keys = tuple(texts)
         self._binder = Binder(origin, self.keys, list(texts.values()))
@@ -96,11 +101,16 @@ class Uncertainty:
         values = (value + shift * spread for value, shift, spread in zip(self._values, shifts, self._spreads))
         return [f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._binder.kinds)]
 
+    def _found(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer]) -> list[Values]:
+        """Return the answers of machines whose inputs are off by so many uncertainties, or why there are none."""
+        bound = self._binder.bound([self._texts(one) for one in shifts])
+        found = bound.failures | answers_of(bound.lots, asked)
+        return [found[row] for row in range(len(shifts))]
+
     def _answers(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer]) -> Any:
         """Return the answers (machines, asked) as floats, nan where there are none."""
-        found = answers_of(self._binder.bound([self._texts(one) for one in shifts]).lots, asked)
-        rows = [found.get(row, "") for row in range(len(shifts))]
         blank = [math.nan] * len(asked)
+        rows = self._found(shifts, asked)
         return np.array([blank if isinstance(row, str) else [_float(value) for value in row] for row in rows])
 
     def of(self, asked: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
@@ -138,8 +148,18 @@ class Uncertainty:
         points = latin_hypercube(count, len(self.keys), 0).tolist()
         shifts = [[NormalDist().inv_cdf(share) for share in point] for point in points]
         parts = [shifts[start : start + at_once] for start in range(0, count, at_once)]
-        found = np.concatenate([self._answers(part, [one.answer for one in bent]) for part in counted(parts)])
-        return [_of_sample(one, np.array(shifts), found[:, k]) for k, one in enumerate(bent)]
+        asked = [one.answer for one in bent]
+        found = np.concatenate([self._answers(part, asked) for part in counted(parts)])
+        failed = self._failed([shifts[row] for row in np.flatnonzero(np.isnan(found).all(axis=1))], asked, count)
+        drawn = [_of_sample(one, np.array(shifts), found[:, k]) for k, one in enumerate(bent)]
+        return [one._replace(failed=failed) for one in drawn]
+
+    def _failed(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer], count: int) -> str:
+        """Return how many of so many machines gave no answer, and why the first one did not."""
+        if not shifts:
+            return ""
+        (why,) = self._found(shifts[:1], asked)
+        return f"{len(shifts)} of {count} drawn machines fail and count for nothing ({why})."
 
 
 def _of_sample(one: Uncertain, shifts: Any, values: Any) -> Uncertain:
@@ -238,6 +258,9 @@ def given_uncertainty(machine: Machine, more: Sequence[tuple[str, str]] = ()) ->
     Raises MachineFileError or UsageError with all that is wrong with them.
     """
     outside, origin = dict(more), machine.origin
+    if len(outside) < len(more):
+        twice = max(outside, key=[key for key, _ in more].count)
+        raise UsageError(f"--uncertainty {shown(twice)}: this key is given twice")
     spreads = dict(machine.uncertainty) | outside
     if not spreads or origin is None:
         return None
@@ -288,3 +311,4 @@ def _notes(found: Sequence[Uncertain]) -> Iterable[str]:
     yield "Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."
     if any(one.sample for one in found):
         yield "Those with a sample bend too much for that and come from so many drawn machines."
+    yield from dict.fromkeys(one.failed for one in found if one.failed)

@@ -25,10 +25,10 @@ def read_override(text: str) -> Override:
     (('cylinders', 0, 'bore'), '450 mm')
     """
     key, equals, value = text.partition("=")
-    steps = [step.strip() for step in key.replace("[", ".").replace("]", "").split(".")]
-    if not equals or not all(steps):
+    path = path_of(key)
+    if not equals or "" in path:
         _refused(text, "write KEY=VALUE, such as --set cylinders.0.bore='450 mm'")
-    if any(step.endswith(":") for step in steps):
+    if any(str(step).endswith(":") for step in path):
         _refused(text, "write KEY=VALUE, without the colon")
     reading = Reading()
     try:
@@ -38,7 +38,17 @@ def read_override(text: str) -> Override:
         reading.faults += error.faults
     if reading.faults:
         _refused(text, reading.faults[0].message)
-    return Override(text, tuple(int(step) if step.isdecimal() else step for step in steps), tree)
+    return Override(text, path, tree)
+
+
+def path_of(key: str) -> Path:
+    """Return where a dotted key leads.
+
+    >>> path_of("cylinders[0].bore") == path_of("cylinders.0.bore") == ("cylinders", 0, "bore")
+    True
+    """
+    steps = (step.strip() for step in key.replace("[", ".").replace("]", "").split("."))
+    return tuple(int(step) if step.isdecimal() else step for step in steps)
 
 
 def _refused(text: str, why: str) -> NoReturn:
@@ -60,25 +70,25 @@ def _set(node: Any, one: Override, place: int, step: str | int) -> Any:
     last = place == len(one.path) - 1
     if isinstance(node, list):
         if not isinstance(step, int) or step >= len(node):
-            where, instead = _dotted(one.path[:place]), (*one.path[:place], _near(step, node), *one.path[place + 1 :])
-            items = f"its items are 0 to {len(node) - 1}: write {_dotted(instead)}=…"
+            where, instead = dotted(one.path[:place]), (*one.path[:place], _near(step, node), *one.path[place + 1 :])
+            items = f"its items are 0 to {len(node) - 1}: write {dotted(instead)}=…"
             _refused(one.text, f"'{where}' is a list; {items}")
         if last:
             node[step] = one.value
         return node[step]
     if not isinstance(node, dict):
-        where = _dotted(one.path[:place])
+        where = dotted(one.path[:place])
         _refused(one.text, f"nothing stands below '{where}', which is {kind_of(node)}")
     if last:
         node[str(step)] = one.value
     elif is_nothing(node.get(str(step), Plain())):
         if isinstance(one.path[place + 1], int):
-            _refused(one.text, f"there is no list '{_dotted(one.path[: place + 1])}' in the file")
+            _refused(one.text, f"there is no list '{dotted(one.path[: place + 1])}' in the file")
         node[str(step)] = {}
     return node[str(step)]
 
 
-def _dotted(path: Path) -> str:
+def dotted(path: Path) -> str:
     """Return a path as a key on the command line is written."""
     return ".".join(map(str, path))
 
@@ -100,7 +110,7 @@ def by_numbers(tree: Tree, key: str) -> str:
     """
     node: Any = tree
     found: list[str | int] = []
-    for step in read_override(f"{key}=0").path:
+    for step in path_of(key):
         if isinstance(node, list) and node:
             number = step if isinstance(step, int) and step < len(node) else _near(step, node)
             found.append(number)
@@ -108,7 +118,7 @@ def by_numbers(tree: Tree, key: str) -> str:
         else:
             found.append(step)
             node = node.get(str(step)) if isinstance(node, dict) else None
-    return _dotted(tuple(found))
+    return dotted(tuple(found))
 
 
 def named(faults: Iterable[Fault], overrides: Sequence[Override]) -> list[Fault]:

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import os
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple, NoReturn
 
@@ -118,10 +119,11 @@ def _text(value: Any) -> str:
 
 
 def _content(file_name: str) -> bytes:
+    """Return what a file has; a device or a pipe, which may have no end, keeps nothing."""
+    if not os.path.isfile(file_name):
+        return b""
     try:
         with open(file_name, "rb") as file:
             return file.read()
-    except FileNotFoundError:
-        return b""
     except OSError as error:
         raise UsageError(f"cannot read {file_name}: {error.strerror}") from None

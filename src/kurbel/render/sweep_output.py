@@ -28,15 +28,14 @@ _WIDTH_OF = 20
 
 
 class Titles(NamedTuple):
-    """Names of the columns with their units, in order, without those of the row itself.
+    """Names of the columns with their units, in order, and the heads of the texts after the values.
 
-    limited: whether bounds stand that a row keeps or not; row: what a row is called by; failing: whether one may fail.
+    row: what a row is called by.
     """
 
     names: tuple[tuple[str, str], ...]
-    limited: bool = False
+    last: tuple[str, ...] = ()
     row: str = "row"
-    failing: bool = True
 
     @property
     def whole(self) -> list[str]:
@@ -44,15 +43,9 @@ class Titles(NamedTuple):
         heads = [f"{name}_{unit.replace(' ', '')}" if unit else name for name, unit in self.names]
         return [self.row, *heads, *self.last]
 
-    @property
-    def last(self) -> tuple[str, ...]:
-        """The heads of texts after the values."""
-        return (*(("keeps", "broken") if self.limited else ()), *(("failure",) if self.failing else ()))
-
     def values(self, row: Any) -> list[Any]:
         """Return what stands in a row under the heads."""
-        kept = ({True: "yes", False: "no", None: ""}[row.keeps], row.broken) if self.limited else ()
-        return [row.number, *row.values, *kept, *((row.failure,) if self.failing else ())]
+        return [row.number, *row.values, *map(row.text, self.last)]
 
 
 def csv_rows(titles: Titles, rows: Iterable[Any], look: Look) -> Iterator[str]:
@@ -121,7 +114,7 @@ def table_rows(titles: Titles, rows: Iterable[Any], look: Look) -> Iterator[str]
     following = iter(rows)
     first = [[_cell(value, look) for value in titles.values(row)] for _, row in zip(range(_WIDTH_OF), following)]
     widths = [max(map(len, column)) for column in zip(names, units, *first)]
-    if titles.failing:  # a reason may be long, and nothing stands after it
+    if titles.last:  # a reason may be long, and nothing stands after it
         widths[-1] = 0
     rule = look.charset.text("─") * (sum(widths) + 2 * (len(widths) - 1))
     for cells in (names, units) if any(units) else (names,):

@@ -1,0 +1,135 @@
+"""What a sweep tells of limits, and which rows it keeps, by every name that a column has."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+import kurbel
+from kurbel.cli import kurbel as command
+
+CONFIGS = Path(__file__).parent.parent.parent / "configs"
+WATERWORKS = str(CONFIGS / "waterworks.yaml")
+RATIOS = ("--vary", "rod_ratio=0.5,3,4,5,6")
+
+
+def run(*args: str, file: str = WATERWORKS) -> Result:
+    return CliRunner().invoke(command, ["sweep", file, *args])
+
+
+def rows(*args: str, file: str = WATERWORKS) -> list[dict[str, object]]:
+    result = run(*args, "-f", "json", file=file)
+    assert result.exit_code == 0, result.output
+    return [json.loads(line) for line in result.stdout.splitlines()]
+
+
+def numbers(*args: str) -> list[object]:
+    return [one["row"] for one in rows(*args)]
+
+
+def test_a_limit_that_cannot_be_judged_is_not_kept() -> None:
+    """Without a flywheel there is no δ, as `check` says; all rows were told to keep the bound on it."""
+    delta = ("--set", "limits.delta=1/50")
+    (found,) = rows("--vary", "rod_ratio=5", "--columns", "N_max", *delta)
+    assert (found["keeps"], found["broken"]) == (None, None)
+    assert found["failure"] == "limits.delta: this machine has no delta"
+    assert found["N_max_N"] == pytest.approx(kurbel.solve(kurbel.load(WATERWORKS)).cylinders[0]["N_max"].value)
+    (broken,) = rows("--vary", "rod_ratio=5", "--columns", "N_max", *delta, "--set", "limits.N_max=16 kN")
+    assert (broken["keeps"], broken["broken"], broken["failure"]) == (False, "N_max", found["failure"])
+    judged = rows("--vary", "flywheel.inertia=1e4,5e4 kg m2", "--columns", "N_max", *delta)
+    assert [(one["keeps"], one["failure"]) for one in judged] == [(False, None), (True, None)]
+
+
+@pytest.mark.parametrize(
+    ("limit", "message"),
+    [
+        ("swing=15 deg", "limits.swing: this machine has no swing"),
+        ("sigma_pin_max=15 N/mm2", "limits.sigma_pin_max: Waterworks engine, high-pressure side: no 'crankshaft'"),
+    ],
+)
+def test_a_limit_on_what_no_design_has(limit: str, message: str) -> None:
+    result = run("--vary", "rod_ratio=4,5", "--columns", "N_max", "--set", f"limits.{limit}")
+    assert (result.exit_code, message in result.output) == (2, True)
+
+
+def test_rows_are_chosen_by_their_texts() -> None:
+    asked = (*RATIOS, "--columns", "N_max", "--set", "limits.N_max=20 kN")
+    assert numbers(*asked, "--where", "keeps = yes") == [4, 5]
+    assert numbers(*asked, "--where", "keeps == no") == numbers(*asked, "--where", "broken = N_max") == [2, 3]
+    assert numbers(*asked, "--where", "failure =") == [2, 3, 4, 5]
+    assert numbers(*asked, "--where", "failure ≠") == [1]
+    wrong = run(*RATIOS, "--where", "keep = yes", "--set", "limits.N_max=20 kN")
+    assert "no column 'keep'; did you mean 'keeps'?" in wrong.output
+
+
+def test_rows_are_chosen_by_printed_symbols() -> None:
+    asked = (*RATIOS, "--columns", "dE,P_start_max")
+    assert numbers(*asked, "--sort", "-ΔE", "--top", "1") == numbers(*asked, "--pareto", "-ΔE") == [2]
+    assert numbers(*asked, "--where", "P_0,max ≥ 1 N", "--where", "rod_ratio ≤ 4") == [2, 3]
+    compressor = str(CONFIGS / "compressor-two-stage.yaml")
+    by_symbol = ("--vary", "speed=300,500 rpm", "--columns", "p_i", "--sort", "low pressure.p_i")
+    assert [one["row"] for one in rows(*by_symbol, file=compressor)]
+
+
+@pytest.mark.parametrize("option", ["--sort", "--pareto"])
+def test_words_and_lists_have_no_order(option: str) -> None:
+    words = run("--vary", "rotation=over,under", "--columns", "N_max", option, "rotation")
+    assert f"{option}: rotation has words, of which none is the best" in words.output
+    listed = run(*RATIOS, "--columns", "phi_reversal", option, "phi_reversal")
+    assert f"{option}: phi_reversal is a list of values" in listed.output
+
+
+def test_a_summary_is_of_the_rows_that_are_chosen() -> None:
+    asked = (*RATIOS, "--columns", "N_max", "--summary")
+    (_, best) = rows(*asked, "--sort", "N_max", "--top", "2")
+    chosen = [one["N_max_N"] for one in rows(*RATIOS, "--columns", "N_max") if one["row"] in (4, 5)]
+    assert (best["rows"], best["mean"]) == (2, pytest.approx(np.mean(chosen)))
+    assert rows(*asked, "--pareto", "N_max")[1]["q100"] == min(chosen)
+
+
+def test_a_column_asked_for_twice_is_one() -> None:
+    assert list(rows("--vary", "rod_ratio=5", "--columns", "N_max,b_max,N_max")[0]) == [
+        "row", "rod_ratio", "N_max_N", "b_max_m/s^2", "failure",
+    ]  # fmt: skip
+
+
+def test_every_extreme_has_its_angle() -> None:
+    """Not of `forces` alone: ω_max of the speed line, loads and stresses stand somewhere, too."""
+    file = str(CONFIGS / "gas-engine.yaml")
+    (found,) = rows("--vary", "speed=200 rpm", "--columns", "P_dc,sigma_pin_max,E_max,dE", "--angles", file=file)
+    case = kurbel.solve(kurbel.load(file, ["speed=200 rpm"]))
+    assert found["E_max_at_deg"] == case["E_max"].degrees
+    assert found["sigma_pin_max_at_deg"] == case["sigma_pin_max"].degrees
+    assert {"P_dc_at_deg", "dE_at_deg"} & set(found) == {"P_dc_at_deg"}
+
+
+def test_designs_that_fail_at_the_beginning_stay() -> None:
+    """The first 500 of 1001 cranks are longer than their rods: the whole sweep was refused."""
+    found = rows("--vary", "rod_ratio=0.5:1.5:0.001", "--columns", "stroke")
+    assert [bool(one["failure"]) for one in found] == [True] * 501 + [False] * 500
+    locked = rows("--vary", "friction.crosshead=8,0.1")
+    assert "locks itself" in str(locked[0]["failure"])
+    single = kurbel.solve(kurbel.load(WATERWORKS)).cylinders[0]
+    assert locked[1]["N_max_N"] == pytest.approx(single["N_max"].value, rel=1e-13)
+
+
+def test_python_is_told_why_the_only_design_fails() -> None:
+    """As an optimiser may ask for one design at a time."""
+    found = kurbel.sweep(kurbel.load(WATERWORKS), {"rod_ratio": [0.5]}, ["N_max"])
+    assert np.isnan(found["N_max"]).tolist() == [True]
+    assert found["failure"].tolist() == ["rod_ratio: 0.5 is too small; it must be more than 1"]
+
+
+def test_a_key_in_two_spellings_is_one() -> None:
+    result = run("--vary", "tandem.0.bore=280,290 mm", "--vary", "tandem[0].bore=200 mm")
+    assert (result.exit_code, "--vary tandem[0].bore: this key is varied twice" in result.output) == (2, True)
+
+
+def test_the_numbers_of_points_have_an_order() -> None:
+    cut_off = "indicator.head_end.expansion.1.0"
+    asked = ("--vary", f"{cut_off}=0.4,0.3", "--columns", "work", "--sort", cut_off)
+    assert [one[cut_off] for one in rows(*asked)] == [0.3, 0.4]
