@@ -111,3 +111,11 @@ def test_last_digits_of_another_processor_are_no_other_sweep(machine: Path) -> N
     last = text.splitlines()[-1].split(",")
     file.write_text(text.replace(last[3], repr(float(last[3]) * (1 + 3e-16))))
     assert run(machine, *ASKED, "-o", str(file), "--resume").exit_code == 0
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="is on Linux")
+def test_a_device_without_an_end_has_no_rows(machine: Path) -> None:
+    """It was read until no memory was left."""
+    asked = ["sweep", str(machine), "--vary", "rod_ratio=3,4", "-f", "csv", "-o", "/dev/full", "--resume"]
+    result = CliRunner().invoke(command, asked)
+    assert (result.exit_code, "No space left on device" in result.output) == (2, True)

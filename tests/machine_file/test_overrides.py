@@ -13,6 +13,7 @@ from good_machines import DEMO, EQUAL, LIKE_ONE
 from kurbel.cli import kurbel
 from kurbel.errors import KurbelError
 from kurbel.machine_file import loads
+from kurbel.machine_file.overrides import read_override
 
 
 def test_a_value_of_any_depth_is_set() -> None:
@@ -77,6 +78,17 @@ def test_a_fault_names_the_override(override: str, message: str) -> None:
     with pytest.raises(KurbelError, match=re.escape(message)) as caught:
         loads(DEMO, "m", [override])
     assert "Traceback" not in str(caught.value)
+
+
+def test_an_argument_that_the_locale_does_not_read() -> None:
+    """Python keeps its bytes as surrogates: those of UTF-8 in an ASCII locale, those of Latin-1 in one of UTF-8."""
+    assert read_override("name=M\udcc3\udcbchle").value == "Mühle"
+    for argument, byte in (
+        ("M\udcfchle", "0xFC is no UTF-8, in Latin-1 the letter 'ü'"),
+        ("\ud800", "0xED is no UTF-8"),
+    ):
+        with pytest.raises(KurbelError, match=byte):
+            read_override(f"name={argument}")
 
 
 def test_a_space_of_another_width_is_one() -> None:

@@ -32,13 +32,20 @@ def read_override(text: str) -> Override:
         _refused(text, "write KEY=VALUE, without the colon")
     reading = Reading()
     try:
-        # an argument that is no UTF-8 has its bytes as surrogates
-        tree = parse(decode("--set", value.encode("utf-8", "surrogatepass")).text, reading)
+        tree = parse(decode("--set", _bytes(value)).text, reading)
     except MachineFileError as error:
         reading.faults += error.faults
     if reading.faults:
         _refused(text, reading.faults[0].message)
     return Override(text, path, tree)
+
+
+def _bytes(argument: str) -> bytes:
+    """Return the bytes of an argument, which has those as surrogates that its locale does not read."""
+    try:
+        return argument.encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError:  # surrogates that stand for no byte are told by the decoder
+        return argument.encode("utf-8", "surrogatepass")
 
 
 def path_of(key: str) -> Path:
