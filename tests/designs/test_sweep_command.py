@@ -337,6 +337,8 @@ def test_a_row_is_computed_in_the_same_company_by_every_run() -> None:
         (("--vary", "rod_ratio=3,4", "--shard", "3/2"), "write K/N"),
         (("--vary", "rod_ratio=3,4", "-f", "parquet"), "Parquet is a file"),
         (("--vary", "rod_ratio=3,4", "--dask", "tcp://x:1", "-j", "2"), "leave one of them out"),
+        (("--vary", "rod_ratio=3,4", "--dask", ""), "--dask has no address"),
+        (("--vary", "bore=Normal(450 mm, 1 mm)"), "no distribution 'Normal'; known are normal(mean, deviation)"),
         (("--vary", "rod_ratio=3,4", "-o", WATERWORKS), "name another file"),
         ((), "Missing option '--vary'"),
         (("--vary", "cylinders.3.bore=3,4 mm"), "--vary cylinders.3.bore=3 mm: there is no list 'cylinders'"),

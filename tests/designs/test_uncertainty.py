@@ -180,6 +180,21 @@ def _table(*args: str) -> str:
     return result.stdout
 
 
+def test_stress_tells_it_too() -> None:
+    """The full piston force goes with the bore squared; the table was left out, and its note alone remained."""
+    file = str(WATERWORKS.with_name("gas-engine.yaml"))
+    asked = ["stress", file, "--key-values", "--uncertainty", "bore=1 %", "-f", "json"]
+    (table,) = [
+        one
+        for one in json.loads(CliRunner().invoke(command, asked).stdout)["machine_place_tables"]
+        if one["id"] == "uncertainty"
+    ]
+    columns = {column["id"]: column["values"] for column in table["columns"]}
+    place = [row["key_value"] for row in table["rows"]].index("P_dc")
+    assert columns["uncertainty"][place] == pytest.approx(0.02 * columns["value"][place], rel=1e-9)
+    assert len(table["rows"]) > 20
+
+
 def test_its_figures_are_numbers_to_programs() -> None:
     """The guard against formulas in spreadsheets is for names, not for negative numbers."""
     rows = {row["key_value"]: row for row in csv.DictReader(io.StringIO(_table("-f", "csv")))}
