@@ -356,10 +356,11 @@ def test_bad_input(args: tuple[str, ...], message: str) -> None:
     assert "Traceback" not in result.output
 
 
-def test_an_address_that_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "tls://127.0.0.1:1", "http://x"])
+def test_an_address_that_does_not_answer(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr(workers, "_ANSWERS_WITHIN", 0.5)
-    result = run("--vary", "rod_ratio=3,4", "--dask", "tcp://127.0.0.1:1")
+    result = run("--vary", "rod_ratio=3,4", "--dask", address)
     assert "no scheduler answers there" in result.output
     assert result.exit_code == 2
 
@@ -373,6 +374,23 @@ def test_every_format_has_every_row(tmp_path: Path) -> None:
     text = run(*asked).stdout.splitlines()
     assert text[-1].split() == ["2", "5.000", "87.70", "130.5", "316.1"]
     assert "too small" in text[-2]
+
+
+def test_what_stands_under_the_heads() -> None:
+    found = swept("rod_ratio=infinite,4;speed=40,50 rpm;rotation=over,under", "T_max", "phi_reversal")
+    assert found.types() == ["text", "number", "text", "number", "list"]
+
+
+def test_parquet_holds_rows_of_which_the_first_all_fail(tmp_path: Path) -> None:
+    """The type of a column was that of its first 10,000 rows; a sweep without a row left no file."""
+    parquet = pytest.importorskip("pyarrow.parquet")
+    file = str(tmp_path / "rows.parquet")
+    asked = ("--vary", "rod_ratio=0.2:1.3:0.00005", "--columns", "stroke,phi_b_zero", "-o", file, "--jobs", "1")
+    assert run(*asked).exit_code == 0
+    strokes = parquet.read_table(file)["stroke_m"].to_pylist()
+    assert (strokes.count(None), strokes[-1]) == (16001, pytest.approx(0.8))
+    assert run(*asked, "--where", "rod_ratio > 9").exit_code == 0
+    assert parquet.read_table(file).num_rows == 0
 
 
 def test_python_gets_arrays() -> None:

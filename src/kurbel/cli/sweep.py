@@ -198,7 +198,8 @@ class _Asked(NamedTuple):
         from kurbel.designs.chosen import summary_heads
         from kurbel.render.sweep_output import SweepOutput, Titles
 
-        titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.texts)
+        types = found.types() if self._written == "parquet" else ()
+        titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.texts, types=types)
         if self.summary:
             titles = Titles(summary_heads(found.heads), row="column")
         if not self.resume:

@@ -142,6 +142,18 @@ class Sweep:
         first = _in_base([self.plan.texts(0)[number]], kind)[0] or 0.0
         return Head(one.key, shown_unit(kind, self.spec.system, first) if kind else "", True, kind)
 
+    def types(self) -> list[str]:
+        """Return what stands under the heads: `number`, `list`, or `text`, also where words stand among numbers."""
+        wordy = [
+            one.distribution is None and None in _in_base(one.texts, kind)
+            for one, kind in zip(self.plan.inputs, self._binder.kinds)
+        ]
+        answers = self.heads[len(wordy) :]
+        return [
+            *("text" if one else "number" for one in wordy),
+            *("list" if one.listed else "number" for one in answers),
+        ]
+
     @cached_property
     def _units(self) -> tuple[str, ...]:
         """Units of the answers, from the sizes that the first machine has."""

@@ -115,7 +115,7 @@ def _cluster(address: str) -> Iterator[tuple[Callable[..., Any], int]]:
         raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
     try:
         client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
-    except (OSError, ValueError) as error:  # what is no address, and what does not answer in time
+    except (OSError, ValueError, TypeError) as error:  # no address, no answer in time, or a way that is not set up
         raise UsageError(f"--dask {address}: no scheduler answers there ({str(error).splitlines()[0]})") from None
 
     def submit(function: Callable[..., Any], spec: Spec, company: range, wanted: range) -> Any:

@@ -30,12 +30,13 @@ _WIDTH_OF = 20
 class Titles(NamedTuple):
     """Names of the columns with their units, in order, and the heads of the texts after the values.
 
-    row: what a row is called by.
+    row: what a row is called by; types: see `Sweep.types`, which only Parquet asks for.
     """
 
     names: tuple[tuple[str, str], ...]
     last: tuple[str, ...] = ()
     row: str = "row"
+    types: Sequence[str] = ()
 
     @property
     def whole(self) -> list[str]:
@@ -182,27 +183,25 @@ class SweepOutput:
             from pyarrow import parquet
         except ImportError:
             raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
-        names = self.titles.whole
+        names, types = self.titles.whole, ("number", *self.titles.types, *("text" for _ in self.titles.last))
+        stored = {"number": pyarrow.float64(), "text": pyarrow.string(), "list": pyarrow.list_(pyarrow.float64())}
+        fields = {name: stored[one] for name, one in zip(names, types)} | {names[0]: pyarrow.int64()}
+        schema = pyarrow.schema(list(fields.items()))
         following = iter(rows)
-        writer = None
         try:
-            while group := list(islice(following, _IN_A_GROUP)):
-                columns = zip(*(self.titles.values(row) for row in group))
-                table = pyarrow.table(dict(zip(names, map(_column, columns))), schema=writer and writer.schema)
-                writer = writer or parquet.ParquetWriter(self._file_name, table.schema)
-                writer.write_table(table)
+            with parquet.ParquetWriter(self._file_name, schema) as writer:
+                while group := list(islice(following, _IN_A_GROUP)):
+                    columns = zip(*(self.titles.values(row) for row in group))
+                    found = dict(zip(names, map(_column, columns, types)))
+                    writer.write_table(pyarrow.table(found, schema=schema))
         except OSError as error:
             raise UsageError(f"cannot write {self._file_name}: {error.strerror or error}") from None
-        finally:
-            if writer:
-                writer.close()
 
 
-def _column(values: tuple[Any, ...]) -> list[Any]:
-    """Return values of one type: texts, numbers, or lists of them."""
-    texts = any(isinstance(one, str) for one in values)
-    listed = (list(one) if isinstance(one, tuple) else one for one in values)
-    return [one if one is None or not texts else str(one) for one in listed]
+def _column(values: tuple[Any, ...], type: str) -> list[Any]:
+    """Return the values of a column as what is stored of them: texts, numbers, or lists of them."""
+    as_stored: dict[str, Callable[[Any], Any]] = {"text": str, "number": lambda one: one, "list": list}
+    return [None if one is None else as_stored[type](one) for one in values]
 
 
 def _flow(texts: Iterable[str], file: Any, encoding: str) -> None:
