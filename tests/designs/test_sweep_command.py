@@ -381,6 +381,7 @@ def test_what_stands_under_the_heads() -> None:
     assert found.types() == ["text", "number", "text", "number", "list"]
 
 
+@pytest.mark.slow
 def test_parquet_holds_rows_of_which_the_first_all_fail(tmp_path: Path) -> None:
     """The type of a column was that of its first 10,000 rows; a sweep without a row left no file."""
     parquet = pytest.importorskip("pyarrow.parquet")
