@@ -86,6 +86,13 @@ def test_answers_are_compared_though_the_last_rows_have_none(machine: Path) -> N
     assert len(file.read_text().splitlines()) == 6
 
 
+def test_answers_are_compared_though_no_limit_can_be_judged(machine: Path) -> None:
+    """Each row then has a `failure` beside its answers."""
+    asked = (*ASKED, "--set", "limits.delta=1/50")
+    file = interrupted(machine, *asked)
+    assert "row 6 has 2." in run(machine, *asked, "--set", "speed=60 rpm", "-o", str(file), "--resume").output
+
+
 def test_chosen_rows_go_on_where_they_end(machine: Path) -> None:
     asked = (*ASKED, "--where", "T_max < 88.5 kN")
     whole = interrupted(machine, *asked, rows=99).read_bytes()

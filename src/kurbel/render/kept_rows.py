@@ -48,14 +48,15 @@ class KeptRows:
         the inputs of each are compared, and the answers of the last one that has any.
         """
         following, last = self._rows.start, None
+        first = 1 + len(sweep.plan.inputs)
         for line in self._parsed():
             if line.number - 1 not in self._rows:
                 self._refuse(f"it has row {line.number}, these are rows {self._rows.start + 1} to {self._rows.stop}")
             if line.number <= following or (not conditions and line.number - 1 != following):
                 self._refuse(f"row {following + 1} is missing in it")
-            self._compare(line, sweep.unanswered(line.number - 1), 1 + len(sweep.plan.inputs))
+            self._compare(line, sweep.unanswered(line.number - 1), first)
             following = line.number
-            last = last if line.cells[-1] else line
+            last = line if any(line.cells[first : 1 + len(sweep.heads)]) else last
         if last:
             self._compare_answers(last, sweep, conditions)
         return self._rows[following - self._rows.start :]
