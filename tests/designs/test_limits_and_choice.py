@@ -118,8 +118,8 @@ def test_designs_that_fail_at_the_beginning_stay() -> None:
 
 
 def test_python_is_told_why_the_only_design_fails() -> None:
-    """As an optimiser may ask for one design at a time."""
-    found = kurbel.sweep(kurbel.load(WATERWORKS), {"rod_ratio": [0.5]}, ["N_max"])
+    """As an optimiser may ask for one design at a time, and for one key value of it."""
+    found = kurbel.sweep(kurbel.load(WATERWORKS), {"rod_ratio": [0.5]}, "N_max")
     assert np.isnan(found["N_max"]).tolist() == [True]
     assert found["failure"].tolist() == ["rod_ratio: 0.5 is too small; it must be more than 1"]
 

@@ -17,14 +17,14 @@ from kurbel.machine.origin import Origin
 
 
 def sweep(
-    machine: Machine, inputs: Mapping[str, Any], columns: Sequence[str] = (), with_angles: bool = False
+    machine: Machine, inputs: Mapping[str, Any], columns: Sequence[str] | str = (), with_angles: bool = False
 ) -> dict[str, Any]:
     """Return key values of many designs of a machine as arrays (n,), in SI, by their ids.
 
     machine: as `load` or `loads` returned it; inputs: dotted key of its file -> numbers (n,) in SI (angles in degrees,
-    speeds in revolutions per second), or texts as the file would have them. columns: ids or symbols of key values, all
-    of `kurbel forces` where none are named. Numbers are nan, and `failure` (n,) tells why, where a design fails; a list
-    of angles is a tuple. With limits in the file `keeps` tells whether they are kept.
+    speeds in revolutions per second), or texts as the file would have them. columns: id or symbol of a key value, or
+    several, all of `kurbel forces` where none is named. Numbers are nan, and `failure` (n,) tells why, where a design
+    fails; a list of angles is a tuple. With limits in the file `keeps` tells whether they are kept.
 
     >>> import kurbel
     >>> found = sweep(kurbel.loads("{stroke: 1 m, rod_ratio: 5, speed: 60 rpm}"), {"rod_ratio": [4, 5]}, ["b_max"])
@@ -36,7 +36,8 @@ def sweep(
     if machine.origin is None:
         raise UsageError("only a machine that was read can vary by its keys: take it from kurbel.load or kurbel.loads")
     given = tuple(_inputs(machine.origin, inputs))
-    found = Sweep(Spec(machine.origin, given=given, side_by_side=True, columns=tuple(columns), with_angles=with_angles))
+    names = (columns,) if isinstance(columns, str) else tuple(columns)
+    found = Sweep(Spec(machine.origin, given=given, side_by_side=True, columns=names, with_angles=with_angles))
     return _arrays(found, list(rows_of(found, range(found.rows))))
 
 
