@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.crank_angle import CrankAngle
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.cycles import Flat
@@ -59,7 +58,7 @@ class Quantities:
     def inside(self, grid: Grid, piece: Indices) -> Inside:
         """Return what all angles in these pieces (n,) share."""
         if self.known is None:
-            return Inside(self.drive, CrankAngle.of(grid.within[piece, 0]))
+            return Inside(self.drive, grid.within[piece, 0])
         return Inside.of_pieces(self.drive, (self.known,), piece)
 
     def on(self, grid: Grid, state: State | Assembled) -> Samples:
