@@ -70,7 +70,7 @@ class CylinderForces(Searched, Results):
         """Works of friction in pins and journals."""
         from kurbel.solver.cylinder.pin_works import PinWorks
 
-        return PinWorks(self)
+        return PinWorks(self.drive, self.grid if self.drive.pin_friction else None, self.work_driving)
 
     @cached_property
     def rod_load(self) -> RodLoad:
