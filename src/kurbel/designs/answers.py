@@ -2,6 +2,7 @@
 
 from collections.abc import Container, Sequence
 from functools import cache
+from itertools import compress
 from typing import Any, Union
 
 import numpy as np
@@ -120,10 +121,8 @@ class _Answers:
             fit = np.ones(len(rows), dtype=bool)
             for value in found:
                 fit &= _is_finite(value)
-            values = zip(*(_listed(value, len(rows)) for value in found))
-            for row, finite, own in zip(rows, fit.tolist(), values):
-                if finite:
-                    self._found[row] = own
+            values = zip(rows, zip(*(_listed(value, len(rows)) for value in found)))
+            self._found.update(compress(values, fit.tolist()))
 
     def _columns(self, rows: list[int]) -> list[Any]:
         cylinders = {name: self._stack(rows, name) for name in self._names}

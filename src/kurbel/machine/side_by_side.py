@@ -95,11 +95,12 @@ class _Stack:
     def __init__(self, lots: Sequence[tuple[Lot, Indices]]) -> None:
         self._lots = lots
         self._made: dict[tuple[int, ...], Any] = {}
+        self._seen: dict[int, Any] = {}
 
     def of(self, column: Sequence[Any]) -> Any:
         """Return what stands for the values, one of each lot, of one field."""
         first = column[0]
-        if all(one is first for one in column) and not varies(first):
+        if all(one is first for one in column) and not varies(first, self._seen):
             return first
         ids = tuple(map(id, column))
         if ids not in self._made:
@@ -143,6 +144,6 @@ class _Stack:
 
 def _each(chamber: Any, lot: Lot, places: Indices) -> list[Any]:
     """Return the chamber of each of these machines of a lot."""
-    if len(lot.rows) > 1 and varies(chamber):
+    if len(lot.rows) > 1 and varies(chamber, {}):
         return [one_of(chamber, place) for place in places.tolist()]
     return [chamber] * len(places)

@@ -62,9 +62,9 @@ def one_kind(record: Any) -> None:
     changed(record, Varied.alike, {})
 
 
-def varies(record: Any) -> bool:
-    """Return whether anything differs among the variants of a record."""
-    return changed(record, lambda numbers: None, {}) is not record
+def varies(record: Any, known: dict[int, Any]) -> bool:
+    """Return whether anything differs among the variants of a record; known: what was seen before."""
+    return changed(record, lambda numbers: None, known) is not record
 
 
 def changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]) -> Any:
