@@ -256,10 +256,10 @@ def test_work_of_friction_is_that_of_the_energy_balance() -> None:
     rubs = "friction: {crank_pin: 0.05, crosshead_pin: 0.06, crosshead_pin_diameter: 180 mm, journals: 0.04}\n"
     case = Case(loads(ENGINE + rubs))
     pin, crosshead, A, B = case.bearings.parts
-    works = case.cylinders[0].pin_works
-    assert pin.work_rubbing == works.work_of("crank_pin")
-    assert crosshead.work_rubbing == works.work_of("crosshead_pin")
-    assert A.work_rubbing + B.work_rubbing == pytest.approx(works.work_of("journals"), rel=1e-12)
+    work_of = case.cylinders[0].pin_work_of
+    assert pin.work_rubbing == work_of("crank_pin")
+    assert crosshead.work_rubbing == work_of("crosshead_pin")
+    assert A.work_rubbing + B.work_rubbing == pytest.approx(work_of("journals"), rel=1e-12)
 
 
 def test_every_bearing_has_its_own_key_values() -> None:

@@ -16,11 +16,15 @@ from kurbel.machine.variants import Lot
 from kurbel.numerics.cycles import Unlike
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.guide_load import GuideLoad
+from kurbel.solver.cylinder.indicated import Indicated
 from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.figures import answered
 
 _ALONE = ("energy_residual",)
 """Key values whose quadrature cuts the pieces of each machine until they agree, and answers one machine at a time."""
+_BESIDE = (CylinderForces, GuideLoad, Indicated, Motion, RodLoad)
+"""What answers key values of a cylinder by formulas that take many machines."""
 _FEWEST = 3
 """Machines of one kind; fewer are answered as quickly alone."""
 AT_ONCE = 1000
@@ -62,9 +66,9 @@ def is_slow(machine: Machine, asked: Answer) -> bool:
 
 
 def _stands_beside(quantity: Quantity) -> bool:
-    """Return whether a key value is one of forces, guide or motion themselves, whose formulas take many machines."""
+    """Return whether a key value is one of a cylinder whose formulas take many machines."""
     name = quantity.asks[0] if quantity.asks else quantity.id
-    return quantity.id not in _ALONE and any(hasattr(one, name) for one in (CylinderForces, GuideLoad, Motion))
+    return quantity.id not in _ALONE and any(hasattr(one, name) for one in _BESIDE)
 
 
 def _merged(first: Values, second: Values, of_first: Sequence[bool]) -> Values:

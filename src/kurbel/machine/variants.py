@@ -100,6 +100,11 @@ class Chambers:
         """The working cycles that they can be part of, which are the same for all of a kind."""
         return self.each[0].cycles  # type: ignore[no-any-return]
 
+    @property
+    def clearance(self) -> Any:
+        """Smallest volume over the stroke volume of each, (v,), 0 where it is not known."""
+        return np.array([getattr(one, "clearance", None) or 0.0 for one in self.each])[self.which]
+
 
 def taken(record: Any, index: Indices) -> Any:
     """Return a record of many variants with the numbers of these ones, of the shape of the index."""

@@ -5,11 +5,14 @@ for 15° of crank angle and 3 % of the larger load in the other direction. It ta
 """
 
 import math
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Array, Flags
+from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.search import Extremes
 
@@ -55,43 +58,72 @@ class RodLoad:
     def compression_max(self, column: str) -> Extreme | None:
         """Return the largest force in N toward the shaft; 0, where it comes nearest, if none."""
         found = self._extremes(column)
-        return found and Extreme(max(found.largest.value, 0.0), found.largest.degrees)
+        return found and _at_least_zero(found.largest.value, found.largest.degrees)
 
     def tension_max(self, column: str) -> Extreme | None:
         """Return the size of the largest force in N away from the shaft; 0, where it comes nearest, if none."""
         found = self._extremes(column)
-        return found and Extreme(max(-found.smallest.value, 0.0), found.smallest.degrees)
+        return found and _at_least_zero(-found.smallest.value, found.smallest.degrees)
 
     @cached_property
-    def phi_rod_reversal(self) -> tuple[float, ...] | None:
-        """Crank angles in degrees at which the rod load takes the other sign; within the noise of a trace, once."""
+    def phi_rod_reversal(self) -> tuple[Any, ...] | None:
+        """Crank angles in degrees at which the rod load takes the other sign; within the noise of a trace, once.
+
+        Of many variants one tuple each.
+        """
         return self._forces.reversals_of("P_rod")
 
     @cached_property
-    def _reversed(self) -> tuple[float, ...]:
-        """Degrees of crank angle of every stretch of pressing, or of pulling, whichever lasts for less of the cycle."""
-        turns = self.phi_rod_reversal
-        if not turns:
-            return ()
-        ends = np.array([*turns, turns[0] + self._forces.drive.cycle])
-        presses = np.asarray(self._forces.at((ends[:-1] + ends[1:]) / 2).P_rod) > 0
-        each = (tuple(np.diff(ends)[way].tolist()) for way in (presses, ~presses))
-        return min(each, key=math.fsum)
+    def _reversed(self) -> list[Sequence[float]]:
+        """Degrees of crank angle of every stretch of pressing, or of pulling, whichever lasts for less of the cycle.
+
+        Of each variant, or of the only machine.
+        """
+        drive, turns = self._forces.drive, self.phi_rod_reversal or ()
+        ends = [np.array([*one, *(angle + drive.cycle for angle in one[:1])]) for one in self._each(turns)]
+        middles = [(one[:-1] + one[1:]) / 2 for one in ends]
+        if drive.count is not None:
+            drive = drive.taken(np.repeat(np.arange(drive.count), [len(one) for one in middles]))
+        presses = np.asarray(drive.at(np.concatenate(middles)).P_rod) > 0
+        parted = np.split(presses, np.cumsum([len(one) for one in middles])[:-1])
+        return [_shorter(np.diff(one), own) for one, own in zip(ends, parted)]
+
+    def _each(self, found: Any) -> Sequence[Any]:
+        """Return what was found of each variant; of the only machine as if it were one of them."""
+        return [found] if self._forces.drive.count is None else found
+
+    def _of_stretches(self, what: Callable[[Sequence[float]], float]) -> Any:
+        """Return what is asked of the stretches, of each variant; None without a rod load."""
+        if self.phi_rod_reversal is None:
+            return None
+        found = [what(stretches) for stretches in self._reversed]
+        return found[0] if self._forces.drive.count is None else np.array(found)
 
     @property
-    def reversal_angle(self) -> float | None:
+    def reversal_angle(self) -> Any:
         """Degrees of crank angle per cycle of the reversed load; 0 where it does not reverse."""
-        return None if self.phi_rod_reversal is None else math.fsum(self._reversed)
+        return self._of_stretches(math.fsum)
 
     @property
-    def reversal_longest(self) -> float | None:
+    def reversal_longest(self) -> Any:
         """The longest of its stretches in degrees."""
-        return None if self.phi_rod_reversal is None else max(self._reversed, default=0.0)
+        return self._of_stretches(lambda stretches: max(stretches, default=0.0))
 
     @property
-    def reversal_ratio(self) -> float | None:
+    def reversal_ratio(self) -> Any:
         """Smaller peak of the rod load over the larger one; 0 where it does not reverse."""
-        if self.phi_rod_reversal is None or not self._reversed:
-            return self.reversal_angle
-        peaks = sorted(abs(one.value) for one in self._extremes("P_rod") or ())
-        return peaks[0] / peaks[1]
+        angle, peaks = self.reversal_angle, self._extremes("P_rod")
+        if angle is None or peaks is None or not some(angle > 0):
+            return angle
+        pressed, pulled = (abs(one.value) for one in peaks)
+        ratio = where(pressed < pulled, pressed, pulled) / where(pressed < pulled, pulled, pressed)
+        return where(angle > 0, ratio, 0.0)
+
+
+def _shorter(stretches: Array, presses: Flags) -> Sequence[float]:
+    """Return those stretches on which the rod is pressed, or those on which it is pulled: the shorter ones together."""
+    return min((stretches[way].tolist() for way in (presses, ~presses)), key=math.fsum)
+
+
+def _at_least_zero(value: Any, degrees: Any) -> Extreme:
+    return Extreme(where(value > 0, value, 0.0), degrees)
