@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Indices
+from kurbel.frozen import values_of
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.variants import Chambers, Lot, one_of, record_of, varies
@@ -61,7 +62,7 @@ class Kinds:
         if getattr(value, "of_pins", ()):  # whose loads bend where they all but vanish
             raise _Alone
         if is_dataclass(value):
-            return (type(value), *(self._kind(one) for name, one in vars(value).items() if name != "name"))
+            return (type(value), *(self._kind(one) for name, one in values_of(value).items() if name != "name"))
         return value
 
 
