@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from kurbel import Machine, loads
-from kurbel.designs.answers import Values, answers_of
-from kurbel.designs.columns import Answer, answered_alone
+from kurbel import Machine, load, loads
+from kurbel.designs.answers import Values, answers_of, stands_beside
+from kurbel.designs.columns import Answer, answered_alone, asked_answers
 from kurbel.errors import KurbelError, RuleError
 from kurbel.machine import Cylinder
 from kurbel.machine.friction import Friction, Guide
@@ -122,6 +123,21 @@ def test_many_random_machines_answer_as_each_alone() -> None:
     assert kinds > 80
     assert failures > 10
     assert largest <= 1e-12
+
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+ALONE = {"coupled-axle", "crank-rocker", "diesel-trace", "punch", "shaper"}
+"""Machines whose mechanism, or trace, is not for many side by side."""
+
+
+@pytest.mark.parametrize("name", sorted({path.stem for path in CONFIGS.glob("*.yaml")} - ALONE))
+def test_shipped_machines_answer_as_each_alone(name: str) -> None:
+    """All that `forces` tells of them, which is answered side by side."""
+    machines = [load(CONFIGS / f"{name}.yaml", overrides=[f"speed={speed} rpm"]) for speed in (61, 97, 149)]
+    asked = [part for one in asked_answers(machines[0], ()) for part in with_angle(one)]
+    assert all(stands_beside(machines[0], one) for one in asked)
+    for machine, values in zip(machines, together(machines, asked)):
+        assert max(distance(a, b) for a, b in zip(values, alone(machine, asked), strict=True)) <= 1e-12
 
 
 STEAM = """

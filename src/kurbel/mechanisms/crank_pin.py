@@ -28,14 +28,10 @@ NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")
 """What such a mechanism lacks without its pin, and why."""
 
 
-def projected_area(diameter: float | None, length: float | None) -> float | None:
-    """Return d_z l_z in m², or None where the pin is not given.
-
-    Raises RuleError where only one of both is given, or one is not positive and finite.
-    """
+def check_pin(diameter: float | None, length: float | None) -> None:
+    """Raise RuleError where only one of both is given, or one is not positive and finite."""
     check(PIN_KEYS, {"pin_diameter": diameter, "pin_length": length})
     check_lengths(pin_diameter=diameter, pin_length=length)
-    return None if diameter is None or length is None else diameter * length
 
 
 _SPEED = "Speed at which the block on the crank pin slides along its slot"
@@ -52,12 +48,11 @@ BLOCK_OFFERS = (
 
 
 def _pressure(mechanism: Any, forces: Any) -> Extreme | None:
-    area = projected_area(mechanism.pin_diameter, mechanism.pin_length)
-    found = area and forces.extremes_of("F_pin")
-    if not area or not found:
+    """Return the largest force on the pin over d_z l_z."""
+    found = None if mechanism.pin_diameter is None else forces.extremes_of("F_pin")
+    if not found:
         return None
-    largest = max(found, key=lambda extreme: abs(extreme.value))
-    return Extreme(abs(largest.value) / area, largest.degrees)
+    return Extreme(found.peak.value / (mechanism.pin_diameter * mechanism.pin_length), found.peak.degrees)
 
 
 def pin_pressure(bound: float | None = None) -> KeyOffer:

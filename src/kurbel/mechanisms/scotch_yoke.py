@@ -7,7 +7,7 @@ from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
 from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_force
-from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area
+from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, check_pin, pin_pressure
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.slider_crank import CRANK_KEYS
 from kurbel.numerics.extreme import Extreme
@@ -73,7 +73,7 @@ class ScotchYoke(Mechanism):
 
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank, guide_length=self.guide_length)
-        projected_area(self.pin_diameter, self.pin_length)
+        check_pin(self.pin_diameter, self.pin_length)
 
     @property
     def stroke(self) -> float:

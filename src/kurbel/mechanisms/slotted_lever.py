@@ -10,7 +10,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
 from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
-from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, pin_pressure, projected_area, sum_along
+from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, check_pin, pin_pressure, sum_along
 from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import SWING_OFFERS, SWING_VALUES, Swing
@@ -75,7 +75,7 @@ class SlottedLever(Mechanism):
         check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
         if not (self.slides or self._forked):
             refused("has no lever's end to hang on; give 'lever' with it", "link")
-        projected_area(self.pin_diameter, self.pin_length)
+        check_pin(self.pin_diameter, self.pin_length)
         if self.crank == self.frame:
             same = show(self.crank, "length")
             refused(f"{same} is also the crank: the pin would pass through the lever's pivot", "frame")
