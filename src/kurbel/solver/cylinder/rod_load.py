@@ -4,14 +4,13 @@ Unless crosshead pin and bush part once in every turn, no oil comes between them
 for 15° of crank angle and 3 % of the larger load in the other direction. It takes both every 5°, kurbel at the roots.
 """
 
-import math
-from collections.abc import Callable, Sequence
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags
+from kurbel.arrays import Array, Indices
 from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.search import Extremes
@@ -74,40 +73,37 @@ class RodLoad:
         return self._forces.reversals_of("P_rod")
 
     @cached_property
-    def _reversed(self) -> list[Sequence[float]]:
-        """Degrees of crank angle of every stretch of pressing, or of pulling, whichever lasts for less of the cycle.
+    def _reversed(self) -> Array | None:
+        """Degrees of crank angle per cycle on which the rod is pressed, or pulled, whichever is less, (2, variants).
 
-        Of each variant, or of the only machine.
+        All of them, and the longest stretch; 0 where the load does not reverse, None without one.
         """
-        drive, turns = self._forces.drive, self.phi_rod_reversal or ()
-        ends = [np.array([*one, *(angle + drive.cycle for angle in one[:1])]) for one in self._each(turns)]
-        middles = [(one[:-1] + one[1:]) / 2 for one in ends]
-        if drive.count is not None:
-            drive = drive.taken(np.repeat(np.arange(drive.count), [len(one) for one in middles]))
-        presses = np.asarray(drive.at(np.concatenate(middles)).P_rod) > 0
-        parted = np.split(presses, np.cumsum([len(one) for one in middles])[:-1])
-        return [_shorter(np.diff(one), own) for one, own in zip(ends, parted)]
-
-    def _each(self, found: Any) -> Sequence[Any]:
-        """Return what was found of each variant; of the only machine as if it were one of them."""
-        return [found] if self._forces.drive.count is None else found
-
-    def _of_stretches(self, what: Callable[[Sequence[float]], float]) -> Any:
-        """Return what is asked of the stretches, of each variant; None without a rod load."""
-        if self.phi_rod_reversal is None:
+        drive, turns = self._forces.drive, self.phi_rod_reversal
+        if turns is None:
             return None
-        found = [what(stretches) for stretches in self._reversed]
-        return found[0] if self._forces.drive.count is None else np.array(found)
+        each = [turns] if drive.count is None else turns
+        whose = np.repeat(np.arange(len(each)), [len(one) for one in each])
+        start = np.array([*chain.from_iterable(each)])
+        first, last = np.flatnonzero(np.diff(whose, prepend=-1)), np.flatnonzero(np.diff(whose, append=-1))
+        end = np.append(start[1:], 0.0)[: len(start)]
+        end[last] = start[first] + drive.cycle
+        presses = np.asarray((drive if drive.count is None else drive.taken(whose)).at((start + end) / 2).P_rod) > 0
+        pressed, pulled = (_stretches(whose[way], (end - start)[way], len(each)) for way in (presses, ~presses))
+        return np.where(pulled[0] < pressed[0], pulled, pressed)
+
+    def _told(self, values: Array) -> Any:
+        """Return what was found of every variant (v,), or of the only machine as a number."""
+        return values if self._forces.drive.count is not None else float(values[0])
 
     @property
     def reversal_angle(self) -> Any:
         """Degrees of crank angle per cycle of the reversed load; 0 where it does not reverse."""
-        return self._of_stretches(math.fsum)
+        return None if self._reversed is None else self._told(self._reversed[0])
 
     @property
     def reversal_longest(self) -> Any:
         """The longest of its stretches in degrees."""
-        return self._of_stretches(lambda stretches: max(stretches, default=0.0))
+        return None if self._reversed is None else self._told(self._reversed[1])
 
     @property
     def reversal_ratio(self) -> Any:
@@ -120,9 +116,11 @@ class RodLoad:
         return where(angle > 0, ratio, 0.0)
 
 
-def _shorter(stretches: Array, presses: Flags) -> Sequence[float]:
-    """Return those stretches on which the rod is pressed, or those on which it is pulled: the shorter ones together."""
-    return min((stretches[way].tolist() for way in (presses, ~presses)), key=math.fsum)
+def _stretches(whose: Indices, degrees: Array, count: int) -> Array:
+    """Return the sum of the stretches (n,) of each of so many variants, and the longest, (2, count)."""
+    longest = np.zeros(count)
+    np.maximum.at(longest, whose, degrees)
+    return np.stack((np.bincount(whose, degrees, count), longest))
 
 
 def _at_least_zero(value: Any, degrees: Any) -> Extreme:
