@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from kurbel import Machine, load, loads
+from kurbel.designs import answers
 from kurbel.designs.answers import Values, answers_of, stands_beside
 from kurbel.designs.columns import Answer, answered_alone, asked_answers
 from kurbel.errors import KurbelError, RuleError
@@ -197,3 +198,35 @@ def test_what_differs_may_be_anything() -> None:
     asked = asked_of(machines[0])
     for machine, values in zip(machines, together(machines, asked)):
         assert max(distance(a, b) for a, b in zip(values, alone(machine, asked), strict=True)) <= 1e-12
+
+
+class Options:
+    """A C library that takes note of its options."""
+
+    def __init__(self, name: None) -> None:
+        self.set: list[tuple[int, int]] = []
+        LIBRARIES.append(self)
+
+    def mallopt(self, option: int, value: int) -> int:
+        self.set.append((option, value))
+        return 1
+
+
+LIBRARIES: list[Options] = []
+
+
+def no_library(name: None) -> None:
+    raise TypeError("on Windows None is no library")
+
+
+def test_freed_memory_is_kept_where_the_c_library_can_be_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By M_TRIM_THRESHOLD = −1 and M_MMAP_THRESHOLD = −3 of malloc.h, once; elsewhere nothing happens."""
+    monkeypatch.setattr("ctypes.CDLL", Options)
+    answers._keep_memory.cache_clear()
+    answers._keep_memory()
+    answers._keep_memory()
+    assert [sorted(library.set) for library in LIBRARIES] == [[(-3, 2**28), (-1, 2**28)]]
+    for other in (no_library, lambda name: object()):
+        monkeypatch.setattr("ctypes.CDLL", other)
+        answers._keep_memory.cache_clear()
+        answers._keep_memory()
