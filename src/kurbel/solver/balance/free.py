@@ -44,7 +44,9 @@ class Products:
 
 
 def _sum(terms: ComplexArray) -> ComplexArray:
-    return np.asarray(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0)))
+    sizes = np.abs(terms).sum(axis=0)
+    real, imag = (unless_cancelled(part.sum(axis=0), sizes) for part in (terms.real, terms.imag))
+    return np.asarray(real + 1j * imag)
 
 
 @frozen
