@@ -337,6 +337,12 @@ def test_a_row_is_computed_in_the_same_company_by_every_run() -> None:
         (("--vary", "bore=3,4", "--set", "expect=5"), "--vary bore=3: bore: 3 has no unit"),
         (("--vary", "bore=3,4", "--set", "expect=5"), "--set expect=5: expect: expected a mapping"),
         (("--vary", "rod_ratio=3,4", "--set", "name: =x"), "--set name: =x: write KEY=VALUE, without the colon"),
+        (
+            ("--set", "bore=400 mm", "--vary", "crank=2,3 m; name=a,b"),
+            "stroke: 'crank' and 'stroke' say the same thing; leave one of them out "
+            "(with --set bore=400 mm, --vary crank=2 m, --vary name=a)",
+        ),
+        (("--vary", "bo..re=3,4 mm"), "--vary bo..re=3 mm: write KEY=VALUE, such as --vary cylinders.0.bore='450 mm'"),
         (("--vary", "rod_ratio=3,4", "-o", "rows.xyz"), "no format has this suffix; write .csv, .json, .jsonl, .md"),
     ],
 )
