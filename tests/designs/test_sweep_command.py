@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import Future
 from pathlib import Path
 
@@ -202,6 +203,18 @@ def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
     text = file.read_text()
     assert text.endswith("\n")
     assert all(line.count(",") == 3 for line in text.splitlines())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("end", [os.kill, os.killpg])
+def test_who_is_told_to_end_leaves_nothing_behind(end: Callable[[int, int], None], tmp_path: Path) -> None:
+    """By a scheduler say, with the processes that compute or without; Python told of semaphores that were leaked."""
+    file = tmp_path / "rows.csv"
+    process = in_the_midst(file, "2")
+    end(process.pid, signal.SIGTERM)
+    assert process.communicate() == (None, "")
+    assert process.returncode == 130
+    assert file.read_text().endswith("\n")
 
 
 @pytest.mark.slow
