@@ -55,6 +55,9 @@ def test_what_cancels_prints_as_0() -> None:
     assert "  F_max      0    N     at 0°" in text
     rows = [line.split() for line in text.splitlines() if line.startswith("F_x")]
     assert {value for row in rows for value in row[2:]} == {"0"}
+    # two equal weights at right angles pass the stroke line together, half way between
+    found = parsed("locomotive-two-cylinders", "--angles", "45")["machine_columns"]
+    assert {one["id"]: one["values"] for one in found}["F_y"] == [0]
 
 
 def test_directions_along_an_axis_are_told_as_just_that() -> None:

@@ -44,9 +44,7 @@ class Products:
 
 
 def _sum(terms: ComplexArray) -> ComplexArray:
-    sizes = np.abs(terms).sum(axis=0)
-    real, imag = (unless_cancelled(part.sum(axis=0), sizes) for part in (terms.real, terms.imag))
-    return np.asarray(real + 1j * imag)
+    return np.asarray(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0)))
 
 
 @frozen
