@@ -16,7 +16,7 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot, joined, one_kind, sort_of
 from kurbel.machine_file.given import leaves, tree_of
-from kurbel.machine_file.overrides import by_numbers, read_override
+from kurbel.machine_file.overrides import by_numbers, path_of
 from kurbel.machine_file.reader import read_machine, reading_of
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.varied import Parted
@@ -92,13 +92,13 @@ class Binder:
         self._reading = reading_of(origin)
         births: list[Birth] = []
         self._reading.births = births
-        begun = origin.set_over(f"{key}={text}" for key, text in zip(keys, start))
+        begun = origin._replace(varied=tuple(f"{key}={text}" for key, text in zip(keys, start)))
         self.machine = read_machine(begun, self._reading)
         self.kinds: list[str] = []
         """Of the numbers that stand under the keys, '' of words."""
         self._slots: dict[tuple[int, str], _Slot] = {}
         for number, key in enumerate(keys):
-            self._place(number, read_override(f"{key}=0").path, births)
+            self._place(number, path_of(key), births)
         self._steps = self._planned(births)
 
     def _place(self, number: int, path: Path, births: list[Birth]) -> None:
@@ -211,7 +211,7 @@ def written(tree: Tree, key: str) -> str:
     """Return what stands under a dotted key; raises UsageError where no value does."""
     node: Any = tree
     try:
-        for step in read_override(f"{key}=0").path:
+        for step in path_of(key):
             node = node[step]
     except (KeyError, IndexError, TypeError):
         node = None

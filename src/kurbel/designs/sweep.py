@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of, is_slow
@@ -101,9 +100,7 @@ class Sweep:
             try:
                 return Binder(self.spec.origin, keys, self.plan.texts(row))
             except MachineFileError as error:
-                failed = failed or _as_varied(str(error), zip(keys, self.plan.texts(row)))
-            except UsageError as error:
-                raise UsageError(_as_varied(str(error), zip(keys, self.plan.texts(row)))) from None
+                failed = failed or str(error)
         raise UsageError(failed or "there is no row to compute")
 
     @cached_property
@@ -200,13 +197,6 @@ def _with_angle(one: Answer) -> Iterator[Answer]:
     yield one
     if one.quantity.asks[:1] == ("extremes_of",) or one.quantity.id in _AT:
         yield one._replace(angle=True)
-
-
-def _as_varied(message: str, texts: Iterable[tuple[str, str]]) -> str:
-    """Return what is told of values as if they had been set as that of what they are: varied."""
-    for text in (shown(f"{key}={value}") for key, value in texts):
-        message = message.replace(f"--set {text}: ", f"--vary {text}: ").replace(f"--set {text})", f"--vary {text})")
-    return message
 
 
 def _input_values(head: Head, texts: Sequence[str]) -> list[Any]:
