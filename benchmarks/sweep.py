@@ -2,7 +2,8 @@
 
     python benchmarks/sweep.py [ROWS]
 
-Times are of the processor; rows are designs of the waterworks machine, whose one cylinder has four chambers.
+Times are of the processor, of a design and cylinder; rows are designs of the waterworks machine, whose one cylinder has
+four chambers.
 """
 
 from __future__ import annotations
@@ -29,7 +30,10 @@ from kurbel.machine_file import source
 from kurbel.render import Look
 from kurbel.render.sweep_output import Titles, csv_rows
 
-WATERWORKS = source.read(Path(__file__).parent.parent / "configs" / "waterworks.yaml")
+CONFIGS = Path(__file__).parent.parent / "configs"
+WATERWORKS = "waterworks"
+OTHERS = ("locomotive", "gas-engine", "offset-engine", "steam-ideal", "diesel-two-stroke", "gas-engine-double-acting")
+"""Machines whose rods and speeds are varied, too."""
 SINGLE = 30
 
 
@@ -43,16 +47,16 @@ def seconds(task: Callable[[], object]) -> float:
     return min(times)
 
 
-def designs(count: int) -> list[Lot]:
-    """Machines with rods and speeds of every length and size."""
-    binder = Binder(WATERWORKS, ("rod_ratio", "speed"), ("5", "50 rpm"))
+def designs(name: str, count: int) -> list[Lot]:
+    """Machines like one that is shipped, with rods and speeds of every length and size."""
+    binder = Binder(source.read(CONFIGS / f"{name}.yaml"), ("rod_ratio", "speed"), ("5", "50 rpm"))
     return binder.bound([(f"{ratio:.6f}", f"{40 + ratio:.6f} rpm") for ratio in np.linspace(3, 6, count)]).lots
 
 
 def told(name: str, many: float, count: int, single: float | None = None) -> None:
     """Print a line: microseconds a design, and how often faster than alone."""
     ratio = "" if single is None else f"{single / (many / count):>8.0f} x"
-    print(f"{name:<44}{many / count * 1e6:>10.0f} us{ratio}")
+    print(f"{name:<48}{many / count * 1e6:>10.0f} us{ratio}")
 
 
 def beside_alone(name: str, lots: list[Lot], asked: list[Answer]) -> None:
@@ -66,15 +70,18 @@ def beside_alone(name: str, lots: list[Lot], asked: list[Answer]) -> None:
 def main() -> None:
     """Print the table."""
     rows = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
-    machines = designs(AT_ONCE)
+    machines = designs(WATERWORKS, AT_ONCE)
     every = list(asked_answers(machines[0].one(0), ()))
     motion = [one for one in every if one.quantity.id in ("c_m", "c_max", "b_max", "b_min", "phi_b_zero")]
-    beside_alone("all key values of forces", machines, every)
-    beside_alone("motion alone", machines, motion)
-    told("binding to the file", seconds(lambda: designs(AT_ONCE)), AT_ONCE)
+    beside_alone(f"key values of forces: {WATERWORKS}", machines, every)
+    beside_alone(f"motion alone: {WATERWORKS}", machines, motion)
+    for name in OTHERS:
+        lots = designs(name, AT_ONCE)
+        beside_alone(f"key values of forces: {name}", lots, list(asked_answers(lots[0].one(0), ())))
+    told("binding to the file", seconds(lambda: designs(WATERWORKS, AT_ONCE)), AT_ONCE)
     vary = ("rod_ratio=uniform(3, 6)", "speed=uniform(40, 60 rpm)")
     begin = time.process_time()
-    sweep = Sweep(Spec(WATERWORKS, vary=vary, sample=rows))
+    sweep = Sweep(Spec(source.read(CONFIGS / f"{WATERWORKS}.yaml"), vary=vary, sample=rows))
     titles = Titles(tuple((one.id, one.unit) for one in sweep.heads))
     size = sum(map(len, csv_rows(titles, rows_of(sweep, range(rows)), Look("csv"))))
     told(f"{rows} rows with {len(sweep.heads)} columns as csv", time.process_time() - begin, rows)

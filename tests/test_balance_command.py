@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from pathlib import Path
 from typing import Any
@@ -54,6 +55,23 @@ def test_what_cancels_prints_as_0() -> None:
     assert "  F_max      0    N     at 0°" in text
     rows = [line.split() for line in text.splitlines() if line.startswith("F_x")]
     assert {value for row in rows for value in row[2:]} == {"0"}
+    # two equal weights at right angles pass the stroke line together, half way between
+    found = parsed("locomotive-two-cylinders", "--angles", "45")["machine_columns"]
+    assert {one["id"]: one["values"] for one in found}["F_y"] == [0]
+
+
+def test_directions_along_an_axis_are_told_as_just_that() -> None:
+    """What depends on sin φ alone has waves of odd orders as sines, of even ones as cosines; F₊ and F₋ of what goes to
+    and fro along the stroke line meet there, whichever way the cranks stand.
+    """
+    offset, locomotive = (
+        {one["id"]: one["values"] for one in parsed(name)["machine_place_tables"][1]["columns"]}
+        for name in ("offset-engine", "locomotive-two-cylinders")
+    )
+    phases = zip(offset["order"], offset["F_forward_phase"], offset["F_backward_phase"])
+    for order, *both in itertools.islice(phases, 1, None):
+        assert {abs(one) for one in both} <= ({90} if order % 2 else {0, 180})
+    assert {*locomotive["F_direction"]} | {*locomotive["M_direction"]} == {0, None}
 
 
 def test_the_book_stands_beside_the_exact_only_where_it_is_asked_for() -> None:

@@ -29,7 +29,6 @@ from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.guide_load import GuideLoad
 from kurbel.solver.cylinder.indicated import Indicated
 from kurbel.solver.cylinder.motion import Motion
-from kurbel.solver.cylinder.pin_works import PinWorks
 from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
@@ -43,7 +42,7 @@ pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
     "motion": (Motion,),
-    "forces": (CylinderForces, Motion, RodLoad, PinWorks, GuideLoad, Indicated, Brake),
+    "forces": (CylinderForces, Motion, RodLoad, GuideLoad, Indicated, Brake),
     "flywheel": (MachineTurning, ElasticCoupling, Brake),
     "stress": (CrankshaftStrength,),
     "balance": (MachineBalance, LocomotiveBalance, BookBalance),

@@ -110,5 +110,5 @@ def _turned(right_angle: "Array", offset: "Array") -> "tuple[Array, Array]":
     sin, cos = np.sin(rest), np.cos(rest)
     quarter = (right_angle / 90.0).astype(int) % 4
     turned_sin, turned_cos = np.array((0.0, 1.0, 0.0, -1.0))[quarter], np.array((1.0, 0.0, -1.0, 0.0))[quarter]
-    # exact, since one term is zero; adding 0.0 turns -0.0 into 0.0
-    return sin * turned_cos + cos * turned_sin + 0.0, cos * turned_cos - sin * turned_sin + 0.0
+    # exact, since one term is zero; a sum with a zero of each sign, or with cos > 0 times 0.0, is no −0.0
+    return sin * turned_cos + cos * turned_sin, cos * turned_cos - sin * turned_sin

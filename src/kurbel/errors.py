@@ -34,7 +34,7 @@ class Fault(NamedTuple):
 
     path: relative to the record that found it, until the reader has made it whole; at_key: the key itself is meant.
     Line and column count from 1, in characters; they and the source line are filled in when the text is searched.
-    override: the KEY=VALUE from outside that it is of, if it does not stand in the file.
+    override: what it is of, as it was given, `--set KEY=VALUE`, if that does not stand in the file.
     """
 
     path: Path
@@ -95,7 +95,7 @@ class MachineFileError(KurbelError):
     def line(self, fault: Fault) -> str:
         """Return `file:line:column: path: message`, or what it is of instead of file and place."""
         where = f"{path_text(fault.path)}: " if fault.path else ""
-        place = f"--set {fault.override}" if fault.override else f"{self.file_name}:{fault.line}:{fault.column}"
+        place = fault.override or f"{self.file_name}:{fault.line}:{fault.column}"
         return f"{place}: {where}{fault.message}"
 
     def pretty(self, cells: int = 104, spelt: Callable[[str], str] = str, size: Callable[[str], int] = len) -> str:

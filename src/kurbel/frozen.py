@@ -42,9 +42,15 @@ def frozen(record: type[Record]) -> type[Record]:
             self.__post_init__()
 
     methods = {"__init__": born, "__repr__": _shown, "__setattr__": _refuse, "__delattr__": _refuse}
-    for name, method in (methods | {"__signature__": _Signature()}).items():
+    for name, method in (methods | {"__signature__": _Signature(), "__match_args__": names}).items():
         setattr(record, name, method)
     return record
+
+
+def values_of(record: Any) -> dict[str, Any]:
+    """Return the values that a record was born with, by the names of its fields: it may hold what it found of them."""
+    held = vars(record)
+    return {name: held[name] for name in record.__match_args__}
 
 
 class _Signature:

@@ -63,7 +63,7 @@ def stages_of(thing: object) -> set[str]:
         name
         for name, value in vars(thing).items()
         if isinstance(getattr(type(thing), name, None), cached_property)
-        and (isinstance(value, np.ndarray) or value not in (None, (), 0.0, False))
+        and (isinstance(value, np.ndarray) or value not in (None, (), {}, 0.0, False))
     }
 
 

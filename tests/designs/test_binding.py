@@ -13,6 +13,7 @@ import pytest
 
 from kurbel.designs.binding import Binder
 from kurbel.errors import MachineFileError, path_text
+from kurbel.frozen import values_of
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
@@ -30,7 +31,7 @@ def described(value: Any) -> Any:
     if isinstance(value, tuple):
         return tuple(map(described, value))
     if dataclasses.is_dataclass(value):
-        return type(value), [(name, described(one)) for name, one in vars(value).items() if name != "origin"]
+        return type(value), [(name, described(one)) for name, one in values_of(value).items() if name != "origin"]
     return repr(value)
 
 

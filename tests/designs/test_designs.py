@@ -89,6 +89,9 @@ def test_grid_list_and_sample() -> None:
         (["bore=400,450 mm;"], {}, "--vary bore=400,450 mm;: a key is missing beside ';'"),
         (["; bore=400,450 mm"], {}, "a key is missing beside ';'"),
         (["a=1,2;; b=3,4"], {}, "a key is missing beside ';'"),
+        (["bore=uniform(-1e308 mm, 1e308 mm)"], {}, ": -1e308 is too large to compute with"),
+        (["bore=normal(1 mm, 1e400 mm)"], {}, ": 1e400 is too large to compute with"),
+        (["rod_ratio=3:1e400:1"], {}, ": 1e400 is too large to compute with"),
     ],
 )
 def test_plans_that_are_none(inputs: list[str], options: dict[str, int], message: str) -> None:
@@ -100,7 +103,7 @@ def test_shards_are_the_whole() -> None:
     for count in (1, 3, 7, 20):
         rows = [row for k in range(count) for row in shard(f"{k + 1}/{count}", 17)]
         assert rows == list(range(17))
-    for wrong in ("0/3", "4/3", "1", "a/b", "1/0"):
+    for wrong in ("0/3", "4/3", "1", "a/b", "1/0", f"1/{'9' * 5000}"):
         with pytest.raises(UsageError, match="write K/N"):
             shard(wrong, 10)
 

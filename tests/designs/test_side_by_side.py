@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-import kurbel
-from kurbel import Machine, loads
-from kurbel.designs.answers import Values, answers_of
-from kurbel.designs.columns import Answer, answered_alone
+from kurbel import Machine, load, loads
+from kurbel.designs import answers
+from kurbel.designs.answers import Values, answers_of, stands_beside
+from kurbel.designs.columns import Answer, answered_alone, asked_answers
 from kurbel.errors import KurbelError, RuleError
 from kurbel.machine import Cylinder
 from kurbel.machine.friction import Friction, Guide
@@ -126,6 +126,21 @@ def test_many_random_machines_answer_as_each_alone() -> None:
     assert largest <= 1e-12
 
 
+CONFIGS = Path(__file__).parents[2] / "configs"
+ALONE = {"coupled-axle", "crank-rocker", "diesel-trace", "punch", "shaper"}
+"""Machines whose mechanism, or trace, is not for many side by side."""
+
+
+@pytest.mark.parametrize("name", sorted({path.stem for path in CONFIGS.glob("*.yaml")} - ALONE))
+def test_shipped_machines_answer_as_each_alone(name: str) -> None:
+    """All that `forces` tells of them, which is answered side by side."""
+    machines = [load(CONFIGS / f"{name}.yaml", overrides=[f"speed={speed} rpm"]) for speed in (61, 97, 149)]
+    asked = [part for one in asked_answers(machines[0], ()) for part in with_angle(one)]
+    assert all(stands_beside(machines[0], one) for one in asked)
+    for machine, values in zip(machines, together(machines, asked)):
+        assert max(distance(a, b) for a, b in zip(values, alone(machine, asked), strict=True)) <= 1e-12
+
+
 STEAM = """
 speed: 50 rpm
 stroke: 800 mm
@@ -185,13 +200,33 @@ def test_what_differs_may_be_anything() -> None:
         assert max(distance(a, b) for a, b in zip(values, alone(machine, asked), strict=True)) <= 1e-12
 
 
-@pytest.mark.parametrize("name", ["scotch-yoke-pump", "yoke-frame-pump", "offset-engine", "compressor-two-stage"])
-def test_shipped_machines_answer_all_key_values_as_each_alone(name: str) -> None:
-    """What a mechanism offers besides, too: the pressure on the pin of a Scotch yoke was a fault of kurbel."""
-    path = Path(__file__).parent.parent.parent / "configs" / f"{name}.yaml"
-    speed = kurbel.load(path).speed
-    machines = [kurbel.load(path, [f"speed={speed * factor!r} 1/s"]) for factor in (0.8, 1.0, 1.2)]
-    asked = asked_of(machines[0])
-    for machine, values in zip(machines, together(machines, asked)):
-        single = alone(machine, asked)
-        assert max(map(distance, values, single)) <= 1e-12
+class Options:
+    """A C library that takes note of its options."""
+
+    def __init__(self, name: None) -> None:
+        self.set: list[tuple[int, int]] = []
+        LIBRARIES.append(self)
+
+    def mallopt(self, option: int, value: int) -> int:
+        self.set.append((option, value))
+        return 1
+
+
+LIBRARIES: list[Options] = []
+
+
+def no_library(name: None) -> None:
+    raise TypeError("on Windows None is no library")
+
+
+def test_freed_memory_is_kept_where_the_c_library_can_be_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By M_TRIM_THRESHOLD = −1 and M_MMAP_THRESHOLD = −3 of malloc.h, once; elsewhere nothing happens."""
+    monkeypatch.setattr("ctypes.CDLL", Options)
+    answers._keep_memory.cache_clear()
+    answers._keep_memory()
+    answers._keep_memory()
+    assert [sorted(library.set) for library in LIBRARIES] == [[(-3, 2**28), (-1, 2**28)]]
+    for other in (no_library, lambda name: object()):
+        monkeypatch.setattr("ctypes.CDLL", other)
+        answers._keep_memory.cache_clear()
+        answers._keep_memory()

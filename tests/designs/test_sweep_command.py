@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import Future
 from pathlib import Path
 
@@ -212,6 +213,18 @@ def test_an_interrupt_leaves_whole_rows(jobs: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("end", [os.kill, os.killpg])
+def test_who_is_told_to_end_leaves_nothing_behind(end: Callable[[int, int], None], tmp_path: Path) -> None:
+    """By a scheduler say, with the processes that compute or without; Python told of semaphores that were leaked."""
+    file = tmp_path / "rows.csv"
+    process = in_the_midst(file, "2")
+    end(process.pid, signal.SIGTERM)
+    assert process.communicate() == (None, "")
+    assert process.returncode == 130
+    assert file.read_text().endswith("\n")
+
+
+@pytest.mark.slow
 def test_no_process_outlives_the_one_that_started_it(tmp_path: Path) -> None:
     """Those of a sweep that was killed, by a scheduler say, waited for work for ever."""
     process = in_the_midst(tmp_path / "rows.csv", "2")
@@ -346,6 +359,12 @@ def test_a_row_is_computed_in_the_same_company_by_every_run() -> None:
         (("--vary", "bore=3,4", "--set", "expect=5"), "--vary bore=3: bore: 3 has no unit"),
         (("--vary", "bore=3,4", "--set", "expect=5"), "--set expect=5: expect: expected a mapping"),
         (("--vary", "rod_ratio=3,4", "--set", "name: =x"), "--set name: =x: write KEY=VALUE, without the colon"),
+        (
+            ("--set", "bore=400 mm", "--vary", "crank=2,3 m; name=a,b"),
+            "stroke: 'crank' and 'stroke' say the same thing; leave one of them out "
+            "(with --set bore=400 mm, --vary crank=2 m, --vary name=a)",
+        ),
+        (("--vary", "bo..re=3,4 mm"), "--vary bo..re=3 mm: write KEY=VALUE, such as --vary cylinders.0.bore='450 mm'"),
         (("--vary", "rod_ratio=3,4", "-o", "rows.xyz"), "no format has this suffix; write .csv, .json, .jsonl, .md"),
     ],
 )

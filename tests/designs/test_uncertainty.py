@@ -223,6 +223,7 @@ def test_its_lines_are_found_by_symbol() -> None:
     ("args", "message"),
     [
         (("bor=1 mm",), "bor: no value stands under this key"),
+        (("bo..re=1 mm",), "bo..re: no value stands under this key"),
         (("bore=1 kg",), "kg is a unit of mass"),
         (("bore=-1 mm",), "write KEY=SPREAD, above 0"),
         (("bore",), "write KEY=SPREAD"),

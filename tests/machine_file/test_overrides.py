@@ -68,6 +68,7 @@ def test_the_last_one_holds() -> None:
         ("indicator.head_end.expansion.9=[1, 2]", "'indicator.head_end.expansion' is a list; its items are 0 to 5"),
         ("speed", "--set speed: write KEY=VALUE"),
         (".=3", "--set .=3: write KEY=VALUE"),
+        (f"{'9' * 5000}=3", "99…: unknown key; known here are kurbel, name, speed"),
         ("bore=*a", "'*a' is not supported; write the value itself; a cylinder may be 'like: NAME'"),
         ("name=\x1b[31mred", "--set name=\\u001b[31mred: the character U+001B cannot be printed; remove it"),
         ("name=a\udcff", "is no UTF-8"),

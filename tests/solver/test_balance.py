@@ -487,6 +487,7 @@ def test_rotating_masses_turn_with_the_flywheel() -> None:
 def test_coefficients_of_a_sum_of_waves() -> None:
     found = coefficients(lambda d: 2 + np.cos(np.radians(3 * d)) + 0.25 * np.sin(np.radians(5 * d)))
     assert_allclose(found, [0, 0, 0.5, 0, -0.125j], atol=1e-16)
+    assert (found.real[4], found.imag[2]) == (0, 0)
     assert len(coefficients(lambda d: 0 * d)) == 0
     assert coefficients(lambda d: np.sign(np.sin(np.radians(d)))) is None
 

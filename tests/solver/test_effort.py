@@ -25,6 +25,7 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.grid import Grid
 from kurbel.solver.case import Case
+from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.flywheel import MachineTurning
 from kurbel.solver.turning.machine_effort import dead_centre_force
 from machines import STEAM_CARD, constant_pressure
@@ -373,6 +374,14 @@ def test_the_swing_agrees_with_forty_digits(name: str) -> None:
         truth = precise_swing(cylinders, rpm)
         error = abs((mpmath.mpf(turning(*cylinders, rpm=rpm).dE) - truth) / truth)
     assert error < (5e-16 if len(cylinders) == 1 else 1e-15)
+
+
+def test_the_last_digit_of_the_mean_does_not_move_the_swing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Balanced cranks pass on 25 times their swing: a unit in the last place of the mean moved it by some 3e-15."""
+    cylinders, rpm = CASES["leading"]
+    swing, mean_of = turning(*cylinders, rpm=rpm).dE, Excess._mean_of
+    monkeypatch.setattr(Excess, "_mean_of", lambda self, sampled: math.nextafter(mean_of(self, sampled), math.inf))
+    assert turning(*cylinders, rpm=rpm).dE == pytest.approx(swing, rel=5e-16)
 
 
 def test_no_crossing_is_missed_in_random_machines() -> None:

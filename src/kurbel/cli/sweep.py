@@ -1,8 +1,10 @@
 """`kurbel sweep`: key values over a grid, a list or a sample of machines."""
 
 import gc
+import signal
 import sys
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
@@ -160,6 +162,9 @@ class _Asked(NamedTuple):
         """Compute and write the rows."""
         gc.freeze()
         gc.enable()  # what thousands of machines leave behind in circles would fill the memory
+        with suppress(ValueError):  # in a thread of its own nobody can hear
+            # a scheduler's word is an interrupt: whole rows, and no semaphores of the system left behind
+            signal.signal(signal.SIGTERM, signal.default_int_handler)
         from kurbel.designs.chosen import read_aim, read_condition, summary, unbettered
         from kurbel.designs.plan import shard
         from kurbel.designs.sweep import Sweep

@@ -15,7 +15,7 @@ _RUBBING = (
 
 PIN_LOSSES = (
     *(
-        _forces(f"work_{id}", f"A_f,{index}", "energy", f"Work lost {where} per cycle", asks=("work_of", id))
+        _forces(f"work_{id}", f"A_f,{index}", "energy", f"Work lost {where} per cycle", asks=("pin_work_of", id))
         for id, index, where in _RUBBING
     ),
     *(
@@ -24,7 +24,7 @@ PIN_LOSSES = (
             f"e_{index}",
             "ratio",
             f"Work lost {where} over that of the driving pistons",
-            asks=("loss_of", id),
+            asks=("pin_loss_of", id),
         )
         for id, index, where in _RUBBING
     ),

@@ -1,6 +1,8 @@
 """The answers of many machines: those of one kind side by side, the others one after another."""
 
 from collections.abc import Container, Sequence
+from functools import cache
+from itertools import compress
 from typing import Any, Union
 
 import numpy as np
@@ -14,15 +16,24 @@ from kurbel.machine.variants import Lot
 from kurbel.numerics.cycles import Unlike
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.guide_load import GuideLoad
+from kurbel.solver.cylinder.indicated import Indicated
 from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.figures import answered
 
 _ALONE = ("energy_residual",)
 """Key values whose quadrature cuts the pieces of each machine until they agree, and answers one machine at a time."""
+_BESIDE = (CylinderForces, GuideLoad, Indicated, Motion, RodLoad)
+"""What answers key values of a cylinder by formulas that take many machines."""
 _FEWEST = 3
 """Machines of one kind; fewer are answered as quickly alone."""
 AT_ONCE = 1000
 """Machines side by side: enough to share the overhead of one run; more would only take memory."""
+
+_KEPT = 256 * 2**20
+"""Bytes that are freed and may be kept: what one run over many machines gives back the next one takes again."""
+_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
+"""What malloc.h of the GNU C library calls M_TRIM_THRESHOLD and M_MMAP_THRESHOLD."""
 
 Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, a tuple or None each; or why it answers nothing."""
@@ -55,9 +66,9 @@ def is_slow(machine: Machine, asked: Answer) -> bool:
 
 
 def _stands_beside(quantity: Quantity) -> bool:
-    """Return whether a key value is one of forces, guide or motion themselves, whose formulas take many machines."""
+    """Return whether a key value is one of a cylinder whose formulas take many machines."""
     name = quantity.asks[0] if quantity.asks else quantity.id
-    return quantity.id not in _ALONE and any(hasattr(one, name) for one in (CylinderForces, GuideLoad, Motion))
+    return quantity.id not in _ALONE and any(hasattr(one, name) for one in _BESIDE)
 
 
 def _merged(first: Values, second: Values, of_first: Sequence[bool]) -> Values:
@@ -77,6 +88,8 @@ class _Answers:
 
     def found(self, wanted: Container[int] | None) -> dict[int, Values]:
         for rows in self._alike() if self._names else ():
+            if len(rows) >= AT_ONCE:
+                _keep_memory()
             for start in range(0, len(rows), AT_ONCE):
                 self._together(rows[start : start + AT_ONCE])
         return {
@@ -112,10 +125,8 @@ class _Answers:
             fit = np.ones(len(rows), dtype=bool)
             for value in found:
                 fit &= _is_finite(value)
-            values = zip(*(_listed(value, len(rows)) for value in found))
-            for row, finite, own in zip(rows, fit.tolist(), values):
-                if finite:
-                    self._found[row] = own
+            values = zip(rows, zip(*(_listed(value, len(rows)) for value in found)))
+            self._found.update(compress(values, fit.tolist()))
 
     def _columns(self, rows: list[int]) -> list[Any]:
         cylinders = {name: self._stack(rows, name) for name in self._names}
@@ -138,6 +149,22 @@ class _Answers:
             return str(error)
         except ArithmeticError as error:
             return f"these numbers lead beyond what can be computed with ({error})"
+
+
+@cache
+def _keep_memory() -> None:
+    """Ask the C library, where it is that of GNU, to keep what is freed.
+
+    It would give it to the system, which hands it out again page by page: a third of the time of a sweep.
+    """
+    try:
+        from ctypes import CDLL
+
+        set_option = CDLL(None).mallopt
+    except (ImportError, OSError, TypeError, AttributeError):  # there is none to ask
+        return
+    for option in (_TRIM_THRESHOLD, _MMAP_THRESHOLD):
+        set_option(option, _KEPT)
 
 
 def _listed(value: Any, count: int) -> Sequence[Any]:

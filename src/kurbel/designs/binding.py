@@ -93,7 +93,7 @@ class Binder:
         self._reading = reading_of(origin)
         births: list[Birth] = []
         self._reading.births = births
-        begun = origin.set_over(f"{key}={text}" for key, text in zip(keys, start))
+        begun = origin._replace(varied=tuple(f"{key}={text}" for key, text in zip(keys, start)))
         self.machine = read_machine(begun, self._reading)
         self.kinds: list[str] = []
         """Of the numbers that stand under the keys, '' of words."""

@@ -5,7 +5,7 @@ These are a grid of all values, or of values side by side, each with every point
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from decimal import Decimal, InvalidOperation
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -22,6 +22,8 @@ MOST_ROWS = 10_000_000
 """Rows that are computed without being asked whether they are meant."""
 MOST_VALUES = 10_000_000
 """Values of one key; a range of more is a slip of its step."""
+_LARGEST = 1e300
+"""Sums of larger numbers may be infinite."""
 _CALL = re.compile(r"(normal|uniform)\s*\((.*)\)\s*")
 _NEXT_KEY = re.compile(r";(?=[^;=]*=|\s*(?:;|$))")
 _UNKNOWN_CALL = re.compile(r"([A-Za-z_]+)\s*\(.*\)\s*")
@@ -129,8 +131,7 @@ def _range(text: str, values: str) -> tuple[str, ...]:
         first, last, step = (Decimal(number) for number, _ in pairs)
     except InvalidOperation:
         raise _refused(text, "a range has three numbers, first:last:step, such as 3:6:0.25") from None
-    if large := next((number for number in (first, last, step) if math.isinf(float(number))), None):
-        raise _refused(text, f"{large} is too large to compute with")
+    _refuse_too_large(text, pairs)
     if not float(step) or (last - first) / step < 0:
         raise _refused(text, f"a range from {first} by steps of {step} never reaches {last}")
     if (last - first) / step >= MOST_VALUES:
@@ -147,12 +148,18 @@ def _distribution(text: str, name: str, inside: str) -> tuple[Distribution, str]
     units = {unit for _, unit in pairs if unit}
     if len(units) > 1:
         raise _refused(text, f"write {words[0]} and {words[1]} in one unit, not in {' and '.join(sorted(units))}")
+    _refuse_too_large(text, pairs)
     first, second = (float(number) for number, _ in pairs)
     if name == "normal" and second <= 0:
         raise _refused(text, f"the standard deviation must be more than 0, got {pairs[1][0]}")
     if name == "uniform" and second <= first:
         raise _refused(text, f"the least value must be less than the most, got {pairs[0][0]} and {pairs[1][0]}")
     return Distribution(name, first, second), units.pop() if units else ""
+
+
+def _refuse_too_large(text: str, pairs: Iterable[tuple[str, str]]) -> None:
+    if large := next((number for number, _ in pairs if abs(float(number)) > _LARGEST), None):
+        raise _refused(text, f"{shown(large)} is too large to compute with")
 
 
 class Plan:
@@ -217,7 +224,8 @@ def shard(text: str, rows: int) -> range:
     >>> [shard(f"{k}/3", 8) for k in (1, 2, 3)]
     [range(0, 2), range(2, 5), range(5, 8)]
     """
-    number, slash, count = text.partition("/")
-    if not (slash and number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count)):
-        raise UsageError(f"--shard {text}: write K/N, such as 2/8, K from 1 to N")
-    return range(rows * (int(number) - 1) // int(count), rows * int(number) // int(count))
+    found = re.fullmatch("([0-9]{1,9})/([0-9]{1,9})", text)
+    number, count = map(int, found.groups()) if found else (0, 0)
+    if not 1 <= number <= count:
+        raise UsageError(f"--shard {shown(text)}: write K/N, such as 2/8, K from 1 to N")
+    return range(rows * (number - 1) // count, rows * number // count)

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of, is_slow
@@ -112,9 +111,7 @@ class Sweep:
             try:
                 return Binder(self.spec.origin, keys, texts)
             except MachineFileError as error:
-                failed = failed or _as_varied(str(error), zip(keys, texts))
-            except UsageError as error:
-                raise UsageError(_as_varied(str(error), zip(keys, texts))) from None
+                failed = failed or str(error)
         raise UsageError(failed or "there is no row to compute")
 
     def _starts(self, keys: Sequence[str]) -> Iterator[Sequence[str]]:
@@ -224,13 +221,6 @@ class Sweep:
         """Rows that are answered and handed over at once: few where each takes long."""
         every = (*self.asked, *(answer for answer, _ in self._limits))
         return _SLOWLY if any(is_slow(self._binder.machine, one) for one in every) else CHUNK
-
-
-def _as_varied(message: str, texts: Iterable[tuple[str, str]]) -> str:
-    """Return what is told of values as if they had been set as that of what they are: varied."""
-    for text in (shown(f"{key}={value}") for key, value in texts):
-        message = message.replace(f"--set {text}: ", f"--vary {text}: ").replace(f"--set {text})", f"--vary {text})")
-    return message
 
 
 def _input_values(head: Head, texts: Sequence[str]) -> list[Any]:

@@ -84,6 +84,8 @@ def _end_with_parent() -> None:
     from multiprocessing import parent_process
     from threading import Thread
 
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # by which that one ends it
     parent = parent_process()
     assert parent is not None
 
@@ -96,11 +98,11 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _interrupts_wait() -> Iterator[None]:
-    """Hear an interrupt that comes meanwhile afterwards, where the system can keep it."""
+    """Hear an interrupt that comes meanwhile afterwards, where the system can keep it; SIGTERM may be heard as one."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
     try:
         yield
     finally:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Indices
+from kurbel.frozen import values_of
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.variants import Chambers, Lot, one_of, record_of, varies
@@ -61,7 +62,7 @@ class Kinds:
         if getattr(value, "of_pins", ()):  # whose loads bend where they all but vanish
             raise _Alone
         if is_dataclass(value):
-            return (type(value), *(self._kind(one) for name, one in vars(value).items() if name != "name"))
+            return (type(value), *(self._kind(one) for name, one in values_of(value).items() if name != "name"))
         return value
 
 
@@ -95,11 +96,12 @@ class _Stack:
     def __init__(self, lots: Sequence[tuple[Lot, Indices]]) -> None:
         self._lots = lots
         self._made: dict[tuple[int, ...], Any] = {}
+        self._seen: dict[int, Any] = {}
 
     def of(self, column: Sequence[Any]) -> Any:
         """Return what stands for the values, one of each lot, of one field."""
         first = column[0]
-        if all(one is first for one in column) and not varies(first):
+        if all(one is first for one in column) and not varies(first, self._seen):
             return first
         ids = tuple(map(id, column))
         if ids not in self._made:
@@ -143,6 +145,6 @@ class _Stack:
 
 def _each(chamber: Any, lot: Lot, places: Indices) -> list[Any]:
     """Return the chamber of each of these machines of a lot."""
-    if len(lot.rows) > 1 and varies(chamber):
+    if len(lot.rows) > 1 and varies(chamber, {}):
         return [one_of(chamber, place) for place in places.tolist()]
     return [chamber] * len(places)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kurbel.arrays import Indices
-from kurbel.frozen import frozen
+from kurbel.frozen import frozen, values_of
 from kurbel.numerics.varied import Varied, varied
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def sort_of(value: Any) -> Hashable:
     if isinstance(value, (tuple, list)):
         return (type(value), *map(sort_of, value))
     if is_dataclass(value):
-        return (type(value), *map(sort_of, vars(value).values()))
+        return (type(value), *map(sort_of, values_of(value).values()))
     return value if isinstance(value, str) else id(value)
 
 
@@ -48,7 +48,7 @@ def joined(values: Sequence[Any]) -> Any:
         parts = map(joined, zip(*values))
         return type(first)(*parts) if hasattr(first, "_fields") else type(first)(parts)
     if is_dataclass(first):
-        return _like(first, {name: joined([vars(one)[name] for one in values]) for name in vars(first)})
+        return _like(first, {name: joined([vars(one)[name] for one in values]) for name in values_of(first)})
     return first
 
 
@@ -62,9 +62,9 @@ def one_kind(record: Any) -> None:
     changed(record, Varied.alike, {})
 
 
-def varies(record: Any) -> bool:
-    """Return whether anything differs among the variants of a record."""
-    return changed(record, lambda numbers: None, {}) is not record
+def varies(record: Any, known: dict[int, Any]) -> bool:
+    """Return whether anything differs among the variants of a record; known: what was seen before."""
+    return changed(record, lambda numbers: None, known) is not record
 
 
 def changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]) -> Any:
@@ -84,8 +84,9 @@ def _changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]
         if all(one is other for one, other in zip(parts, record)):
             return record
         return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
-    found = {name: changed(one, change, known) for name, one in vars(record).items()}
-    return record if all(one is vars(record)[name] for name, one in found.items()) else _like(record, found)
+    held = values_of(record)
+    found = {name: changed(one, change, known) for name, one in held.items()}
+    return record if all(one is held[name] for name, one in found.items()) else _like(record, found)
 
 
 @frozen
@@ -99,6 +100,11 @@ class Chambers:
     def cycles(self) -> tuple[str, ...]:
         """The working cycles that they can be part of, which are the same for all of a kind."""
         return self.each[0].cycles  # type: ignore[no-any-return]
+
+    @property
+    def clearance(self) -> Any:
+        """Smallest volume over the stroke volume of each, (v,), 0 where it is not known."""
+        return np.array([getattr(one, "clearance", None) or 0.0 for one in self.each])[self.which]
 
 
 def taken(record: Any, index: Indices) -> Any:
@@ -129,7 +135,7 @@ def record_of(like: Any, varied: dict[str, Any]) -> Any:
 def _like(record: Any, values: dict[str, Any]) -> Any:
     """Return a record with other values; what was checked when they were born is not again."""
     made = object.__new__(type(record))
-    made.__dict__.update(vars(record) | values)
+    made.__dict__.update(values_of(record) | values)
     return made
 
 

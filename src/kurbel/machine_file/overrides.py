@@ -9,35 +9,38 @@ from kurbel.errors import Fault, MachineFileError, Path, UsageError
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.source import decode
 
+_NUMBER = "[0-9]{1,9}"
+
 
 class Override(NamedTuple):
-    """One value in place of that of the file: as it was written, where it belongs, and what stands there."""
+    """One value in place of that of the file: as it was given, where it belongs, and what stands there."""
 
-    text: str
+    given: str
     path: Path
     value: Any
 
 
-def read_override(text: str) -> Override:
-    """Return the override that a text `cylinders.0.bore=450 mm` is; raises UsageError.
+def read_override(text: str, option: str = "--set") -> Override:
+    """Return the override that a text `cylinders.0.bore=450 mm` of an option is; raises UsageError.
 
-    >>> read_override("cylinders[0].bore=450 mm")[1:]
-    (('cylinders', 0, 'bore'), '450 mm')
+    >>> read_override("cylinders.0.bore=450 mm")
+    Override(given='--set cylinders.0.bore=450 mm', path=('cylinders', 0, 'bore'), value='450 mm')
     """
+    given = f"{option} {shown(text)}"
     key, equals, value = text.partition("=")
     path = path_of(key)
     if not equals or "" in path:
-        _refused(text, "write KEY=VALUE, such as --set cylinders.0.bore='450 mm'")
+        _refused(given, f"write KEY=VALUE, such as {option} cylinders.0.bore='450 mm'")
     if any(str(step).endswith(":") for step in path):
-        _refused(text, "write KEY=VALUE, without the colon")
+        _refused(given, "write KEY=VALUE, without the colon")
     reading = Reading()
     try:
-        tree = parse(decode("--set", _bytes(value)).text, reading)
+        tree = parse(decode(option, _bytes(value)).text, reading)
     except MachineFileError as error:
         reading.faults += error.faults
     if reading.faults:
-        _refused(text, reading.faults[0].message)
-    return Override(text, path, tree)
+        _refused(given, reading.faults[0].message)
+    return Override(given, path, tree)
 
 
 def _bytes(argument: str) -> bytes:
@@ -49,17 +52,17 @@ def _bytes(argument: str) -> bytes:
 
 
 def path_of(key: str) -> Path:
-    """Return where a dotted key leads.
+    """Return the path that a dotted key is, the items of lists by their numbers.
 
-    >>> path_of("cylinders[0].bore") == path_of("cylinders.0.bore") == ("cylinders", 0, "bore")
-    True
+    >>> path_of("cylinders[0].bore")
+    ('cylinders', 0, 'bore')
     """
     steps = (step.strip() for step in key.replace("[", ".").replace("]", "").split("."))
-    return tuple(int(step) if step.isdecimal() else step for step in steps)
+    return tuple(int(step) if re.fullmatch(_NUMBER, step) else step for step in steps)
 
 
-def _refused(text: str, why: str) -> NoReturn:
-    raise UsageError(f"--set {shown(text)}: {why}")
+def _refused(given: str, why: str) -> NoReturn:
+    raise UsageError(f"{given}: {why}")
 
 
 def overridden(tree: Tree, overrides: Iterable[Override]) -> None:
@@ -79,18 +82,18 @@ def _set(node: Any, one: Override, place: int, step: str | int) -> Any:
         if not isinstance(step, int) or step >= len(node):
             where, instead = dotted(one.path[:place]), (*one.path[:place], _near(step, node), *one.path[place + 1 :])
             items = f"its items are 0 to {len(node) - 1}: write {dotted(instead)}=…"
-            _refused(one.text, f"'{where}' is a list; {items}")
+            _refused(one.given, f"'{where}' is a list; {items}")
         if last:
             node[step] = one.value
         return node[step]
     if not isinstance(node, dict):
         where = dotted(one.path[:place])
-        _refused(one.text, f"nothing stands below '{where}', which is {kind_of(node)}")
+        _refused(one.given, f"nothing stands below '{where}', which is {kind_of(node)}")
     if last:
         node[str(step)] = one.value
     elif is_nothing(node.get(str(step), Plain())):
         if isinstance(one.path[place + 1], int):
-            _refused(one.text, f"there is no list '{dotted(one.path[: place + 1])}' in the file")
+            _refused(one.given, f"there is no list '{dotted(one.path[: place + 1])}' in the file")
         node[str(step)] = {}
     return node[str(step)]
 
@@ -105,7 +108,7 @@ def _near(step: str | int, items: Sequence[Any]) -> int:
     names = [item.get("name") if isinstance(item, dict) else None for item in items]
     if step in names:
         return names.index(step)
-    from_end = int(step) if re.fullmatch("-[0-9]{1,9}", str(step)) else -1
+    from_end = int(step) if re.fullmatch(f"-{_NUMBER}", str(step)) else -1
     return max(len(items) + from_end, 0)
 
 
@@ -130,10 +133,10 @@ def by_numbers(tree: Tree, key: str) -> str:
 
 def named(faults: Iterable[Fault], overrides: Sequence[Override]) -> list[Fault]:
     """Return faults with the override that they are of; of others it is said that there are some."""
-    beside = f" (with {', '.join(f'--set {shown(one.text)}' for one in overrides)})"
+    beside = f" (with {', '.join(one.given for one in overrides)})"
     return [
         next(
-            (fault._replace(override=shown(one.text)) for one in overrides if _is_of(fault, one)),
+            (fault._replace(override=one.given) for one in overrides if _is_of(fault, one)),
             fault._replace(message=fault.message + beside),
         )
         for fault in faults

@@ -61,11 +61,11 @@ def read_machine(origin: Origin, reading: Reading | None = None) -> Machine:
 
 def set_over(tree: Any, origin: Origin) -> "list[Override]":
     """Put the overrides of a file into its tree, and return them."""
-    if not origin.overrides or not isinstance(tree, dict):
+    if not (origin.overrides or origin.varied) or not isinstance(tree, dict):
         return []
     from kurbel.machine_file.overrides import overridden, read_override
 
-    read = [read_override(one) for one in origin.overrides]
+    read = [*map(read_override, origin.overrides), *(read_override(one, "--vary") for one in origin.varied)]
     overridden(tree, read)
     return read
 

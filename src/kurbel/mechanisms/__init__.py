@@ -5,7 +5,7 @@ the crank angle is made of. What a new mechanism must supply stands in `Mechanis
 """
 
 from collections.abc import Callable
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
@@ -213,7 +213,7 @@ class Mechanism(Described):
         """Length in m of the connecting rod or coupler on the crank pin; infinite where there is none."""
         return self.rod_length
 
-    @property
+    @cached_property
     def lam(self) -> float:
         """λ = R/L, 0 without a connecting rod."""
         return self.crank / self.rod_length

@@ -8,7 +8,7 @@ from kurbel.declared.keys import Keys, check
 from kurbel.declared.quantity import Quantity
 from kurbel.mechanisms import KeyOffer, Offer, check_lengths, own_force, own_motion
 from kurbel.numerics.arithmetic import where
-from kurbel.numerics.extreme import Extreme, largest
+from kurbel.numerics.extreme import Extreme
 
 PIN_KEYS: Keys = {
     "pin_diameter": positive(
@@ -48,11 +48,11 @@ BLOCK_OFFERS = (
 
 
 def _pressure(mechanism: Any, forces: Any) -> Extreme | None:
+    """Return the largest force on the pin over d_z l_z."""
     found = None if mechanism.pin_diameter is None else forces.extremes_of("F_pin")
     if not found:
         return None
-    peak = largest(*(Extreme(abs(one.value), one.degrees) for one in found))
-    return Extreme(peak.value / (mechanism.pin_diameter * mechanism.pin_length), peak.degrees)
+    return Extreme(found.peak.value / (mechanism.pin_diameter * mechanism.pin_length), found.peak.degrees)
 
 
 def pin_pressure(bound: float | None = None) -> KeyOffer:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel import crank_formulas as formulas
@@ -130,22 +131,22 @@ class SliderCrank(Mechanism):
         """L in m, `math.inf` for the infinite rod."""
         return self.rod
 
-    @property
+    @cached_property
     def rho(self) -> float:
         """ρ = 1 − λ², from the lengths."""
         if self._endless:
             return 1.0
         return (self.rod - self.crank) / self.rod * ((self.rod + self.crank) / self.rod)
 
-    @property
+    @cached_property
     def _endless(self) -> bool:
         return every(self.rod == math.inf)
 
-    @property
+    @cached_property
     def _straight(self) -> bool:
         return every(self.offset == 0) or self._endless
 
-    @property
+    @cached_property
     def _gaps(self) -> tuple[float, float]:
         """(L − R + e)/L and (L − R − e)/L: how far sin ψ stays from 1 and from −1."""
         if self._endless:
@@ -155,7 +156,7 @@ class SliderCrank(Mechanism):
             total(self.rod, -self.crank, -self.offset) / self.rod,
         )
 
-    @property
+    @cached_property
     def _reaches(self) -> tuple[float, float]:
         """√((L+R)² − e²)/L and √((L−R)² − e²)/L: the crosshead's distances from the shaft at the dead centres."""
         if self._endless:
@@ -165,7 +166,7 @@ class SliderCrank(Mechanism):
         above, below = (total(self.rod, self.crank, sign * self.offset) / self.rod for sign in (1, -1))
         return sqrt(above * below), sqrt(beyond * within)
 
-    @property
+    @cached_property
     def stroke(self) -> float:
         """s = √((L+R)² − e²) − √((L−R)² − e²) = 4LR/(their sum); 2R without offset."""
         return 2 * self.crank if self._straight else self.crank * (4 / sum(self._reaches))
@@ -225,12 +226,18 @@ class SliderCrank(Mechanism):
         """Return what the formulas for R = 1 take."""
         return angle.sin, angle.cos, self.rod_angle(angle)[1], self.lam, self.rho
 
+    @cached_property
+    def _start(self) -> CrankAngle:
+        """The inner dead centre, with the rod there."""
+        start = CrankAngle.of(self.dead_centres()[0])
+        return start._replace(rod=self.rod_angle(start))
+
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0."""
         if self._straight:
             return self.crank * formulas.displacement_factor(*self._known(angle))
-        start = CrankAngle.of(self.dead_centres()[0])
-        sin_start, cos_start = (value for value in self.rod_angle(start))
+        start = self._start
+        sin_start, cos_start = self.rod_angle(start)
         sin_psi, cos_psi = self.rod_angle(angle)
         # with θ = φ − φ_i and m = (φ + φ_i)/2: x = 2R sin(θ/2) [sin m + cos m (sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)]
         half_sin, half_cos = _half_angle(

@@ -128,11 +128,13 @@ _ROUNDING = 16 * 2.0**-52
 def unless_cancelled(whole: Any, sizes: Any) -> Any:
     """Return a sum, as an array; exactly 0 where nothing is left of its terms but rounding.
 
-    sizes: the sum of the sizes of the terms.
+    sizes: the sum of the sizes of the terms; of complex terms either part may cancel by itself.
 
     >>> unless_cancelled(0.1 + 0.2 - 0.3, 0.6), unless_cancelled(0.1, 0.6)
     (array(0.), array(0.1))
     """
     import numpy as np
 
+    if np.iscomplexobj(whole):
+        return unless_cancelled(whole.real, sizes) + 1j * unless_cancelled(whole.imag, sizes)
     return np.where(np.abs(whole) > _ROUNDING * sizes, whole, 0.0)

@@ -128,8 +128,8 @@ def ranges(grid: Grid, samples: Iterable[OnNodes]) -> tuple[Array, Array, Array]
 
 _FLAT = 32 * np.finfo(float).eps
 """Beside its values, what a quantity that does not vary seems to by the rounding of its slopes."""
-REPEATED = 64 * np.finfo(float).eps
-"""By which, beside the largest value, equal summits of a curve differ that is summed over cylinders and the cycle."""
+REPEATED = 1e-12
+"""By which, beside the largest value, equal summits of a curve differ that is summed over cylinders, or solved for."""
 
 
 def may_be_extreme(grid: Grid, samples: Sequence[OnNodes]) -> Rows:

@@ -24,10 +24,10 @@ def coefficients(function: Callable[[Array], Array]) -> ComplexArray | None:
     while count <= _MOST:
         values = function(np.linspace(0.0, 360.0, count, endpoint=False))
         rounding = np.finfo(float).eps * np.abs(values).max()
-        found = np.fft.rfft(values)[1:] / count
-        sizes = np.abs(found)
-        if sizes[3 * count // 8 :].max() <= rounding:
-            kept = sizes > rounding
-            return np.where(kept, found, 0.0)[: np.flatnonzero(kept)[-1] + 1] if kept.any() else found[:0]
+        parts = (np.fft.rfft(values)[1:] / count).view(float)
+        # cosines and sines by themselves: what is even has no sines
+        found = np.where(np.abs(parts) > rounding, parts, 0.0).view(complex)
+        if not found[3 * count // 8 :].any():
+            return np.trim_zeros(found, "b")
         count *= 2
     return None

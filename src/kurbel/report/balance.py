@@ -161,7 +161,7 @@ def _direction(forward: complex, backward: complex) -> float | None:
     if not forward or not backward:
         return None
     degrees = _degrees(forward * backward) / 2
-    return degrees + 180.0 if degrees < -_NOTHING else degrees
+    return degrees + 180.0 if degrees < -_NOTHING else max(degrees, 0.0)
 
 
 def _phase(circle: complex) -> float | None:

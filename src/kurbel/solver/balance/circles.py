@@ -7,6 +7,7 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import unit_vector
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import roots_by_slope
 
@@ -36,8 +37,9 @@ class Circles:
         return Circles(half, half.conj())
 
     def at(self, degrees: Array) -> ComplexArray:
-        """Return the vectors (m,) at angles (m,) in degrees."""
-        return np.asarray(self._derivatives(degrees, 1)[0])
+        """Return the vectors (m,) at angles (m,) in degrees; a component that cancels is exactly 0."""
+        size = np.abs(self.forward).sum() + np.abs(self.backward).sum()
+        return np.asarray(unless_cancelled(self._derivatives(degrees, 1)[0], size))
 
     def _derivatives(self, degrees: Array, count: int) -> ComplexArray:
         """Return the vectors and their derivatives by φ, per radian, at angles (m,) in degrees, (count, m)."""

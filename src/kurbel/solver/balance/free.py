@@ -7,7 +7,7 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
-from kurbel.frozen import frozen
+from kurbel.frozen import frozen, values_of
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.fourier import coefficients
@@ -86,7 +86,7 @@ def of_throws(throws: Sequence[OwnThrow], curvature: Curvature = lambda one, ang
     found: dict[object, ComplexArray] = {}
     lines = []
     for throw in throws:
-        alike = (type(throw.mechanism), *vars(throw.mechanism).values())
+        alike = (type(throw.mechanism), *values_of(throw.mechanism).values())
         if alike not in found:
             found[alike] = _coefficients(throw, curvature)
         lines.append(found[alike] * throw.mass)

@@ -12,7 +12,7 @@ from kurbel.arrays import Array
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Cuts, Grid, Pieces, integral
 from kurbel.numerics.search import Curve, Extremes, Sampled, curves, extremes_of, sign_changes, zeros
-from kurbel.solver.bearings.directions import Plane, Unloaded, unloaded
+from kurbel.solver.bearings.directions import Plane, Unloaded, axial, unloaded
 from kurbel.solver.cylinder.following import Following
 from kurbel.solver.cylinder.pins import bends_of_size
 from kurbel.solver.figures import Columns, Results, passed_on
@@ -21,6 +21,8 @@ from kurbel.solver.shaft.statics import norm
 FRAMES = ("throw", "engine", "rod")
 _NO_LOAD = 1e-12
 """A load no larger than this beside the largest one is rounding and has no direction."""
+_ON_AXIS = 1e-12
+"""Degrees by which rounding turns a load aside that is along the axis of a frame, as that of a rod without mass."""
 
 
 class Loads(NamedTuple):
@@ -71,8 +73,7 @@ class Bearing(Results):
         found = self._evaluate(phi, within)
 
         def direction(frame: str) -> Array | None:
-            # of the two names of one direction the positive one
-            return np.where(found[frame].value == -180, 180.0, found[frame].value) if frame in found else None
+            return axial(found[frame].value, _ON_AXIS) if frame in found else None
 
         directions = {f"load_{frame}": partial(direction, frame) for frame in FRAMES}
         return Columns(phi, {"load": lambda: found["load"].value, **directions})

@@ -41,7 +41,13 @@ class Plane(NamedTuple):
         return bearing(self.across + self.along * 0.0, self.along + self.across * 0.0)
 
 
-_EQUAL = 1e-6  # degrees; by which rounding may part two pieces that are equally wide
+def axial(directions: Array, rounding: float) -> Array:
+    """Return directions (n,) in degrees, those along their axis but for this rounding as 0 or 180."""
+    along = np.rint(directions / 180.0) * 180.0
+    return np.where(np.abs(directions - along) <= rounding, np.abs(along), directions)
+
+
+_EQUAL = 1e-6  # degrees; by which rounding may move the ends of a piece, where next to no load tells them
 
 
 class Unloaded(NamedTuple):
@@ -72,4 +78,5 @@ def unloaded(direction: Array, joined: Flags) -> Unloaded:
     if not free.any():
         return Unloaded(0.0, None)
     widest = int(np.argmax(free & (gaps > gaps[free].max() - _EQUAL)))
-    return Unloaded(float(gaps[free].sum()), math.remainder(begins[1 + widest] - gaps[widest] / 2, 360.0))
+    middle = math.remainder(begins[1 + widest] - gaps[widest] / 2, 360.0)
+    return Unloaded(float(gaps[free].sum()), float(axial(np.asarray(middle), _EQUAL)))

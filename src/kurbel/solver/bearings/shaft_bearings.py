@@ -54,7 +54,7 @@ class RodPin(Bearing):
     def work_rubbing(self) -> float | None:
         """Work of its friction in J per cycle of the machine; None without a coefficient."""
         forces = self.followed[0].forces
-        work = forces.pin_works.work_of(self._pin)
+        work = forces.pin_work_of(self._pin)
         return None if work is None else work * (self._turns // forces.drive.revolutions)
 
 

@@ -1,5 +1,6 @@
 """The state of a cylinder at the nodes of a grid, of which a coarser grid has most pieces already."""
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -22,9 +23,15 @@ class Assembled:
         self._new = np.flatnonzero(new)
         self._coarser, self._finer = coarser, drive.on(grid.part(new))
         self._found: dict[str, Any] = {}
-        # of each piece the place among those of the coarser grid with the new ones after them
-        place = np.where(new, len(before.low) + np.cumsum(new) - 1, self._there)
-        self.inside = Inside.of_pieces(drive, (coarser.inside, self._finer.inside), place[:, None])
+        self._drive = drive
+
+    @cached_property
+    def inside(self) -> Inside:
+        """What all angles in each of the pieces share, as far as the columns that were asked for have found it."""
+        place = self._there.copy()
+        # the new ones stand after all of the coarser grid
+        place[self._new] = len(self._coarser.phi) + np.arange(len(self._new))
+        return Inside.of_pieces(self._drive, (self._coarser.inside, self._finer.inside), place[:, None])
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):

@@ -32,7 +32,7 @@ class Brake:
     @cached_property
     def _swept(self) -> float | None:
         """Volume in m³ that the cylinders' own pistons sweep per second against their pressures."""
-        speed, volumes = self.machine.speed, [forces.swept_rate for forces in self.cylinders]
+        speed, volumes = self.machine.speed, list(map(_swept_rate, self.cylinders))
         known = [volume for volume in volumes if volume is not None]
         return math.fsum(known) * speed if speed and len(known) == len(volumes) and known else None
 
@@ -57,3 +57,9 @@ class Brake:
         if not power or not indicated:
             return None
         return power / indicated if indicated > 0 else -indicated / power
+
+
+def _swept_rate(forces: "CylinderForces") -> float | None:
+    """Return the volume in m³ per turn that a cylinder's own piston sweeps against its pressures, once in a cycle."""
+    gas = forces.drive.own_gas
+    return None if gas is None else gas.swept_volume / forces.drive.revolutions

@@ -20,7 +20,7 @@ def gas_force(state: State) -> Any:
     """Return the force of gas, steam or water on all pistons in N, R 296."""
     if not state.drive.gas:
         return None
-    at_nodes = state.phi.shape != state.inside.angle.degrees.shape
+    at_nodes = state.phi.shape != state.inside.degrees.shape
     if at_nodes and all(gas.straight for gas in state.drive.gas):
         return _at_nodes(state)
     line = state.inside.gas_line

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from kurbel.solver.cylinder.brake import Brake
     from kurbel.solver.cylinder.guide_load import GuideLoad
     from kurbel.solver.cylinder.indicated import Indicated
-    from kurbel.solver.cylinder.pin_works import PinWorks
 
 
 class CylinderForces(Searched, Results):
@@ -59,18 +58,11 @@ class CylinderForces(Searched, Results):
         """What answers key values, the first that knows one; the others need not be made for it."""
         yield from (self, self.motion)
         if self.drive.has_force:
-            yield from (self.rod_load, self.pin_works, self.guide_load)
+            yield from (self.rod_load, self.guide_load)
         if self.drive.own_gas:
             yield self.indicated
             if self.drive.machine.brake_power is not None:
                 yield self.brake
-
-    @cached_property
-    def pin_works(self) -> "PinWorks":
-        """Works of friction in pins and journals."""
-        from kurbel.solver.cylinder.pin_works import PinWorks
-
-        return PinWorks(self)
 
     @cached_property
     def rod_load(self) -> RodLoad:
@@ -210,12 +202,6 @@ class CylinderForces(Searched, Results):
         gas = self.drive.own_gas
         return None if gas is None else gas.work / gas.swept_volume
 
-    @property
-    def swept_rate(self) -> float | None:
-        """Volume in m³ per turn that the cylinder's own piston sweeps against its pressures, once in a cycle."""
-        gas = self.drive.own_gas
-        return None if gas is None else gas.swept_volume / self.drive.revolutions
-
     @cached_property
     def work_sensitivity(self) -> float | None:
         """Change of the indicated work of the measured traces if they are put 0.1° later, over that work.
@@ -254,6 +240,25 @@ class CylinderForces(Searched, Results):
         friction = self.drive.cylinder.friction
         return None if friction is None or friction.constant is None else friction.constant * self.way
 
+    @cached_property
+    def _pin_works(self) -> dict[str, float]:
+        """Works of friction in pins and journals in J per cycle, by the keys of the coefficients that are given."""
+        friction = self.drive.cylinder.friction
+        given = friction.of_pins if friction and self.drive.has_force else ()
+        if not given or self.drive.pin_friction is None:
+            return dict.fromkeys(given, 0.0)
+        from kurbel.solver.cylinder.pin_works import pin_works
+
+        return pin_works(self.drive, self.grid, given)
+
+    def pin_work_of(self, name: str) -> float | None:
+        """Return the work of friction in J per cycle of `crank_pin`, `crosshead_pin` or `journals`; None without it."""
+        return self._pin_works.get(name)
+
+    def pin_loss_of(self, name: str) -> Any:
+        """Return the same over the work of the driving pistons."""
+        return self._of_driving(self.pin_work_of(name))
+
     @property
     def way(self) -> Any:
         """The way in m of what slides, there and back, per cycle."""
@@ -264,7 +269,7 @@ class CylinderForces(Searched, Results):
         """Work of all friction in J per cycle."""
         if not self.drive.has_force:
             return None
-        every = (self.crosshead_work, self.ring_work, self.constant_work, *self.pin_works.all)
+        every = (self.crosshead_work, self.ring_work, self.constant_work, *self._pin_works.values())
         given = [work for work in every if work is not None]
         return total(*given) if given else None
 

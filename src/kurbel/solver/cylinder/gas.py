@@ -104,12 +104,15 @@ class PistonGas:
         return math.hypot(*(noise * area for noise, (_, area) in zip(noises, ends) if noise))
 
     @cached_property
-    def clearance_volumes(self) -> tuple[float, float]:
+    def clearance_volumes(self) -> tuple[Any, Any]:
         """Smallest volumes in m³ of head end and crank end; 0 where one is not known."""
         indicator = self.piston.indicator
         chambers = (indicator.head_end, indicator.crank_end) if indicator else (None, None)
-        shares = [getattr(chamber, "clearance", None) or 0.0 for chamber in chambers]
-        return shares[0] * self.piston.head_area * self.stroke, shares[1] * self.piston.crank_area * self.stroke
+        head, crank = (getattr(chamber, "clearance", None) for chamber in chambers)
+        return (
+            0.0 if head is None else head * self.piston.head_area * self.stroke,
+            0.0 if crank is None else crank * self.piston.crank_area * self.stroke,
+        )
 
     @property
     def swept_volume(self) -> float:

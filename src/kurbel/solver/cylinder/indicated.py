@@ -2,12 +2,12 @@
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.numerics.arithmetic import unless_cancelled
+from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -42,10 +42,10 @@ class Indicated:
         return self._traces[0] if len(self._traces) == 1 else None
 
     @property
-    def V_clearance(self) -> float | None:
+    def V_clearance(self) -> Any:
         """Clearance of the head-end chamber in m³; None where it is not known."""
         volume = self.gas.clearance_volumes[0] if self.gas and self.gas.head else 0.0
-        return volume or None
+        return where(volume == 0, math.nan, volume) if some(volume != 0) else None
 
     @property
     def n_compression(self) -> float | None:

@@ -31,18 +31,25 @@ class GasLine(NamedTuple):
 
 
 class Inside:
-    """The pieces that hold some crank angles (n,), or (pieces, 1) once for all nodes of each.
+    """The pieces that hold some crank angles in degrees, (n,), or (pieces, 1) once for all nodes of each.
 
     States at other angles in the same pieces share it. rubs: whether friction in pins and journals counts.
     """
 
-    def __init__(self, drive: "Drive", angle: CrankAngle, rubs: bool = True) -> None:
+    def __init__(self, drive: "Drive", degrees: Array, rubs: bool = True) -> None:
         self.drive = drive
-        self.angle = angle
+        self.degrees = degrees
         self.rubs = rubs
         self._held: dict[int, Any] = {}
         self._side: Array | None = None
         self.gas_line: GasLine | None = None  # where a state at the nodes of the pieces has found it
+
+    @classmethod
+    def at(cls, drive: "Drive", angle: CrankAngle) -> "Inside":
+        """Return the pieces in which these angles themselves stand."""
+        found = cls(drive, angle.degrees)
+        found.angle = angle
+        return found
 
     @classmethod
     def of_pieces(cls, drive: "Drive", parts: "Sequence[Inside]", place: Indices) -> "Inside":
@@ -51,33 +58,40 @@ class Inside:
         place: (n,), or (n, 1) for all nodes of each; drive: of the variants that they are of.
         """
 
-        def at(*each: Any) -> Any:
+        def known(*each: Any) -> Any:
             return np.concatenate(each)[place, 0]
 
-        found = cls(drive, CrankAngle(*map(at, *(one.angle[:3] for one in parts))), parts[0].rubs)
-        found.direction = at(*(one.direction for one in parts))
+        found = cls(drive, known(*(one.degrees for one in parts)), parts[0].rubs)
+        found.direction = known(*(one.direction for one in parts))
         sides, lines = zip(*((one._side, one.gas_line) for one in parts))
-        found._side = None if any(one is None for one in sides) else at(*sides)
-        found.gas_line = GasLine(*map(at, *lines)) if all(lines) else None
+        found._side = None if any(one is None for one in sides) else known(*sides)
+        found.gas_line = GasLine(*map(known, *lines)) if all(lines) else None
         return found
 
     @property
     def unrubbed(self) -> "Inside":
         """The same without friction in pins and journals."""
-        return Inside(self.drive, self.angle, rubs=False)
+        found = Inside(self.drive, self.degrees, rubs=False)
+        found.angle = self.angle
+        return found
+
+    @cached_property
+    def angle(self) -> CrankAngle:
+        """The crank angles."""
+        return CrankAngle.of(self.degrees)
 
     @cached_property
     def direction(self) -> Array:
         """+1 on the outstroke, −1 on the return stroke; +1 for what turns on and on."""
         if self.drive.mechanism.turns:
-            return np.ones_like(self.angle.degrees)
+            return np.ones_like(self.degrees)
         inner, outer = self.drive.mechanism.dead_centres()
-        return np.where(np.mod(self.angle.degrees - inner, 360.0) < outer - inner, 1.0, -1.0)
+        return np.where(np.mod(self.degrees - inner, 360.0) < outer - inner, 1.0, -1.0)
 
     def held(self, end: "Pressure") -> Any:
         """Return what the pressure at an end of a piston holds there, as it is asked by it."""
         if id(end) not in self._held:
-            self._held[id(end)] = end.held(self.angle.degrees)
+            self._held[id(end)] = end.held(self.degrees)
         return self._held[id(end)]
 
     def guide_side(self, state: "State") -> Array:

@@ -1,7 +1,7 @@
 """Motion of one cylinder's mechanism: dead centres, strokes, velocities, accelerations and their exact extremes."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any
 
@@ -87,10 +87,10 @@ class Motion:
     @cached_property
     def _turn(self) -> Grid:
         """One revolution, cut at the landmarks of the mechanism only."""
-        landmarks = (*self.mechanism.dead_centres(), *self.mechanism.landmarks(), *range(0, 361, 45))
+        landmarks = (*self.mechanism.dead_centres(), *self.mechanism.landmarks())
         if self._count is not None:
             return cycles_of_turns(landmarks, 360.0, (), self._count)
-        return Grid(ascending(np.array([angle if angle == 360 else angle % 360.0 for angle in landmarks])))
+        return Grid(ascending(np.array([*range(0, 361, 45), *(angle % 360.0 for angle in landmarks)])))
 
     @cached_property
     def _count(self) -> int | None:
@@ -103,34 +103,39 @@ class Motion:
 
     @cached_property
     def _velocity(self) -> Extremes:
-        return self._extremes(lambda one, angle: one.slope(angle), 1, self.mechanism.velocity_extremes())
+        return self._times_omega(_of_closed(self.mechanism.velocity_extremes()) or self._searched["slope"], 1)
 
     @cached_property
     def _acceleration(self) -> Extremes:
-        return self._extremes(_curvature, 2, self.mechanism.acceleration_extremes())
+        return self._times_omega(_of_closed(self.mechanism.acceleration_extremes()) or self._searched["curvature"], 2)
 
-    def _extremes(self, function: "Kinematic", order: int, closed: tuple[Extreme, ...] = ()) -> Extremes:
-        """Return the extremes over a turn of a function of the crank angle times ω^order.
+    @cached_property
+    def _evaluate(self) -> "_Evaluated":
+        """What is searched where the mechanism has no closed extremes, which are as exact and take a quarter of it."""
+        return _Evaluated(self.mechanism, {"slope": lambda one, angle: one.slope(angle), "curvature": _curvature})
 
-        closed: where the mechanism has them. The search is as exact, and takes a sweep over them four times as long.
-        """
+    @cached_property
+    def _samples(self) -> dict[str, Sampled]:
+        return self._evaluate.on(self._turn)
+
+    @cached_property
+    def _searched(self) -> dict[str, Extremes]:
+        return extremes(self._turn, self._samples, self._evaluate)
+
+    def _times_omega(self, found: Extremes, order: int) -> Extremes:
+        """Return extremes over a turn times ω^order."""
         # a power would raise where a product is inf, which is refused by name
         scale = math.prod((0.0 if self.omega is None else self.omega,) * order)
-        found = _of_closed(closed) if closed else self._searched(function)
         return Extremes(*(Extreme(one.value * scale, one.degrees) for one in found))
-
-    def _searched(self, function: "Kinematic") -> Extremes:
-        """Search the extremes of a kinematic quantity over one revolution by the roots of its slope."""
-        evaluate = _Evaluated(self.mechanism, function)
-        return extremes(self._turn, evaluate.on(self._turn), evaluate)["it"]
 
     @cached_property
     def _offered_extremes(self) -> dict[str, Extremes]:
-        return {
-            offer.quantity.id: self._extremes(offer.factor, len(offer.times))
-            for offer in self.mechanism.OFFERS
-            if "motion" in offer.quantity.extremes and self.omega is not None
-        }
+        offers = [one for one in self.mechanism.OFFERS if "motion" in one.quantity.extremes]
+        if self.omega is None or not offers:
+            return {}
+        evaluate = _Evaluated(self.mechanism, {one.quantity.id: one.factor for one in offers})
+        found = extremes(self._turn, evaluate.on(self._turn), evaluate)
+        return {one.quantity.id: self._times_omega(found[one.quantity.id], len(one.times)) for one in offers}
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes over a turn of a column that the mechanism offers; None for what does not vary."""
@@ -192,8 +197,8 @@ class Motion:
         if closed:
             angles = np.sort(np.stack([extreme.degrees for extreme in closed], axis=-1))
             return tuple(angles.tolist() if angles.ndim == 1 else map(tuple, angles.tolist()))
-        evaluate = _Evaluated(self.mechanism, _curvature)
-        found = zeros(self._turn, evaluate.on(self._turn), evaluate)["it"]
+        samples, alone = {"curvature": self._samples["curvature"]}, {"curvature": _curvature}
+        found = zeros(self._turn, samples, _Evaluated(self.mechanism, alone))["curvature"]
         return tuple(found.tolist()) if self._count is None else found.of_each(self._count)
 
 
@@ -206,27 +211,31 @@ def _curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
 
 
 class _Evaluated:
-    """A function of the mechanism with its slope; see `search.Evaluate`."""
+    """Functions of the mechanism by name, with their slopes; see `search.Evaluate`."""
 
-    def __init__(self, mechanism: Mechanism, function: Kinematic) -> None:
+    def __init__(self, mechanism: Mechanism, functions: Mapping[str, Kinematic]) -> None:
         self.mechanism = mechanism
-        self.function = function
+        self.functions = functions
 
     def __call__(self, degrees: Array, within: Array) -> dict[str, Sampled]:
-        return {"it": Sampled.of(self.function(self.mechanism, CrankAngle.of(degrees).jets), degrees.shape)}
+        angle = CrankAngle.of(degrees).jets
+        return {
+            name: Sampled.of(function(self.mechanism, angle), degrees.shape)
+            for name, function in self.functions.items()
+        }
 
     def of(self, variant: Indices) -> "_Evaluated":
         """Return the same of these variants."""
-        return _Evaluated(taken(self.mechanism, variant), self.function)
+        return _Evaluated(taken(self.mechanism, variant), self.functions)
 
     def on(self, grid: Grid) -> dict[str, Sampled]:
-        """Return it at the nodes of a grid."""
+        """Return them at the nodes of a grid."""
         asked = self if grid.variant is None else self.of(grid.variant[:, None])
         return asked(grid.degrees, grid.within)
 
 
-def _of_closed(found: tuple[Extreme, ...]) -> Extremes:
-    return Extremes(largest(*found), smallest(*found))
+def _of_closed(found: tuple[Extreme, ...]) -> Extremes | None:
+    return Extremes(largest(*found), smallest(*found)) if found else None
 
 
 def _within_turn(degrees: Any) -> Any:

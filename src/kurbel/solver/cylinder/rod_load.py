@@ -4,12 +4,14 @@ Unless crosshead pin and bush part once in every turn, no oil comes between them
 for 15° of crank angle and 3 % of the larger load in the other direction. It takes both every 5°, kurbel at the roots.
 """
 
-import math
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
+from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.search import Extremes
 
@@ -55,43 +57,71 @@ class RodLoad:
     def compression_max(self, column: str) -> Extreme | None:
         """Return the largest force in N toward the shaft; 0, where it comes nearest, if none."""
         found = self._extremes(column)
-        return found and Extreme(max(found.largest.value, 0.0), found.largest.degrees)
+        return found and _at_least_zero(found.largest.value, found.largest.degrees)
 
     def tension_max(self, column: str) -> Extreme | None:
         """Return the size of the largest force in N away from the shaft; 0, where it comes nearest, if none."""
         found = self._extremes(column)
-        return found and Extreme(max(-found.smallest.value, 0.0), found.smallest.degrees)
+        return found and _at_least_zero(-found.smallest.value, found.smallest.degrees)
 
     @cached_property
-    def phi_rod_reversal(self) -> tuple[float, ...] | None:
-        """Crank angles in degrees at which the rod load takes the other sign; within the noise of a trace, once."""
+    def phi_rod_reversal(self) -> tuple[Any, ...] | None:
+        """Crank angles in degrees at which the rod load takes the other sign; within the noise of a trace, once.
+
+        Of many variants one tuple each.
+        """
         return self._forces.reversals_of("P_rod")
 
     @cached_property
-    def _reversed(self) -> tuple[float, ...]:
-        """Degrees of crank angle of every stretch of pressing, or of pulling, whichever lasts for less of the cycle."""
-        turns = self.phi_rod_reversal
-        if not turns:
-            return ()
-        ends = np.array([*turns, turns[0] + self._forces.drive.cycle])
-        presses = np.asarray(self._forces.at((ends[:-1] + ends[1:]) / 2).P_rod) > 0
-        each = (tuple(np.diff(ends)[way].tolist()) for way in (presses, ~presses))
-        return min(each, key=math.fsum)
+    def _reversed(self) -> Array | None:
+        """Degrees of crank angle per cycle on which the rod is pressed, or pulled, whichever is less, (2, variants).
+
+        All of them, and the longest stretch; 0 where the load does not reverse, None without one.
+        """
+        drive, turns = self._forces.drive, self.phi_rod_reversal
+        if turns is None:
+            return None
+        each = [turns] if drive.count is None else turns
+        whose = np.repeat(np.arange(len(each)), [len(one) for one in each])
+        start = np.array([*chain.from_iterable(each)])
+        first, last = np.flatnonzero(np.diff(whose, prepend=-1)), np.flatnonzero(np.diff(whose, append=-1))
+        end = np.append(start[1:], 0.0)[: len(start)]
+        end[last] = start[first] + drive.cycle
+        presses = np.asarray((drive if drive.count is None else drive.taken(whose)).at((start + end) / 2).P_rod) > 0
+        pressed, pulled = (_stretches(whose[way], (end - start)[way], len(each)) for way in (presses, ~presses))
+        return np.where(pulled[0] < pressed[0], pulled, pressed)
+
+    def _told(self, values: Array) -> Any:
+        """Return what was found of every variant (v,), or of the only machine as a number."""
+        return values if self._forces.drive.count is not None else float(values[0])
 
     @property
-    def reversal_angle(self) -> float | None:
+    def reversal_angle(self) -> Any:
         """Degrees of crank angle per cycle of the reversed load; 0 where it does not reverse."""
-        return None if self.phi_rod_reversal is None else math.fsum(self._reversed)
+        return None if self._reversed is None else self._told(self._reversed[0])
 
     @property
-    def reversal_longest(self) -> float | None:
+    def reversal_longest(self) -> Any:
         """The longest of its stretches in degrees."""
-        return None if self.phi_rod_reversal is None else max(self._reversed, default=0.0)
+        return None if self._reversed is None else self._told(self._reversed[1])
 
     @property
-    def reversal_ratio(self) -> float | None:
+    def reversal_ratio(self) -> Any:
         """Smaller peak of the rod load over the larger one; 0 where it does not reverse."""
-        if self.phi_rod_reversal is None or not self._reversed:
-            return self.reversal_angle
-        peaks = sorted(abs(one.value) for one in self._extremes("P_rod") or ())
-        return peaks[0] / peaks[1]
+        angle, peaks = self.reversal_angle, self._extremes("P_rod")
+        if angle is None or peaks is None or not some(angle > 0):
+            return angle
+        pressed, pulled = (abs(one.value) for one in peaks)
+        ratio = where(pressed < pulled, pressed, pulled) / where(pressed < pulled, pulled, pressed)
+        return where(angle > 0, ratio, 0.0)
+
+
+def _stretches(whose: Indices, degrees: Array, count: int) -> Array:
+    """Return the sum of the stretches (n,) of each of so many variants, and the longest, (2, count)."""
+    longest = np.zeros(count)
+    np.maximum.at(longest, whose, degrees)
+    return np.stack((np.bincount(whose, degrees, count), longest))
+
+
+def _at_least_zero(value: Any, degrees: Any) -> Extreme:
+    return Extreme(where(value > 0, value, 0.0), degrees)

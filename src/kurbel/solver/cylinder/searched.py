@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.crank_angle import CrankAngle
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.cycles import Flat
@@ -59,7 +58,7 @@ class Quantities:
     def inside(self, grid: Grid, piece: Indices) -> Inside:
         """Return what all angles in these pieces (n,) share."""
         if self.known is None:
-            return Inside(self.drive, CrankAngle.of(grid.within[piece, 0]))
+            return Inside(self.drive, grid.within[piece, 0])
         return Inside.of_pieces(self.drive, (self.known,), piece)
 
     def on(self, grid: Grid, state: State | Assembled) -> Samples:
@@ -177,15 +176,18 @@ class Searched:
 
         Of those that are the noise of a trace alone the middle one stands for all. Of many variants one tuple each.
         """
-        if isinstance(self._reversals, Flat):
-            return self._reversals.of_each(self.drive.count or 0)
         return self._lasting("P", self._reversals)
 
-    def reversals_of(self, column: str) -> tuple[float, ...] | None:
-        """Return the crank angles in degrees at which a force of the gas takes the other sign for longer than noise."""
+    def reversals_of(self, column: str) -> tuple[Any, ...] | None:
+        """Return the crank angles in degrees at which a force of the gas takes the other sign for longer than noise.
+
+        Of many variants one tuple each.
+        """
         return None if getattr(self.samples, column) is None else self._lasting(column, self._changes(column))
 
-    def _lasting(self, column: str, changes: Any) -> tuple[float, ...] | None:
+    def _lasting(self, column: str, changes: Any) -> tuple[Any, ...] | None:
+        if isinstance(changes, Flat):
+            return changes.of_each(self.drive.count or 0)
         if changes is None or not self._noise:
             return None if changes is None else tuple(changes.tolist())
         return tuple(lasting(self._whole(column), changes, _SURE * self._noise).tolist())

@@ -35,8 +35,8 @@ class State:
         self.drive = drive
         self.angle = angle
         if within is None:
-            within = Inside(drive, angle)
-        self.inside = within if isinstance(within, Inside) else Inside(drive, CrankAngle.of(once_each(within)))
+            within = Inside.at(drive, angle)
+        self.inside = within if isinstance(within, Inside) else Inside(drive, once_each(within))
 
     guide_sense = cached_property(guide.guide_sense)
     N = cached_property(guide.guide_force)

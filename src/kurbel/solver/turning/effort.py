@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.crank_angle import CrankAngle
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.brackets import Sampled
@@ -59,7 +58,7 @@ class CylinderEffort:
 
     def inside(self, within: Array) -> Inside:
         """Return what all angles in the pieces share that hold these (n,)."""
-        return Inside(self._drive, CrankAngle.of((within - self._behind(within)).ravel()))
+        return Inside(self._drive, (within - self._behind(within)).ravel())
 
     def _behind(self, degrees: Array) -> Array:
         return self._positions.reshape(-1, *(1 for _ in degrees.shape))

@@ -83,8 +83,14 @@ class Excess:
         """Return E in J at crank angles (…,) in degrees, counted from φ = 0; an angle's E hangs on no other one."""
         if not self.crossings:
             return np.zeros_like(degrees)
-        found = self.line.integral_to(np.mod(degrees, self.cycle))
+        since = np.mod(degrees, self.cycle)
+        found = self.line.integral_to(since) - self._gained * (since / self.cycle)
         return np.asarray(unless_cancelled(found, self._to_and_fro))
+
+    @cached_property
+    def _gained(self) -> float:
+        """E in J at the end of the cycle: what the rounding of the mean leaves of 0."""
+        return float(self.line.integral_to(np.array(self.cycle)))
 
     @cached_property
     def _to_and_fro(self) -> float:
