@@ -82,7 +82,7 @@ def main() -> None:
     vary = ("rod_ratio=uniform(3, 6)", "speed=uniform(40, 60 rpm)")
     begin = time.process_time()
     sweep = Sweep(Spec(source.read(CONFIGS / f"{WATERWORKS}.yaml"), vary=vary, sample=rows))
-    titles = Titles(tuple((one.id, one.unit) for one in sweep.heads))
+    titles = Titles(tuple((one.id, one.unit) for one in sweep.heads), sweep.texts)
     size = sum(map(len, csv_rows(titles, rows_of(sweep, range(rows)), Look("csv"))))
     told(f"{rows} rows with {len(sweep.heads)} columns as csv", time.process_time() - begin, rows)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
