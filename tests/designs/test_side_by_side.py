@@ -183,6 +183,16 @@ def test_machines_that_differ_in_kind_keep_their_order() -> None:
         assert max(distance(a, b) for a, b in zip(values, single, strict=True)) <= 1e-12
 
 
+@pytest.mark.parametrize("key", ["crank", "rod", "offset"])
+def test_one_length_of_an_offset_slider_crank_may_differ(key: str) -> None:
+    lengths = {"crank": 400, "rod": 2000, "offset": 20}
+    texts = [lengths | {key: lengths[key] + more} for more in (0, 3, 5, 8)]
+    machines = [loads("speed: 50 rpm\n" + "".join(f"{k}: {v} mm\n" for k, v in text.items())) for text in texts]
+    asked = [part for one in asked_of(machines[0]) for part in with_angle(one)]
+    for machine, values in zip(machines, together(machines, asked)):
+        assert max(distance(a, b) for a, b in zip(values, alone(machine, asked), strict=True)) <= 1e-12
+
+
 def test_what_differs_may_be_anything() -> None:
     """Ambient, speed, card, masses, friction and rod at once; absolute pressures."""
     text = STEAM.replace("indicator:", "indicator:\n  pressures: absolute")

@@ -38,7 +38,7 @@ def bearing(sin: Any, cos: Any) -> Any:
     >>> bearing(1.0, 0.0)
     90.0
     """
-    if isinstance(sin, (float, int)):
+    if isinstance(sin, (float, int)) and isinstance(cos, (float, int)):
         return math.degrees(math.atan2(sin, cos))
     if hasattr(sin, "bearing"):
         return sin.bearing(cos)
