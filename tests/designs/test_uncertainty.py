@@ -97,6 +97,22 @@ def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> 
     assert "speed" in page
 
 
+def test_stress_tells_it_beside_its_key_values() -> None:
+    """The full force goes with bore², the safety against it of a pin of 0.1 % uncertain k_b likewise."""
+    engine = str(WATERWORKS.parent / "gas-engine.yaml")
+    spreads = ["--uncertainty", "bore=0.5 %", "--uncertainty", "crankshaft.allowable_bending=0.1 %"]
+    result = CliRunner().invoke(command, ["stress", engine, "--key-values", "-f", "json", *spreads])
+    assert result.exit_code == 0, result.output
+    table = json.loads(result.stdout)["machine_place_tables"][-1]
+    assert table["id"] == "uncertainty"
+    told = {column["id"]: column["values"] for column in table["columns"]}
+    names = [row["key_value"] for row in table["rows"]]
+    force, safety = names.index("P_dc"), names.index("safety_pin_min")
+    assert told["uncertainty"][force] == pytest.approx(0.01 * told["value"][force], rel=1e-8)
+    assert told["bore"][force] == 100
+    assert 0.001 * told["value"][safety] < told["uncertainty"][safety] < 0.0101 * told["value"][safety]
+
+
 def _rig(folder: Path) -> Path:
     """A test rig: a compression and an expansion with exponents 1.35 and 1.28, 16.5 : 1, three noisy cycles."""
     angles = np.arange(0, 720, 1.0)

@@ -32,7 +32,7 @@ def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report
     """
     (whole,) = subjects(case)
     tables = tuple(_place_tables(case.stress, frame.system))
-    whole = replace(whole, name=case.machine.name, place_tables=tables, at=None if places_only else whole.at)
+    whole = replace(whole, place_tables=tables, at=None if places_only else whole.at)
     cool, verdict = shell_verdict(case.stress)
     notes = (*_NOTES, *((_TURNING_ROD,) if case.stress.C_rod else ()), *(verdict if cool else ()))
     return frame.report(case.machine, "Festigkeit der Kurbelwelle", (), whole, notes)
