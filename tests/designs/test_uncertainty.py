@@ -65,6 +65,18 @@ def test_what_bends_is_told_by_a_sample() -> None:
     assert one.spread == pytest.approx(np.nanstd(drawn), rel=0.15)
 
 
+def test_shares_of_a_sample_are_told_as_what_they_are() -> None:
+    """m g sin i along the stroke line is largest upright, where it turns back: it does not go with the angle at all."""
+    args = ["forces", "-", "--key-values", "--uncertainty", "inclination=5 deg"]
+    text = "{crank: 400 mm, rod_ratio: 5, inclination: 90 deg, masses: {reciprocating: 100 kg}}"
+    page = CliRunner().invoke(command, args, input=text).stdout
+    (line,) = (line for line in page.splitlines() if line.startswith("P_start_max"))
+    share, count = line.split()[-2:]
+    assert count == "2000"
+    assert float(share) < 10
+    assert "squares of correlations" in " ".join(page.split())
+
+
 @pytest.mark.slow
 def test_first_order_is_that_of_a_large_sample() -> None:
     """Sampling noise of a standard deviation from n drawn ones is 1/√(2n)."""
