@@ -206,6 +206,23 @@ def test_an_unloaded_arc_beside_a_load_that_vanishes() -> None:
     assert pin.unloaded_arc == pytest.approx(360 - 120 - np.ptp(turned), abs=1e-6)
 
 
+@pytest.mark.parametrize("pressure", [0.73, 0.87, 1.15])
+def test_an_unloaded_arc_ends_where_the_load_vanishes(pressure: float) -> None:
+    """The rod alone loads this pin, pulling over ±φ_0 and pressing over the rest, with ε = −φ − ψ but for a half turn.
+
+    Of two arcs about one middle, a and 180° − a to either side with a = φ_0 + ψ_0, and 60° more, the wider one counts.
+    """
+    case = Case(
+        loads(
+            "{speed: 300 rpm, crank: 80 mm, rod_ratio: 4, bore: 100 mm, masses: {piston: 20 kg}, "
+            f"indicator: {{head_end: {pressure} bar}}}}"
+        )
+    )
+    change = case.cylinders[0].phi_reversal[0]
+    turned = change + math.degrees(math.asin(math.sin(math.radians(change)) / 4))
+    assert case.bearings.parts[0].unloaded_arc == pytest.approx(240 - 2 * max(turned, 180 - turned), abs=1e-9)
+
+
 def test_unloaded_arcs_against_many_samples() -> None:
     """Of the gas engine, by marking every hundredth of a degree that any of 36 000 loads reaches."""
     for part in Case(loads(ENGINE)).bearings.parts:

@@ -310,5 +310,8 @@ def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], sys
 def _notes(found: Sequence[Uncertain]) -> Iterable[str]:
     yield "Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."
     if any(one.sample for one in found):
-        yield "Those with a sample bend too much for that and come from so many drawn machines."
+        yield (
+            "Those with a sample bend too much for that and come from so many drawn machines; their shares are squares "
+            "of correlations, which fall short of 100 % where an answer turns back."
+        )
     yield from dict.fromkeys(one.failed for one in found if one.failed)

@@ -160,12 +160,26 @@ class Bearing(Results):
     def _unloaded(self, frame: str) -> Unloaded | None:
         """Return the arc of the surface that stands still in a frame; None where it is loaded nowhere."""
         curve = self._curves[frame]
-        loads = self._evaluate(curve.degrees, curve.within)["load"].value
-        loaded = np.flatnonzero(loads > _NO_LOAD * self.load_max.value)
-        if not len(loaded):
+        load, setting_out = self._load_and_slope(frame, curve)
+        loaded = load.size > _NO_LOAD * self.load_max.value
+        if not loaded.any():
             return None
-        joined = (np.diff(loaded) == 1) & (np.diff(curve.row[loaded]) == 0)
-        return unloaded(curve.value[loaded] + self.contact, joined)
+        end = np.diff(curve.row, prepend=-1).astype(bool) | np.diff(curve.row, append=-1).astype(bool)
+        vanishing = end & (setting_out.size > 0) & np.isin(curve.row, curve.row[loaded])
+        told = np.flatnonzero(loaded | vanishing)
+        direction = np.where(loaded, curve.value, setting_out.direction)[told]
+        joined = (np.diff(told) == 1) & (np.diff(curve.row[told]) == 0)
+        return unloaded(direction + self.contact, joined)
+
+    def _load_and_slope(self, frame: str, curve: Curve) -> tuple[Plane, Plane]:
+        """Return the load at the points of a curve, and its slope per degree into the piece.
+
+        Where a load passes zero it turns by half, and its pieces begin and end in the direction of that slope.
+        """
+        loads = self.loads(curve.degrees, curve.within).frames[frame]
+        along, across = (Sampled.of(one, curve.degrees.shape) for one in loads)
+        inward = np.sign(curve.within - curve.degrees)
+        return Plane(along.value, across.value), Plane(along.slope * inward, across.slope * inward)
 
     @cached_property
     def _of_journal(self) -> Unloaded | None:

@@ -8,7 +8,7 @@ import numpy as np
 from kurbel.arrays import Array, Flags
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.arithmetic import bearing
-from kurbel.solver.shaft.statics import Vector
+from kurbel.solver.shaft.statics import Vector, norm
 
 HALF_CONTACT = 60.0
 """Degrees to either side of a load over which pin and shell are taken to touch."""
@@ -33,6 +33,11 @@ class Plane(NamedTuple):
         """Return the same for an angle in degrees."""
         angle = CrankAngle.of(degrees)
         return self.turned(angle.cos, angle.sin) if degrees else self
+
+    @property
+    def size(self) -> Any:
+        """The magnitude of the load in N."""
+        return norm(self.along, self.across)
 
     @property
     def direction(self) -> Any:
