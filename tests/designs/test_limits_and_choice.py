@@ -97,6 +97,11 @@ def test_a_column_asked_for_twice_is_one() -> None:
     ]  # fmt: skip
 
 
+def test_ids_that_are_a_symbol_together_are_two_columns() -> None:
+    """`p_max,m` is also the mean of the largest pressures of a trace."""
+    assert list(rows("--vary", "rod_ratio=5", "--columns", "p_max,m")[0])[2:4] == ["p_max_Pa", "m_kg"]
+
+
 def test_every_extreme_has_its_angle() -> None:
     """Not of `forces` alone: ω_max of the speed line, loads and stresses stand somewhere, too."""
     file = str(CONFIGS / "gas-engine.yaml")

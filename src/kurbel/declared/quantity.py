@@ -163,12 +163,16 @@ def ambiguity(name: str, found: tuple[str, ...]) -> str:
 def joined(words: Iterable[str], quantities: Iterable[Quantity]) -> Iterator[str]:
     """Yield names that were split at their commas as they were before: `σ_w` and `A` are one where `σ_w,A` is known.
 
+    Words that are ids, as `p_max` and `m`, are those, whatever symbol they might be together.
+
     >>> list(joined(["T", "F_z", "max"], [Quantity("F_pin", "F_z,max", "force", "Force on the pin")]))
     ['T', 'F_z,max']
     """
     rest, known = list(words), tuple(quantities)
+    ids = {one.id for one in known}
     while rest:
-        names = (",".join(rest[:count]) for count in range(min(len(rest), 4), 1, -1))
+        parts = (rest[:count] for count in range(min(len(rest), 4), 1, -1))
+        names = (",".join(part) for part in parts if not ids.issuperset(part))
         name = next((name for name in names if called(name, known)), rest[0])
         del rest[: name.count(",") + 1]
         yield name
