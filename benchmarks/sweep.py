@@ -34,13 +34,13 @@ CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = "waterworks"
 OTHERS = ("locomotive", "gas-engine", "offset-engine", "steam-ideal", "diesel-two-stroke", "gas-engine-double-acting")
 """Machines whose rods and speeds are varied, too."""
-SINGLE = 30
+SINGLE, RUNS = 10, 8
 
 
 def seconds(task: Callable[[], object]) -> float:
-    """Processor time of a task, the less of two runs."""
+    """Processor time of a task, the least of so many runs: others on the machine make it only longer."""
     times = []
-    for _ in range(2):
+    for _ in range(RUNS):
         begin = time.process_time()
         task()
         times.append(time.process_time() - begin)
