@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +27,9 @@ from kurbel.machine.variants import Lot
 from kurbel.mechanisms import quantities_of
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.yoke_frame import YokeFrame
+from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.rod_load import RodLoad
+from kurbel.solver.cylinder.state import State
 from random_cylinders import random_cylinder
 
 
@@ -208,6 +212,24 @@ def test_what_differs_may_be_anything() -> None:
     asked = asked_of(machines[0])
     for machine, values in zip(machines, together(machines, asked)):
         assert max(distance(a, b) for a, b in zip(values, alone(machine, asked), strict=True)) <= 1e-12
+
+
+def test_many_machines_leave_nothing_for_the_garbage_collection() -> None:
+    """Of a chunk it would be a hundred megabytes. A compressor has parts that point back to its forces."""
+
+    def alive() -> int:
+        return sum(type(one) in (CylinderForces, RodLoad, State) for one in gc.get_objects())
+
+    machines = [load(CONFIGS / "compressor.yaml", overrides=[f"speed={speed} rpm"]) for speed in (400, 410, 420)]
+    asked = asked_answers(machines[0], ("rod_tension_max", "reversal_angle", "T_max"))
+    gc.collect()
+    gc.disable()
+    try:
+        before = alive()
+        assert not isinstance(together(machines, list(asked))[0], str)
+        assert alive() == before
+    finally:
+        gc.enable()
 
 
 class Options:

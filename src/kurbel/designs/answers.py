@@ -130,7 +130,10 @@ class _Answers:
 
     def _columns(self, rows: list[int]) -> list[Any]:
         cylinders = {name: self._stack(rows, name) for name in self._names}
-        return [one.part_of(answered(cylinders[one.subject].answering, one.quantity)) for one in self._asked]
+        found = [one.part_of(answered(cylinders[one.subject].answering, one.quantity)) for one in self._asked]
+        for one in cylinders.values():
+            vars(one).clear()  # its parts point back: in a circle the arrays of a chunk would outlive many others
+        return found
 
     def _stack(self, rows: list[int], name: str) -> CylinderForces:
         places: dict[int, list[int]] = {}
