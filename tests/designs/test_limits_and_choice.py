@@ -66,6 +66,31 @@ def test_rows_are_chosen_by_their_texts() -> None:
     assert "no column 'keep'; did you mean 'keeps'?" in wrong.output
 
 
+@pytest.mark.parametrize(
+    ("condition", "message"),
+    [
+        ("keeps < yes", "keeps has words, of which none is less than another; write = or !="),
+        ("rotation > over", "rotation has words, of which none is less than another"),
+        ("keeps = ja", "keeps is yes, no, or nothing where a limit cannot be judged"),
+    ],
+)
+def test_words_are_alike_or_not(condition: str, message: str) -> None:
+    """Letters have an order, which is none of designs: 'keeps < yes' kept what breaks limits, or failed."""
+    result = run("--vary", "rotation=over,under", "--set", "limits.N_max=20 kN", "--where", condition)
+    assert (result.exit_code, f"--where {condition}: {message}" in result.output) == (2, True)
+
+
+def test_an_infinite_rod_is_the_longest() -> None:
+    """It stands in the table as a word, and counted as having no length: no front of Pareto had it."""
+    asked = ("--vary", "rod_ratio=4,infinite,0.5,3", "--columns", "T_max")
+    assert numbers(*asked, "--sort", "-rod_ratio") == [2, 1, 4, 3]
+    assert numbers(*asked, "--sort", "rod_ratio") == [3, 4, 1, 2]
+    assert numbers(*asked, "--pareto", "rod_ratio,T_max") == [1, 2, 4]
+    assert numbers(*asked, "--pareto", "-rod_ratio,T_max") == [2]
+    assert numbers(*asked, "--where", "rod_ratio > 3.5") == [1, 2]
+    assert numbers(*asked, "--where", "rod_ratio = infinite") == [2]
+
+
 def test_rows_are_chosen_by_printed_symbols() -> None:
     asked = (*RATIOS, "--columns", "dE,P_start_max")
     assert numbers(*asked, "--sort", "-ΔE", "--top", "1") == numbers(*asked, "--pareto", "-ΔE") == [2]

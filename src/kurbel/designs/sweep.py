@@ -79,10 +79,11 @@ class Row(NamedTuple):
 
     def text(self, name: str) -> str:
         """Return what stands in the row under `keeps`, `broken` or `failure`."""
-        return _KEPT[self.keeps] if name == "keeps" else str(getattr(self, name))
+        return KEPT[self.keeps] if name == "keeps" else str(getattr(self, name))
 
 
-_KEPT = {True: "yes", False: "no", None: ""}
+KEPT = {True: "yes", False: "no", None: ""}
+"""What is told of limits that are kept, are not, and cannot be judged."""
 
 
 class Sweep:
