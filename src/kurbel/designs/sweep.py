@@ -113,7 +113,7 @@ class Sweep:
                 return Binder(self.spec.origin, keys, texts)
             except MachineFileError as error:
                 failed = failed or str(error)
-        raise UsageError(failed or "there is no row to compute")
+        raise UsageError(failed)
 
     def _starts(self, keys: Sequence[str]) -> Iterator[Sequence[str]]:
         """Yield texts that may make a machine: those of the file of one that was read, else rows of the whole plan."""
