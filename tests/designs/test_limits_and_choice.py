@@ -72,11 +72,13 @@ def test_rows_are_chosen_by_their_texts() -> None:
         ("keeps < yes", "keeps has words, of which none is less than another; write = or !="),
         ("rotation > over", "rotation has words, of which none is less than another"),
         ("keeps = ja", "keeps is yes, no, or nothing where a limit cannot be judged"),
+        ("N_max > 3", "3 has no unit; write it with one, such as '3 N'\n"),
     ],
 )
-def test_words_are_alike_or_not(condition: str, message: str) -> None:
+def test_conditions_that_are_none(condition: str, message: str) -> None:
     """Letters have an order, which is none of designs: 'keeps < yes' kept what breaks limits, or failed."""
-    result = run("--vary", "rotation=over,under", "--set", "limits.N_max=20 kN", "--where", condition)
+    asked = ("--vary", "rotation=over,under", "--columns", "N_max", "--set", "limits.N_max=20 kN")
+    result = run(*asked, "--where", condition)
     assert (result.exit_code, f"--where {condition}: {message}" in result.output) == (2, True)
 
 

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.declared.numerals import NUMBER, plain
+from kurbel.declared.numerals import plain
 from kurbel.declared.quantity import called
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
-from kurbel.declared.units import example, parse_quantity
+from kurbel.declared.units import parse_quantity
 from kurbel.designs.sweep import KEPT, Head, Row
 from kurbel.errors import UnitError, UsageError
 from kurbel.mechanisms import every_quantity
@@ -66,8 +66,7 @@ def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Co
     try:
         value = math.inf if head.input and written == _INFINITE else parse_quantity(written, head.kind)
     except UnitError as error:
-        hint = f"; write for instance {example(head.kind)}" if NUMBER.fullmatch(written) else ""
-        raise UsageError(f"--where {shown(text)}: {error}{hint}") from None
+        raise UsageError(f"--where {shown(text)}: {error}") from None
     return Condition(place, relation, convert(value, head.kind, head.unit))
 
 
