@@ -149,6 +149,23 @@ def test_designs_that_fail_at_the_beginning_stay() -> None:
     assert locked[1]["N_max_N"] == pytest.approx(single["N_max"].value, rel=1e-13)
 
 
+@pytest.mark.parametrize("asked", [("--columns", "delta"), ("--columns", "N_max", "--set", "limits.delta=1/50")])
+def test_designs_that_lock_at_the_beginning_stay(asked: tuple[str, ...]) -> None:
+    """Also where the speed line is asked for, of which a machine that locks itself tells nothing, or a bound on it."""
+    locked, turning = rows("--vary", "friction.crosshead=8,0.1", "--set", "flywheel.inertia=5e4 kg m2", *asked)
+    assert "locks itself" in str(locked["failure"])
+    assert turning["failure"] is None
+    alone = run("--vary", "friction.crosshead=8", "--set", "flywheel.inertia=5e4 kg m2", *asked)
+    assert (alone.exit_code, "locks itself" in alone.output) == (3, True)
+
+
+def test_python_may_begin_with_a_design_that_locks() -> None:
+    machine = kurbel.load(WATERWORKS, ["friction.crosshead=8", "flywheel.inertia=5e4 kg m2"])
+    found = kurbel.sweep(machine, {"friction.crosshead": [8.0, 0.1]}, "delta")
+    single = kurbel.solve(kurbel.load(WATERWORKS, ["flywheel.inertia=5e4 kg m2"])).flywheel.delta
+    assert (np.isnan(found["delta"][0]), found["delta"][1]) == (True, pytest.approx(single, rel=1e-13))
+
+
 def test_python_is_told_why_the_only_design_fails() -> None:
     """As an optimiser may ask for one design at a time, and for one key value of it."""
     found = kurbel.sweep(kurbel.load(WATERWORKS), {"rod_ratio": [0.5]}, "N_max")
