@@ -178,6 +178,13 @@ def test_a_key_in_two_spellings_is_one() -> None:
     assert (result.exit_code, "--vary tandem[0].bore: this key is varied twice" in result.output) == (2, True)
 
 
+def test_limits_do_not_vary() -> None:
+    """Every row was judged by the bound of the first one."""
+    result = run("--vary", "limits.N_max=16,20 kN", "--columns", "N_max")
+    told = "--vary limits.N_max: limits are the same for all rows; --where chooses those within others"
+    assert (result.exit_code, told in result.output) == (2, True)
+
+
 def test_the_numbers_of_points_have_an_order() -> None:
     cut_off = "indicator.head_end.expansion.1.0"
     asked = ("--vary", f"{cut_off}=0.4,0.3", "--columns", "work", "--sort", cut_off)
