@@ -66,6 +66,33 @@ def test_rows_are_chosen_by_their_texts() -> None:
     assert "no column 'keep'; did you mean 'keeps'?" in wrong.output
 
 
+@pytest.mark.parametrize(
+    ("condition", "message"),
+    [
+        ("keeps < yes", "keeps has words, of which none is less than another; write = or !="),
+        ("rotation > over", "rotation has words, of which none is less than another"),
+        ("keeps = ja", "keeps is yes, no, or nothing where a limit cannot be judged"),
+        ("N_max > 3", "3 has no unit; write it with one, such as '3 N'\n"),
+    ],
+)
+def test_conditions_that_are_none(condition: str, message: str) -> None:
+    """Letters have an order, which is none of designs: 'keeps < yes' kept what breaks limits, or failed."""
+    asked = ("--vary", "rotation=over,under", "--columns", "N_max", "--set", "limits.N_max=20 kN")
+    result = run(*asked, "--where", condition)
+    assert (result.exit_code, f"--where {condition}: {message}" in result.output) == (2, True)
+
+
+def test_an_infinite_rod_is_the_longest() -> None:
+    """It stands in the table as a word, and counted as having no length: no front of Pareto had it."""
+    asked = ("--vary", "rod_ratio=4,infinite,0.5,3", "--columns", "T_max")
+    assert numbers(*asked, "--sort", "-rod_ratio") == [2, 1, 4, 3]
+    assert numbers(*asked, "--sort", "rod_ratio") == [3, 4, 1, 2]
+    assert numbers(*asked, "--pareto", "rod_ratio,T_max") == [1, 2, 4]
+    assert numbers(*asked, "--pareto", "-rod_ratio,T_max") == [2]
+    assert numbers(*asked, "--where", "rod_ratio > 3.5") == [1, 2]
+    assert numbers(*asked, "--where", "rod_ratio = infinite") == [2]
+
+
 def test_rows_are_chosen_by_printed_symbols() -> None:
     asked = (*RATIOS, "--columns", "dE,P_start_max")
     assert numbers(*asked, "--sort", "-ΔE", "--top", "1") == numbers(*asked, "--pareto", "-ΔE") == [2]
@@ -122,6 +149,23 @@ def test_designs_that_fail_at_the_beginning_stay() -> None:
     assert locked[1]["N_max_N"] == pytest.approx(single["N_max"].value, rel=1e-13)
 
 
+@pytest.mark.parametrize("asked", [("--columns", "delta"), ("--columns", "N_max", "--set", "limits.delta=1/50")])
+def test_designs_that_lock_at_the_beginning_stay(asked: tuple[str, ...]) -> None:
+    """Also where the speed line is asked for, of which a machine that locks itself tells nothing, or a bound on it."""
+    locked, turning = rows("--vary", "friction.crosshead=8,0.1", "--set", "flywheel.inertia=5e4 kg m2", *asked)
+    assert "locks itself" in str(locked["failure"])
+    assert turning["failure"] is None
+    alone = run("--vary", "friction.crosshead=8", "--set", "flywheel.inertia=5e4 kg m2", *asked)
+    assert (alone.exit_code, "locks itself" in alone.output) == (3, True)
+
+
+def test_python_may_begin_with_a_design_that_locks() -> None:
+    machine = kurbel.load(WATERWORKS, ["friction.crosshead=8", "flywheel.inertia=5e4 kg m2"])
+    found = kurbel.sweep(machine, {"friction.crosshead": [8.0, 0.1]}, "delta")
+    single = kurbel.solve(kurbel.load(WATERWORKS, ["flywheel.inertia=5e4 kg m2"])).flywheel.delta
+    assert (np.isnan(found["delta"][0]), found["delta"][1]) == (True, pytest.approx(single, rel=1e-13))
+
+
 def test_python_is_told_why_the_only_design_fails() -> None:
     """As an optimiser may ask for one design at a time, and for one key value of it."""
     found = kurbel.sweep(kurbel.load(WATERWORKS), {"rod_ratio": [0.5]}, "N_max")
@@ -132,6 +176,13 @@ def test_python_is_told_why_the_only_design_fails() -> None:
 def test_a_key_in_two_spellings_is_one() -> None:
     result = run("--vary", "tandem.0.bore=280,290 mm", "--vary", "tandem[0].bore=200 mm")
     assert (result.exit_code, "--vary tandem[0].bore: this key is varied twice" in result.output) == (2, True)
+
+
+def test_limits_do_not_vary() -> None:
+    """Every row was judged by the bound of the first one."""
+    result = run("--vary", "limits.N_max=16,20 kN", "--columns", "N_max")
+    told = "--vary limits.N_max: limits are the same for all rows; --where chooses those within others"
+    assert (result.exit_code, told in result.output) == (2, True)
 
 
 def test_the_numbers_of_points_have_an_order() -> None:

@@ -262,3 +262,16 @@ def test_freed_memory_is_kept_where_the_c_library_can_be_asked(monkeypatch: pyte
         monkeypatch.setattr("ctypes.CDLL", other)
         answers._keep_memory.cache_clear()
         answers._keep_memory()
+
+
+@pytest.mark.parametrize(("count", "asks"), [(3, True), (2, False)])
+def test_memory_is_kept_of_chunks_of_which_some_rows_fail(
+    count: int, asks: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A chunk short of one row asked for nothing, and a sweep with a few failures was as slow as before."""
+    asked: list[bool] = []
+    monkeypatch.setattr(answers, "AT_ONCE", 4)
+    monkeypatch.setattr(answers, "_keep_memory", lambda: asked.append(True))
+    machines = [loads(f"{{stroke: 1 m, rod_ratio: {4 + row}, speed: 60 rpm}}") for row in range(count)]
+    together(machines, asked_of(machines[0]))
+    assert bool(asked) == asks

@@ -430,6 +430,7 @@ def test_python_gets_arrays() -> None:
     ("inputs", "message"),
     [
         ({"rod_ratio": [1, 2], "speed": [3]}, "rod_ratio has 2, speed has 1"),
+        ({"rod_ratio": []}, "one or more of them; rod_ratio has 0"),
         ({"rod": [1.0]}, "no value stands under this key"),
         ({}, "there is none"),
     ],

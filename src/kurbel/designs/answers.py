@@ -88,7 +88,7 @@ class _Answers:
 
     def found(self, wanted: Container[int] | None) -> dict[int, Values]:
         for rows in self._alike() if self._names else ():
-            if len(rows) >= AT_ONCE:
+            if 2 * len(rows) > AT_ONCE:  # of a whole chunk some fail
                 _keep_memory()
             for start in range(0, len(rows), AT_ONCE):
                 self._together(rows[start : start + AT_ONCE])

@@ -45,7 +45,8 @@ def _inputs(origin: Origin, inputs: Mapping[str, Any]) -> Iterator[Input]:
     """Yield the inputs with their values as texts of the machine file."""
     columns = {key: np.atleast_1d(np.asarray(values)) for key, values in inputs.items()}
     lengths = {key: len(column) for key, column in columns.items()}
-    if len(set(lengths.values())) != 1 or any(column.ndim != 1 for column in columns.values()):
+    counts = set(lengths.values())
+    if len(counts) != 1 or 0 in counts or any(column.ndim != 1 for column in columns.values()):
         each = ", ".join(f"{key} has {count}" for key, count in lengths.items())
         raise UsageError(f"give as many values of every key, one or more of them; {each or 'there is none'}")
     keys = tuple(columns)

@@ -1,5 +1,6 @@
 """Which rows of a sweep are kept: by conditions, as the best, as those that no other one betters; and a summary."""
 
+import math
 import operator
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -7,12 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.declared.numerals import NUMBER, plain
+from kurbel.declared.numerals import plain
 from kurbel.declared.quantity import called
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
-from kurbel.declared.units import example, parse_quantity
-from kurbel.designs.sweep import Head, Row
+from kurbel.declared.units import parse_quantity
+from kurbel.designs.sweep import KEPT, Head, Row
 from kurbel.errors import UnitError, UsageError
 from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
@@ -29,6 +30,9 @@ _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
     ">": operator.gt,
     "=": operator.eq,
 }
+_OF_WORDS = ("=", "==", "!=", "≠")
+_INFINITE = "infinite"
+"""What stands in a row for the length of a rod that is longer than any number."""
 _CONDITION = re.compile(rf"(.+?)\s*({'|'.join(_RELATIONS)})\s*(.*)")
 
 
@@ -42,9 +46,8 @@ class Condition(NamedTuple):
     def holds(self, row: Row) -> bool:
         """Return whether it holds; a row without that value keeps no condition."""
         value = row.text(self.place) if isinstance(self.place, str) else row.values[self.place]
-        if value is None or isinstance(value, str) != isinstance(self.value, str):
-            return False
-        return bool(_RELATIONS[self.relation](value, self.value))
+        known = value if isinstance(self.value, str) else _number(value)
+        return known is not None and bool(_RELATIONS[self.relation](known, self.value))
 
 
 def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Condition:
@@ -55,18 +58,24 @@ def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Co
             f"--where: expected a column, a relation and a value, such as 'c_max < 5 m/s', got {shown(text)!r}"
         )
     name, relation, written = (part.strip() for part in found.groups())
-    if name in texts:
-        return Condition(name, relation, written)
-    place = place_of(name, heads, "--where", texts)
-    head = heads[place]
-    if not head.kind:
+    place = name if name in texts else place_of(name, heads, "--where", texts)
+    if isinstance(place, str) or not heads[place].kind:
+        _check_word(text, name, relation, written)
         return Condition(place, relation, written)
+    head = heads[place]
     try:
-        value = parse_quantity(written, head.kind)
+        value = math.inf if head.input and written == _INFINITE else parse_quantity(written, head.kind)
     except UnitError as error:
-        hint = f"; write for instance {example(head.kind)}" if NUMBER.fullmatch(written) else ""
-        raise UsageError(f"--where {shown(text)}: {error}{hint}") from None
+        raise UsageError(f"--where {shown(text)}: {error}") from None
     return Condition(place, relation, convert(value, head.kind, head.unit))
+
+
+def _check_word(text: str, name: str, relation: str, written: str) -> None:
+    """Raise UsageError where words are put in an order, or `keeps` is compared with what it never is."""
+    if relation not in _OF_WORDS:
+        raise UsageError(f"--where {shown(text)}: {name} has words, of which none is less than another; write = or !=")
+    if name == "keeps" and written not in KEPT.values():
+        raise UsageError(f"--where {shown(text)}: keeps is yes, no, or nothing where a limit cannot be judged")
 
 
 def place_of(name: str, heads: Sequence[Head], option: str, texts: Sequence[str] = ()) -> int:
@@ -83,18 +92,23 @@ def place_of(name: str, heads: Sequence[Head], option: str, texts: Sequence[str]
     return ids.index(found)
 
 
+def _number(value: Any) -> float | None:
+    """Return the number that stands in a row, inf for an infinite rod; None where there is none."""
+    if value == _INFINITE:
+        return math.inf
+    return value if isinstance(value, (int, float)) else None
+
+
 class Aim(NamedTuple):
     """A column of which the smallest values are the best, or, with `most`, the largest ones."""
 
     place: int
     most: bool
 
-    def of(self, row: Row) -> float:
-        """Return a number that is the less the better; inf where there is none."""
-        value = row.values[self.place]
-        if not isinstance(value, (int, float)):
-            return float("inf")
-        return -value if self.most else value
+    def of(self, row: Row) -> tuple[bool, float]:
+        """Return whether there is no number, and one that is the less the better: what is less is better."""
+        value = _number(row.values[self.place])
+        return value is None, (value or 0.0) * (-1 if self.most else 1)
 
 
 def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
@@ -109,8 +123,9 @@ def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
 def unbettered(rows: Iterable[Row], aims: Sequence[Aim]) -> Iterator[Row]:
     """Yield the rows than which no other one is better in one aim and as good in all: the front of Pareto."""
     given = list(rows)
-    places = [place for place, row in enumerate(given) if all(aim.of(row) < float("inf") for aim in aims)]
-    costs = np.array([[aim.of(given[place]) for aim in aims] for place in places]).reshape(len(places), len(aims))
+    found = {place: [aim.of(row) for aim in aims] for place, row in enumerate(given)}
+    places = [place for place, each in found.items() if not any(lacking for lacking, _ in each)]
+    costs = np.array([[cost for _, cost in found[place]] for place in places]).reshape(len(places), len(aims))
     order = np.lexsort(costs.T[::-1])
     front: list[int] = []
     kept = np.empty((0, len(aims)))

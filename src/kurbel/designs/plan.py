@@ -190,6 +190,8 @@ class Plan:
         paths = [path_of(one.key) for one in self.inputs]
         if twice := next((one for place, one in enumerate(self.inputs) if paths[place] in paths[:place]), None):
             raise UsageError(f"--vary {twice.key}: this key is varied twice")
+        if bound := next((one.key for one, path in zip(self.inputs, paths) if path[0] == "limits"), ""):
+            raise UsageError(f"--vary {bound}: limits are the same for all rows; --where chooses those within others")
         if self._drawn and not self._sample:
             raise UsageError(f"--vary {self._drawn[0].key}: a distribution needs --sample N, such as --sample 1000")
         if self._sample and not self._drawn:

@@ -13,7 +13,7 @@ from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder, written_texts
 from kurbel.designs.columns import Answer, asked_answers, subjects
 from kurbel.designs.plan import Input, Plan, read_axis
-from kurbel.errors import KurbelError, MachineFileError, UsageError
+from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot
@@ -79,10 +79,11 @@ class Row(NamedTuple):
 
     def text(self, name: str) -> str:
         """Return what stands in the row under `keeps`, `broken` or `failure`."""
-        return _KEPT[self.keeps] if name == "keeps" else str(getattr(self, name))
+        return KEPT[self.keeps] if name == "keeps" else str(getattr(self, name))
 
 
-_KEPT = {True: "yes", False: "no", None: ""}
+KEPT = {True: "yes", False: "no", None: ""}
+"""What is told of limits that are kept, are not, and cannot be judged."""
 
 
 class Sweep:
@@ -95,30 +96,32 @@ class Sweep:
         self.rows = self.plan.rows
         if spec.most and self.rows > spec.most:
             raise UsageError(f"these are {self.rows} rows; --yes computes more than {spec.most}")
-        self._binder = self._started()
-        machine = self._binder.machine
-        self.asked = asked_answers(machine, spec.columns, spec.with_angles)
-        self._limits = tuple(_limit_answers(machine))
-        self.limited = bool(machine.limits)
+        self._binder, self.asked, self._limits = self._started()
+        self.limited = bool(self._binder.machine.limits)
         self.texts = ("keeps", "broken", "failure") if self.limited else ("failure",)
         """Heads of the texts after the values, as `Row.text` tells them."""
 
-    def _started(self) -> Binder:
-        """Return what binds texts, starting from the first row that makes a machine."""
+    def _started(self) -> tuple[Binder, tuple[Answer, ...], tuple[tuple[Answer, float], ...]]:
+        """Return what binds texts, starting from the first row whose machine tells what it answers, and who answers.
+
+        That is what is asked for, and what limits are for, with their bounds.
+        """
         keys = [one.key for one in self.plan.inputs]
-        failed = ""
+        failed: list[KurbelError] = []
         for texts in self._starts(keys):
             try:
-                return Binder(self.spec.origin, keys, texts)
-            except MachineFileError as error:
-                failed = failed or str(error)
-        raise UsageError(failed or "there is no row to compute")
+                binder = Binder(self.spec.origin, keys, texts)
+                asked = asked_answers(binder.machine, self.spec.columns, self.spec.with_angles)
+                return binder, asked, tuple(_limit_answers(binder.machine))
+            except (MachineFileError, NoSolutionError) as error:
+                failed.append(error)
+        raise failed[0] if isinstance(failed[0], NoSolutionError) else UsageError(str(failed[0]))
 
     def _starts(self, keys: Sequence[str]) -> Iterator[Sequence[str]]:
-        """Yield texts that may make a machine: those of the file of one that was read, else rows of the whole plan."""
+        """Yield texts that may make a machine: those of the file of one that was read, and rows of the whole plan."""
         if self.spec.given:
             yield written_texts(self.spec.origin, keys)
-        elif self.rows <= _STARTS:
+        if self.rows <= _STARTS:
             yield from map(self.plan.texts, range(self.rows))
         else:  # by the golden section: all over the plan, and not at the same value of a key each time
             yield from (self.plan.texts(int(self.rows * (number * _GOLDEN % 1))) for number in range(_STARTS))

@@ -43,7 +43,7 @@ class Indicated:
 
     @property
     def V_clearance(self) -> Any:
-        """Clearance of the head-end chamber in m³; None where it is not known."""
+        """Clearance of the head-end chamber in m³; None where it is not known, or nan among others."""
         volume = self.gas.clearance_volumes[0] if self.gas and self.gas.head else 0.0
         return where(volume == 0, math.nan, volume) if some(volume != 0) else None
 
