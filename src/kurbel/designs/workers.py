@@ -112,7 +112,7 @@ def _interrupts_wait() -> Iterator[None]:
 @contextmanager
 def _cluster(address: str) -> Iterator[tuple[Callable[..., Any], int]]:
     try:
-        from distributed import Client  # type: ignore[import-not-found, unused-ignore]
+        from distributed import Client
     except ImportError:
         raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
     try:

@@ -179,7 +179,7 @@ class SweepOutput:
 
     def _write_parquet(self, rows: Iterable[Any]) -> None:
         try:
-            import pyarrow  # type: ignore[import-not-found, unused-ignore]
+            import pyarrow
             from pyarrow import parquet
         except ImportError:
             raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
