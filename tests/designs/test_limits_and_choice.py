@@ -2,29 +2,13 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 
 import kurbel
-from kurbel.cli import kurbel as command
+from swept_rows import CONFIGS, WATERWORKS, rows, run
 
-CONFIGS = Path(__file__).parent.parent.parent / "configs"
-WATERWORKS = str(CONFIGS / "waterworks.yaml")
 RATIOS = ("--vary", "rod_ratio=0.5,3,4,5,6")
-
-
-def run(*args: str, file: str = WATERWORKS) -> Result:
-    return CliRunner().invoke(command, ["sweep", file, *args])
-
-
-def rows(*args: str, file: str = WATERWORKS) -> list[dict[str, object]]:
-    result = run(*args, "-f", "json", file=file)
-    assert result.exit_code == 0, result.output
-    return [json.loads(line) for line in result.stdout.splitlines()]
 
 
 def numbers(*args: str) -> list[object]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import concurrent.futures
-import json
 import os
 import re
 import signal
@@ -17,25 +16,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import CliRunner
 
 import kurbel
 from kurbel.cli import kurbel as command
 from kurbel.designs import sweep, workers
 from kurbel.machine_file import source
-
-CONFIGS = Path(__file__).parent.parent.parent / "configs"
-WATERWORKS = str(CONFIGS / "waterworks.yaml")
-
-
-def run(*args: str, file: str = WATERWORKS) -> Result:
-    return CliRunner().invoke(command, ["sweep", file, *args])
-
-
-def rows(*args: str, file: str = WATERWORKS) -> list[dict[str, object]]:
-    result = run(*args, "-f", "json", file=file)
-    assert result.exit_code == 0, result.output
-    return [json.loads(line) for line in result.stdout.splitlines()]
+from swept_rows import CONFIGS, WATERWORKS, rows, run
 
 
 def swept(vary: str, *columns: str) -> sweep.Sweep:
