@@ -91,19 +91,15 @@ class RodLoad:
         pressed, pulled = (_stretches(whose[way], (end - start)[way], len(each)) for way in (presses, ~presses))
         return np.where(pulled[0] < pressed[0], pulled, pressed)
 
-    def _told(self, values: Array) -> Any:
-        """Return what was found of every variant (v,), or of the only machine as a number."""
-        return values if self._forces.drive.count is not None else float(values[0])
-
     @property
     def reversal_angle(self) -> Any:
         """Degrees of crank angle per cycle of the reversed load; 0 where it does not reverse."""
-        return None if self._reversed is None else self._told(self._reversed[0])
+        return None if self._reversed is None else self._forces.grid.told(self._reversed[0])
 
     @property
     def reversal_longest(self) -> Any:
         """The longest of its stretches in degrees."""
-        return None if self._reversed is None else self._told(self._reversed[1])
+        return None if self._reversed is None else self._forces.grid.told(self._reversed[1])
 
     @property
     def reversal_ratio(self) -> Any:
