@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import MachineFileError, RuleError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.flywheel import Flywheel
 from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import ConnectingRod, Masses
@@ -19,6 +21,7 @@ from kurbel.machine.resistance import RamForce
 from kurbel.machine_file import loads
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from machines import STEAM_CARD, one_cylinder
 
@@ -65,6 +68,21 @@ def test_no_work_over_a_revolution(offset: float, inclination: float | None) -> 
     forces = rod_alone(offset=offset, inclination=inclination)
     assert forces.W == 0
     assert abs(forces.energy_residual or 0.0) < 1e-15
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.15])
+def test_the_reduced_inertia_is_that_of_the_kinetic_energy(offset: float) -> None:
+    """J(φ) = 2E/ω² of the rigid rod and of the mass at its crosshead pin; without gas ½ (J + J(φ)) ω² is constant."""
+    rod, wheel = ConnectingRod(250.0, center_of_gravity=0.9, inertia=70.0), 100.0
+    cylinder = Cylinder(SliderCrank(CRANK, LENGTH, offset), masses=Masses(40.0, rod))
+    turning = Case(Machine((cylinder,), speed=RPM / 60, flywheel=Flywheel(wheel))).flywheel
+    degrees = np.arange(0.0, 360.0, 7.0)
+    phi = np.radians(degrees)
+    energy = kinetic_energy(phi, 250.0, 0.9, 70.0, offset) + kinetic_energy(phi, 40.0, 0.0, 0.0, offset)
+    reduced = 2 * energy / OMEGA**2
+    assert turning.turned.inertia.line.at(degrees, degrees).value == pytest.approx(reduced, rel=1e-12)
+    held = (wheel + reduced) * turning.at(degrees).omega ** 2
+    assert held == pytest.approx(held[0], rel=1e-12)
 
 
 def test_weight_is_the_slope_of_the_height() -> None:
