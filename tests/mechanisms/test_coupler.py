@@ -121,7 +121,7 @@ def test_no_rod_no_point(text: str) -> None:
 
 
 def test_mean_speeds_of_the_strokes_after_redtenbacher() -> None:
-    """c_a : c_r = β : α (R p. 617), and each is the stroke over its time."""
+    """c_a : c_r = β : α (R p. 615), and each is the stroke over its time."""
     motion = Case(load(str(Path(__file__).parents[2] / "configs" / "shaper.yaml"))).cylinders[0].motion
     assert motion.c_work_m is not None
     assert motion.c_return_m is not None

@@ -1,4 +1,4 @@
-"""Scotch yoke: R p. 617, and its place as the slider-crank's limit."""
+"""Scotch yoke: R p. 615, and its place as the slider-crank's limit."""
 
 from __future__ import annotations
 

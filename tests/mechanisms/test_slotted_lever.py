@@ -157,7 +157,7 @@ def test_levers_that_do_not_run(lengths, message):
 def test_angles_and_times_need_no_lever(crank, frame, ratio, swing):
     """R. S. Khurmi & J. K. Gupta, Theory of Machines, ex. 5.2 (30° to either side, ratio 2) and 5.4 (Whitworth, 2.735).
 
-    The two strokes part the turn at cos β = r/e, or e/r (R p. 617); no ram, so no x, c, b and stroke.
+    The two strokes part the turn at cos β = r/e, or e/r (R p. 615); no ram, so no x, c, b and stroke.
     """
     case = Case(loads(f"speed: 60 rpm\nmechanism: slotted-lever\ncrank: {crank} mm\nframe: {frame} mm"))
     report = motion_report(case, Frame("motion", (0.0, 90.0), None, "si"))

@@ -1,4 +1,4 @@
-"""Yoke-frame small crank drive (R p. 616): the slider-crank whose side force bends the piston rod."""
+"""Yoke-frame small crank drive (R p. 614): the slider-crank whose side force bends the piston rod."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ def test_dead_centres_and_stroke_of_the_straight_crank():
 
 
 def test_scotch_yoke():
-    """R p. 617: x = R(1 − cos φ), c = v sin φ, b = (v²/R) cos φ; R 287, 289, 295."""
+    """R p. 615: x = R(1 − cos φ), c = v sin φ, b = (v²/R) cos φ; R 287, 289, 295."""
     yoke, angle = ScotchYoke(0.4), CrankAngle.of(120.0)
     assert yoke.coordinate(angle) == pytest.approx(0.6, rel=1e-15)
     assert yoke.slope(angle) == pytest.approx(0.4 * math.sqrt(3) / 2, rel=1e-15)
@@ -89,7 +89,7 @@ def test_slotted_lever_speeds():
 
 
 def test_slotted_lever_mean_speeds():
-    """R p. 617: the mean speeds out and back are as β : α, 2α and 2β the angles of the crank."""
+    """R p. 615: the mean speeds out and back are as β : α, 2α and 2β the angles of the crank."""
     machine = SlottedLever(0.1, 0.35, 0.6)
     beta = math.degrees(math.acos(0.1 / 0.35))
     assert machine.phi_return == pytest.approx(2 * beta, rel=1e-15)

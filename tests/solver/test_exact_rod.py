@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import MachineFileError, RuleError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.flywheel import Flywheel
 from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import ConnectingRod, Masses
@@ -19,6 +21,7 @@ from kurbel.machine.resistance import RamForce
 from kurbel.machine_file import loads
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from machines import STEAM_CARD, one_cylinder
 
@@ -65,6 +68,21 @@ def test_no_work_over_a_revolution(offset: float, inclination: float | None) -> 
     forces = rod_alone(offset=offset, inclination=inclination)
     assert forces.W == 0
     assert abs(forces.energy_residual or 0.0) < 1e-15
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.15])
+def test_the_reduced_inertia_is_that_of_the_kinetic_energy(offset: float) -> None:
+    """J(φ) = 2E/ω² of the rigid rod and of the mass at its crosshead pin; without gas ½ (J + J(φ)) ω² is constant."""
+    rod, wheel = ConnectingRod(250.0, center_of_gravity=0.9, inertia=70.0), 100.0
+    cylinder = Cylinder(SliderCrank(CRANK, LENGTH, offset), masses=Masses(40.0, rod))
+    turning = Case(Machine((cylinder,), speed=RPM / 60, flywheel=Flywheel(wheel))).flywheel
+    degrees = np.arange(0.0, 360.0, 7.0)
+    phi = np.radians(degrees)
+    energy = kinetic_energy(phi, 250.0, 0.9, 70.0, offset) + kinetic_energy(phi, 40.0, 0.0, 0.0, offset)
+    reduced = 2 * energy / OMEGA**2
+    assert turning.turned.inertia.line.at(degrees, degrees).value == pytest.approx(reduced, rel=1e-12)
+    held = (wheel + reduced) * turning.at(degrees).omega ** 2
+    assert held == pytest.approx(held[0], rel=1e-12)
 
 
 def test_weight_is_the_slope_of_the_height() -> None:
@@ -201,18 +219,20 @@ def test_largest_and_smallest_inertia_force_by_value() -> None:
     assert forces.P_inertia_max.value > 0 > forces.P_inertia_min.value
 
 
-def test_the_largest_rod_force_is_that_at_the_pins() -> None:
-    """S of the columns is less at both dead centres; S_max, S_min and S_peak hold what the rod must bear."""
+@pytest.mark.parametrize("column", ["S", "S_crosshead", "S_crank"])
+def test_extremes_are_those_of_their_own_column(column: str) -> None:
+    """At the pins the forces are larger than S, which is between the masses at the ends of the rod."""
     forces = rod_alone(inclination=30.0)
-    degrees = np.arange(0.0, 360.0, 0.5)
-    state = forces.at(degrees)
-    ends = np.stack((state.S_crosshead, state.S_crank))
-    found = forces.extremes_of("S")
-    assert found is not None
-    assert found.largest.value >= ends.max() >= np.max(state.S)
-    assert found.smallest.value <= ends.min() <= np.min(state.S)
-    assert (found.largest.value, found.smallest.value) == pytest.approx((ends.max(), ends.min()), rel=1e-4)
-    assert found.peak.value == max(found.largest.value, -found.smallest.value)
+    values = getattr(forces.at(np.arange(0.0, 360.0, 0.05)), column)
+    assert getattr(forces, f"{column}_max").value == pytest.approx(values.max(), rel=1e-6)
+    assert getattr(forces, f"{column}_min").value == pytest.approx(values.min(), rel=1e-6)
+
+
+def test_the_peak_of_the_rod_force_is_that_of_its_column() -> None:
+    forces = rod_alone(inclination=30.0)
+    column = np.abs(forces.at(np.arange(0.0, 360.0, 0.05)).S)
+    assert forces.S_peak.value == pytest.approx(column.max(), rel=1e-6)
+    assert forces.S_peak.value < -forces.S_crank_min.value
 
 
 def test_a_rod_alone_and_at_rest_hangs_on_its_pins() -> None:

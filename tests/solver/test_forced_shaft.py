@@ -176,9 +176,15 @@ shaft:
 """
 
 
-def test_all_orders_of_a_shaft_line_hold_each_of_them(tmp_path: Path) -> None:
+PUMP = """
+     tandem: [{bore: 100 mm, indicator: {head_end: {constant: {expansion: 0 bar, compression: 4 bar}}}}],
+     indicator"""
+
+
+@pytest.mark.parametrize("text", [PISTONS, PISTONS.replace("\n     indicator", PUMP)], ids=["driving", "with pumps"])
+def test_all_orders_of_a_shaft_line_hold_each_of_them(text: str, tmp_path: Path) -> None:
     """Cylinders, efficiency, a gear, and a load that slips: over the angle the same orders as order by order."""
-    (tmp_path / "machine.yaml").write_text(PISTONS)
+    (tmp_path / "machine.yaml").write_text(text)
     found = Case(load(tmp_path / "machine.yaml")).torsion
     assert found.remainder is None
     size = np.abs(found.vibration.torques).max()

@@ -76,8 +76,8 @@ class Machine(Described):
     """A whole machine.
 
     speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
-    pressure in Pa; efficiency η multiplies the turning effort of the whole machine, or divides it where the machine is
-    driven; brake_power: measured, in W; limits: key-value id -> bound in SI; expect: key-value id -> the smallest and
+    pressure in Pa; efficiency η of the driving side, by which the turning effort is divided where no piston
+    drives; brake_power: measured, in W; limits: key-value id -> bound in SI; expect: key-value id -> the smallest and
     the largest value in SI that are met; uncertainty: dotted key -> its standard
     uncertainty as a text; rotation: `over` or `under`, the sense in which it turns, None where it is
     not told; moment_reference: place along the shaft in m about which free moments are taken, None for the middle.
@@ -122,8 +122,8 @@ class Machine(Described):
         ),
         "efficiency": Key(
             Number(above=0, most=1),
-            "Mechanical efficiency of the whole machine: its turning effort is multiplied by it (R p. 611), or divided "
-            "by it where the machine is driven",
+            "Mechanical efficiency: multiplies the torque of cylinders whose pistons drive, or only the gas force of "
+            "those that drive where others on the rod are driven (R p. 610–613); divides all torque where none drives",
             "η",
             absent="1",
         ),

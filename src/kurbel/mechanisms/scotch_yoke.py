@@ -1,4 +1,4 @@
-"""Scotch yoke (Kurbelschleife), R p. 616: the slider-crank with an infinite rod, its block sliding across the yoke."""
+"""Scotch yoke (Kurbelschleife), R p. 614: the slider-crank with an infinite rod, its block sliding across the yoke."""
 
 from typing import Any, ClassVar
 
@@ -47,7 +47,7 @@ class ScotchYoke(Mechanism):
         *BLOCK_OFFERS,
         Offer(_N_PAIR, lambda yoke, angle: yoke.guide_pair_factor(angle), ("along_rod",)),
     )
-    # R p. 617: up to 200 kgf/cm²
+    # R p. 615: up to 200 kgf/cm²
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (pin_pressure(bound=200 * 98066.5),)
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Slotted lever (schwingende Kurbelschleife): the quick return of shapers, R p. 617, and Whitworth's rotating lever."""
+"""Slotted lever (schwingende Kurbelschleife): the quick return of shapers, R p. 615, and Whitworth's rotating lever."""
 
 import math
 from typing import Any, ClassVar, NamedTuple
@@ -158,7 +158,7 @@ class SlottedLever(Mechanism):
         return 0.0 if self.rotates or not self.slides else self._end * (1 + self._kappa[1]) / 2
 
     def dead_centres(self) -> tuple[float, float]:
-        """Return the ends of the working stroke, ∓(180° − β) with cos β = r/e (e/r for the rotating lever), R p. 617.
+        """Return the ends of the working stroke, ∓(180° − β) with cos β = r/e (e/r for the rotating lever), R p. 615.
 
         With a link on the rotating lever they are where link and lever lie in line: φ = θ + arcsin(κ sin θ).
         """

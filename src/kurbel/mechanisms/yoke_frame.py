@@ -1,4 +1,4 @@
-"""Yoke-frame small crank drive (Klein, Schanzlin & Becker), R p. 616: a slider-crank without a crosshead guide.
+"""Yoke-frame small crank drive (Klein, Schanzlin & Becker), R p. 614: a slider-crank without a crosshead guide.
 
 Steam and pump piston rod lie in one line, joined by a frame in which rod and crank move. The motion is that of the
 slider-crank; the side force N of the rod finds no guide and bends the piston rod.
@@ -62,4 +62,4 @@ class YokeFrame(SliderCrank):
     @property
     def notes(self) -> tuple[str, ...]:
         """Say where N goes."""
-        return ("There is no crosshead guide: the side force N bends the piston rod (R p. 616).",)
+        return ("There is no crosshead guide: the side force N bends the piston rod (R p. 614).",)

@@ -55,15 +55,26 @@ def subjects(case: Case) -> Iterable[Subject]:
     )
 
 
+def _efficiency_notes(turning: MachineTurning) -> Iterable[str]:
+    turned = turning.turned
+    if any(one.lost for one in turned.of_cylinders):
+        yield (
+            "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "
+            "driven pistons, inertia, weight and friction count in full (R p. 613)."
+        )
+    if any(turned.share(mass.drive) != 1 for mass in turned.masses) and turning.speed is not None:
+        yield "As in the book the efficiency takes its share of all of T; in ω the moving masses count in full."
+
+
 def _notes(machine: Machine, turning: MachineTurning) -> Iterable[str]:
     if turning.crank is not None:
-        over = "over" if turning.turned.efficiency > 1 else "with"
+        over = "over" if any(factor > 1 for factor, _ in turning.turned.effort.parts) else "with"
         eta = f", {over} the efficiency {machine.efficiency:g}" if machine.efficiency != 1 else ""
         yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
     if turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
         yield "Such a load holds no speed of its own: the mean of ω over time is taken as the nominal speed."
-    if machine.efficiency != 1 and turning.turned.masses and turning.speed is not None:
-        yield "As in the book the efficiency takes its share of all of T; in ω the moving masses count in full."
+    if machine.efficiency != 1:
+        yield from _efficiency_notes(turning)
     if turning.rigid:
         yield (
             f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "

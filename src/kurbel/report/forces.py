@@ -66,8 +66,8 @@ def _trace_notes(case: Case) -> Iterable[str]:
 def _rod_notes(case: Case) -> Iterable[str]:
     if any(forces.drive.rod and forces.drive.has_force for forces in case.cylinders):
         yield (
-            "S of an exact rod stands between the masses at its ends and is the force along it at neither pin: "
-            "S_H is that at the crosshead pin, S_Z that at the crank pin; S_max, S_min and S_peak are of both pins."
+            "S of an exact rod is the force between the masses at its ends and the force along it at neither pin: "
+            "S_H is that at the crosshead pin, S_Z that at the crank pin; the rod must carry the largest of both."
         )
 
 

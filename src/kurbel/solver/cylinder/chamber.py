@@ -27,6 +27,12 @@ def gas_force(state: State) -> Any:
     return line.at(state.z) if line else _force(state, state.z, state.phi)
 
 
+def driving_force(state: State) -> Any:
+    """Return the force of gas or steam on the pistons that drive in N; None where none does."""
+    forces = [gas.force(state.pressure) for gas in state.drive.driving]
+    return reduce(add, forces) if forces else None
+
+
 def _at_nodes(state: State) -> Any:
     """Return it on pieces on which it is straight over the stroke, and let all others inside these know."""
     ends = np.s_[:, :: state.phi.shape[1] - 1]

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from kurbel.solver.cylinder.pins import PinFriction
     from kurbel.solver.cylinder.rod import ExactRod
 
+_IDLE = 1e-4
+"""Mean indicated pressure in Pa that is rounding: such a piston neither drives nor is driven."""
+
 
 class Drive:
     """A cylinder of a machine: masses, weights, pressures and friction as the state needs them.
@@ -139,6 +142,16 @@ class Drive:
         turns = CYCLES[self.machine.cycle_of_piston(self.cylinder, number)]
         piston, ambient = self.cylinder.pistons[number], self.machine.ambient
         return PistonGas(piston, self.mechanism, 360.0 * turns, ambient, self.revolutions // turns)
+
+    @cached_property
+    def driving(self) -> tuple[PistonGas, ...]:
+        """The gas on the pistons that drive: their indicated work is positive."""
+        return tuple(gas for gas in self.gas if gas.work > _IDLE * gas.swept_volume)
+
+    @cached_property
+    def driven(self) -> bool:
+        """Whether a piston is driven, its indicated work being negative, or the output works against a resistance."""
+        return bool(self.resistance_work) or any(gas.work < -_IDLE * gas.swept_volume for gas in self.gas)
 
     @property
     def own_gas(self) -> PistonGas | None:

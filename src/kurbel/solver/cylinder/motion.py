@@ -76,7 +76,7 @@ class Motion:
 
     @property
     def c_work_m(self) -> Any:
-        """Mean speed in m/s of the outstroke, or of the working stroke: s n · 360°/φ_w (R p. 617)."""
+        """Mean speed in m/s of the outstroke, or of the working stroke: s n · 360°/φ_w (R p. 615)."""
         return None if self.c_m is None else self.c_m * (180.0 / self.phi_work)
 
     @property

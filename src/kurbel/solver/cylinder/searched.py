@@ -11,7 +11,6 @@ from kurbel.arrays import Array, Indices
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.cycles import Flat
-from kurbel.numerics.extreme import largest, smallest
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import (
     Curve,
@@ -140,9 +139,6 @@ class Searched:
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
-        if column == "S" and self.drive.rod:
-            # S of an exact rod stands between the masses at its ends: what it must bear is the force at its pins
-            return self._at_pins
         found = self._extremes.get(column) if self.drive.has_force else None
         return found or self.motion.extremes_of(column)
 
@@ -150,15 +146,6 @@ class Searched:
         """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
         if may_lock(self.drive.cylinder):
             self.extremes_of("N")
-
-    @property
-    def _at_pins(self) -> Extremes | None:
-        """Largest and smallest force in N along an exact rod, of both pins."""
-        found = [one for end in ("S_crosshead", "S_crank") if (one := self.extremes_of(end))]
-        if not found:
-            return None
-        high, low = zip(*found, strict=True)
-        return Extremes(largest(*high), smallest(*low))
 
     def angles_where(self, column: str, value: float) -> "Where | None":
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""

@@ -45,6 +45,7 @@ class State:
     p_guide = cached_property(guide.shoe_pressure)
     wear = cached_property(guide.wear)
     P_gas = cached_property(chamber.gas_force)
+    P_driving = cached_property(chamber.driving_force)
     V = cached_property(chamber.head_volume)
     V_crank = cached_property(chamber.crank_volume)
     dV = cached_property(chamber.head_volume_change)

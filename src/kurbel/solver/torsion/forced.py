@@ -48,10 +48,10 @@ def excitation(found: MachineOrders, line: ShaftLine) -> Excitation:
     places = {name: index for index, mass in enumerate(line.masses) for name in mass.cylinders}
     for one in found.cylinders:
         place = places[one.forces.drive.name]
-        gas[place] += turned.efficiency * one.in_machine.gas.amplitudes
-        means[place] += turned.efficiency * one.in_machine.whole.mean
+        gas[place] += one.in_machine.gas.amplitudes
+        means[place] += one.in_machine.whole.mean
         if one.in_machine.inertia:
-            inertia[place] += one.in_machine.inertia.amplitudes
+            inertia[place] += one.in_machine.inertia.amplitudes / one.share
     if not found.cylinders:
         gas[0], means[0] = found.machine.gas.amplitudes, turned.excess.mean
     if turned.machine.load and turned.machine.load.diagram:

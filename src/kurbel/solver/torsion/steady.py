@@ -36,8 +36,8 @@ def acting(turned: MachineEffort, line: ShaftLine) -> dict[int, Sum]:
     else:
         for one in turned.of_cylinders:
             of_mass = found.setdefault(places[one.forces.drive.name], [])
-            of_mass.append((turned.efficiency, one.effort))
-            of_mass += [(1 - turned.efficiency, one.inertia)] if one.inertia else []
+            of_mass += [(one.share, one.effort), *one.lost]
+            of_mass += [(1 - one.share, one.inertia)] if one.inertia else []
     if turned.machine.load and turned.machine.load.diagram:
         found.setdefault(line.load % len(line.masses), []).append((-1.0, turned.excess.load))
     return {mass: Sum(*parts) for mass, parts in found.items()}

@@ -55,7 +55,7 @@ class TurningCurves:
     @cached_property
     def _inertia(self) -> Jet | None:
         """The torque of the inertia forces, with its share of the losses."""
-        parts = [(self._turned.efficiency, mass) for mass in self._turned.masses]
+        parts = [(self._turned.share(mass.drive), mass) for mass in self._turned.masses]
         return Sum(*parts).torque(self._phi, self._within) if parts else None
 
     @cached_property

@@ -24,13 +24,13 @@ _SAME_PLACE = 1e-12
 class CylinderEffort:
     """The sum of a torque of cylinders that work alike, at the angles φ of crank 1: one cylinder, asked at all angles.
 
-    torque_in: what is asked of the cylinder's state: all its torque, or one of the functions below.
+    torque_in: what is asked of the cylinder's state: all its torque, or one of the functions below. drive: of one.
     """
 
     def __init__(self, alike: Sequence[CylinderForces], cycle: float, torque_in: Callable[[State], Any]) -> None:
         self._alike = alike
         self._cycle = cycle
-        self._drive = alike[0].drive
+        self.drive = alike[0].drive
         self._positions = np.array([position(one) for one in alike])
         self._torque_in = torque_in
 
@@ -43,7 +43,7 @@ class CylinderEffort:
     @cached_property
     def repeats(self) -> int:
         """How often it comes back in the cycle: as often as the cranks stand alike over that of a cylinder."""
-        own = self._drive.cycle
+        own = self.drive.cycle
         stand = np.sort(np.mod(self._positions, own))
         parts = (each for each in range(len(stand), 0, -1) if len(stand) % each == 0)
         return next(each for each in parts if _same_places(stand, own / each, own)) * round(self._cycle / own)
@@ -52,13 +52,13 @@ class CylinderEffort:
         """Return the torque; see `Torque`."""
         angles = degrees - self._behind(degrees)
         inside = within if isinstance(within, Inside) else (within - self._behind(within)).ravel()
-        every = Sampled.of(self._torque_in(self._drive.jets_at(angles.ravel(), inside)), (angles.size,))
+        every = Sampled.of(self._torque_in(self.drive.jets_at(angles.ravel(), inside)), (angles.size,))
         values, slopes = (part.reshape(angles.shape) for part in every)
         return Jet(unless_cancelled(values.sum(axis=0), np.abs(values).sum(axis=0)), slopes.sum(axis=0))
 
     def inside(self, within: Array) -> Inside:
         """Return what all angles in the pieces share that hold these (n,)."""
-        return Inside(self._drive, (within - self._behind(within)).ravel())
+        return Inside(self.drive, (within - self._behind(within)).ravel())
 
     def _behind(self, degrees: Array) -> Array:
         return self._positions.reshape(-1, *(1 for _ in degrees.shape))
@@ -76,6 +76,11 @@ def efforts(
     """Return a torque of several cylinders, those that work alike as one."""
     groups = gathered(cylinders, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder))
     return tuple(CylinderEffort(group, cycle, torque_in) for group in groups)
+
+
+def driving_torque(state: State) -> Any:
+    """Return the torque in N m of the gas on the pistons that drive, P_driving dx/dφ."""
+    return state.P_driving * state.slope
 
 
 def inertia_torque(state: State) -> Any:

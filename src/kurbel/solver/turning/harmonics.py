@@ -5,7 +5,7 @@ integrated by itself. What the inertia forces give is told apart: it goes with Ï
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
@@ -111,16 +111,24 @@ class Orders(NamedTuple):
 
 
 class CylinderOrders:
-    """The orders of the torque of one cylinder, without the losses of the machine; own: over its own crank angle."""
+    """The orders of the torque of one cylinder.
 
-    def __init__(self, forces: CylinderForces, own: Orders) -> None:
-        self.forces, self.own = forces, own
+    own: over its own crank angle, without the losses of the machine; share: what they leave of all of it; lost: what
+    they take off besides, with its factor each.
+    """
+
+    def __init__(
+        self, forces: CylinderForces, own: Orders, share: float, lost: tuple[tuple[float, Spectrum], ...]
+    ) -> None:
+        self.forces, self.own, self.share, self._lost = forces, own, share, lost
 
     @cached_property
     def in_machine(self) -> Orders:
-        """Those over the angle of crank 1."""
+        """Those over the angle of crank 1, with the losses of the machine."""
         behind = self.forces.drive.cylinder.crank_position
-        return self.own.each(lambda one: one.turned(-behind))
+        shared = self.own.each(lambda one: Spectrum.summed((self.share, one)))
+        gas = Spectrum.summed((1.0, shared.gas), *self._lost)
+        return Orders(gas, shared.inertia).each(lambda one: one.turned(-behind))
 
     @cached_property
     def area(self) -> float | None:
@@ -145,8 +153,8 @@ class MachineOrders:
         """Those of every cylinder in which a force acts; one is asked for all that work alike."""
         found: dict[str, CylinderOrders] = {}
         for group in gathered(self.turned.of_cylinders, _alike):
-            own = self._own(group[0])
-            found |= {part.forces.drive.name: CylinderOrders(part.forces, own) for part in group}
+            own, lost = self._own(group[0]), tuple(self._lost(group[0]))
+            found |= {part.forces.drive.name: CylinderOrders(part.forces, own, part.share, lost) for part in group}
         return tuple(found[part.forces.drive.name] for part in self.turned.of_cylinders)
 
     def _own(self, one: Driving) -> Orders:
@@ -157,16 +165,22 @@ class MachineOrders:
         size, behind = found.size, one.forces.drive.cylinder.crank_position
         return found.each(lambda one: one.turned(behind).cleared(size))
 
+    def _lost(self, one: Driving) -> Iterator[tuple[float, Spectrum]]:
+        """Yield those of what is lost besides, over its own crank angle."""
+        behind = one.forces.drive.cylinder.crank_position
+        for factor, torque in one.lost:
+            yield factor, spectrum(torque, self.orders).turned(behind)
+
     @cached_property
     def machine(self) -> Orders:
         """Those of the turning effort, with the losses of the machine."""
         if not self.turned.of_cylinders:
             known = spectrum(self.turned.effort, self.orders)
             return Orders(known.cleared(known.size), None)
-        eta, each = self.turned.efficiency, [one.in_machine for one in self.cylinders]
-        gas = Spectrum.summed(*((eta, one.gas) for one in each))
-        inertia = [(eta, one.inertia) for one in each if one.inertia]
-        size = eta * math.fsum(one.size for one in each)
+        each = [one.in_machine for one in self.cylinders]
+        gas = Spectrum.summed(*((1.0, one.gas) for one in each))
+        inertia = [(1.0, one.inertia) for one in each if one.inertia]
+        size = math.fsum(one.size for one in each)
         return Orders(gas, Spectrum.summed(*inertia) if inertia else None).each(lambda one: one.cleared(size))
 
     @property

@@ -9,16 +9,17 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
-from kurbel.errors import UsageError
+from kurbel.errors import NoSolutionError, UsageError
 from kurbel.frozen import frozen
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.jet import value_of
 from kurbel.numerics.piecewise import Piecewise
+from kurbel.solver.cylinder.drive import Drive
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.state import State
-from kurbel.solver.turning.effort import CylinderEffort, efforts, inertia_torque, reduced_inertia
+from kurbel.solver.turning.effort import CylinderEffort, driving_torque, efforts, inertia_torque, reduced_inertia
 from kurbel.solver.turning.excess import Excess
 from kurbel.solver.turning.torques import Diagram, Sum, Torque, known_torque
 
@@ -28,11 +29,16 @@ _SLOWEST = 1e-100
 
 @frozen
 class Driving:
-    """A cylinder in which a force acts, its torque over the angle of crank 1, and that of its masses, if they move."""
+    """A cylinder in which a force acts, its torque over the angle of crank 1, and that of its masses, if they move.
+
+    share: what the torque is multiplied by for the losses of the machine; lost: what they take off besides.
+    """
 
     forces: CylinderForces
     effort: CylinderEffort
     inertia: CylinderEffort | None
+    share: float
+    lost: tuple[tuple[float, Torque], ...]
 
 
 class MachineEffort:
@@ -61,6 +67,32 @@ class MachineEffort:
         return Sum(*((1.0, one) for one in efforts(self._driving, self.cycle, _effort)))
 
     @cached_property
+    def _drives(self) -> bool:
+        """Whether any piston drives; of an effort that is given, whether it does on the mean."""
+        if self.machine.effort:
+            return Excess(self._indicated).mean >= 0
+        return any(forces.drive.driving for forces in self._driving)
+
+    def share(self, drive: Drive | None) -> float:
+        """Return what the torque of a cylinder, or a given effort, is multiplied by for the losses (R p. 610–613).
+
+        η where its pistons drive, 1/η where the machine is driven and no piston drives. Beside driving pistons driven
+        ones count in full; where both are on one rod, so does all but the force of the driving ones.
+        """
+        eta = self.machine.efficiency
+        if eta == 1 or drive is None:
+            return eta if eta == 1 or self._drives else 1 / eta
+        if self._drives:
+            return eta if drive.driving and not drive.driven else 1.0
+        return 1 / eta if any(forces.drive.driven for forces in self._driving) else 1.0
+
+    def _lost(self, cylinders: Sequence[CylinderForces]) -> tuple[tuple[float, Torque], ...]:
+        """Return what is lost of the torque of driving pistons that have driven ones on their rods."""
+        lost = 1 - self.machine.efficiency
+        both = [one for one in cylinders if lost and one.drive.driving and one.drive.driven]
+        return tuple((-lost, one) for one in efforts(both, self.cycle, driving_torque))
+
+    @cached_property
     def of_cylinders(self) -> tuple[Driving, ...]:
         """The torques of the cylinders, each by itself."""
         return tuple(
@@ -68,20 +100,17 @@ class MachineEffort:
                 forces,
                 CylinderEffort((forces,), self.cycle, _effort),
                 CylinderEffort((forces,), self.cycle, inertia_torque) if _moves(forces) else None,
+                self.share(forces.drive),
+                self._lost((forces,)),
             )
             for forces in self._driving
         )
 
     @cached_property
-    def efficiency(self) -> float:
-        """What the turning effort is multiplied by: η, or 1/η where the machine is driven, its work being negative."""
-        eta = self.machine.efficiency
-        return eta if eta == 1 or Excess(self._indicated).mean >= 0 else 1 / eta
-
-    @cached_property
     def effort(self) -> Sum:
-        """The turning effort M, with the losses of the machine: times the efficiency, or over it; see there."""
-        return Sum(*((self.efficiency * factor, part) for factor, part in self._indicated.parts))
+        """The turning effort M, with the losses of the machine; see `share`."""
+        shared = ((self.share(getattr(part, "drive", None)), part) for _, part in self._indicated.parts)
+        return Sum(*shared, *self._lost(self._driving))
 
     @cached_property
     def masses(self) -> tuple[CylinderEffort, ...]:
@@ -90,18 +119,35 @@ class MachineEffort:
 
     @cached_property
     def excess(self) -> Excess:
-        """The excess of the turning effort over the resistance at the nominal speed."""
+        """The excess of the turning effort over the resistance at the nominal speed.
+
+        Raises NoSolutionError where the losses leave too little of what drives the machine.
+        """
         given = self.machine.load.diagram if self.machine.load else None
-        return Excess(self.effort, None if given is None else Diagram(given, self.cycle))
+        found = Excess(self.effort, None if given is None else Diagram(given, self.cycle))
+        if found.mean < 0 and self.machine.efficiency != 1 and self._drives:
+            raise NoSolutionError(self._why_it_stands(found.mean))
+        return found
+
+    def _why_it_stands(self, mean: float) -> str:
+        """Return why the machine does not run with this negative mean torque in N m, and with which η it would."""
+        eta, whole, runs = self.machine.efficiency, Excess(self._indicated).mean, "with no efficiency"
+        if whole >= 0:  # the mean is linear in η
+            least = 1 - (1 - eta) * whole / (whole - mean)
+            printed = next(one for digits in range(4, 17) if (one := round(least, digits)) >= least)
+            runs = f"from 'efficiency: {printed}' on"
+        return (
+            f"the machine cannot run: with the efficiency {eta:g} its driving pistons give a mean torque that is "
+            f"{show(-mean, 'torque')} less than driven pistons and friction take; it runs {runs}"
+        )
 
     @cached_property
     def true_excess(self) -> Excess:
         """The excess that changes the kinetic energy: efficiency takes its share of the effort, but not of inertia."""
-        lost = 1 - self.efficiency
-        if not lost or not self.masses:
+        lost = [(1 - self.share(mass.drive), mass) for mass in self.masses]
+        if not any(share for share, _ in lost):
             return self.excess
-        whole: list[tuple[float, Torque]] = [(lost, mass) for mass in self.masses]
-        return Excess(Sum(*self.effort.parts, *whole), self.excess.load)
+        return Excess(Sum(*self.effort.parts, *lost), self.excess.load)
 
     @cached_property
     def inertia(self) -> "MovingInertia":

@@ -1,0 +1,219 @@
+"""Efficiency as the book uses it (R p. 610–613, Abb. 1062, 1064, 1065): driving pistons pay for the losses."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel import load
+from kurbel.cli import kurbel
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import NoSolutionError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.flywheel import Flywheel
+from kurbel.machine.friction import Friction
+from kurbel.machine.indicator import Card, Constant, Indicator
+from kurbel.machine.masses import ConnectingRod, Masses
+from kurbel.machine.piston import Piston
+from kurbel.machine.resistance import RamForce
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.case import Case
+from kurbel.solver.turning.flywheel import MachineTurning
+from kurbel.solver.turning.harmonics import spectrum
+from machines import AT, STEAM_CARD, constant_pressure
+from turning_machines import of_points
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+TWO_CRANKS = CONFIGS / "waterworks-two-cranks.yaml"
+ETA = 0.9
+
+STEAM = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
+WATER = Constant.from_keys(expansion=-0.45 * AT, compression=5.4 * AT)
+PUMP = Piston(0.285, 0.0, 0.075, Indicator(WATER, WATER), "pump")
+IDLE = Piston(0.1, 0.0, 0.0, Indicator(constant_pressure(3e5)), "idle")
+SPRING = Card.from_keys(
+    unit=(1e5, 1),
+    expansion=[(0, 31.7), (0.3, 9.1), (1, 2.3)],
+    compression=[(1, 2.3), (0.3, 9.1), (0, 31.7)],
+    interpolate="polytropic",
+    clearance=0.07,
+)
+MASSES = Masses(600.0, ConnectingRod(220.0, center_of_gravity=1.2, inertia=90.0))
+ENGINE = Cylinder(SliderCrank(0.4, 2.0), pistons=(STEAM,), masses=MASSES, friction=Friction(0.05), inclination=20.0)
+PUMPING = replace(ENGINE, pistons=(STEAM, PUMP))
+DRIVEN = replace(ENGINE, pistons=(PUMP,), crank_position=70.0)
+ANGLES = np.array([0.0, 17.3, 90.0, 123.4, 180.0, 271.0, 359.0])
+
+
+def turning(*cylinders: Cylinder, eta: float = 1.0, **more: Any) -> MachineTurning:
+    named = tuple(replace(one, name=f"cylinder {number}") for number, one in enumerate(cylinders, 1))
+    return Case(Machine(named, speed=50 / 60, efficiency=eta, **more)).flywheel
+
+
+def gas_torque(*pistons: Piston, behind: float = 0.0) -> np.ndarray:
+    """Return P dx/dφ in N m of gas on these pistons alone."""
+    return turning(Cylinder(ENGINE.mechanism, pistons=pistons, crank_position=behind)).at(ANGLES).M
+
+
+def run(command: str, file: Path, *words: str) -> Result:
+    return CliRunner().invoke(kurbel, [command, str(file), *words])
+
+
+def works() -> Machine:
+    """The waterworks engine with both its cranks, without its friction."""
+    machine = load(TWO_CRANKS)
+    return replace(machine, cylinders=tuple(replace(one, friction=None) for one in machine.cylinders))
+
+
+# the waterworks engine
+
+
+def test_the_works_of_steam_and_pumps() -> None:
+    each = Case(works()).cylinders
+    assert sum(one.work_driving for one in each) == pytest.approx(130.7772e3, rel=5e-7)
+    assert sum(one.work_driven for one in each) == pytest.approx(-113.0581e3, rel=5e-7)
+
+
+@pytest.mark.parametrize("eta", [1.0, 0.95, 0.9, 0.865])
+def test_the_power_is_that_of_the_steam_less_its_losses_less_the_pumps(eta: float) -> None:
+    power = Case(replace(works(), efficiency=eta)).flywheel.power_shaft
+    assert power == pytest.approx((eta * 130.7772e3 - 113.0581e3) * 50 / 60, abs=0.1)
+
+
+@pytest.mark.parametrize(("eta", "printed"), [(1.0, "14.33"), (0.9, "3.44")])
+def test_the_power_with_the_friction_of_the_file(eta: float, printed: str) -> None:
+    power = Case(replace(load(TWO_CRANKS), efficiency=eta)).flywheel.power_shaft
+    assert f"{power / 1e3:.2f}" == printed
+
+
+@pytest.mark.parametrize("command", ["flywheel", "harmonics"])
+def test_too_little_efficiency_is_no_solution(command: str) -> None:
+    found = run(command, TWO_CRANKS, "--set", "efficiency=0.8")
+    assert found.exit_code == 3
+    assert "with the efficiency 0.8 its driving pistons give a mean torque that is" in found.stderr
+    assert "it runs from 'efficiency: 0.8685' on" in found.stderr
+    assert run(command, TWO_CRANKS, "--set", "efficiency=0.8685").exit_code == 0
+    assert run(command, TWO_CRANKS, "--set", "efficiency=0.8684").exit_code == 3
+
+
+def test_the_least_efficiency_that_is_printed_is_enough() -> None:
+    """113.0581/130.7772 = 0.864509: four digits would be too few."""
+    with pytest.raises(NoSolutionError, match=r"runs from 'efficiency: 0\.86451' on"):
+        _ = Case(replace(works(), efficiency=0.8645)).flywheel
+    assert Case(replace(works(), efficiency=0.86451)).flywheel.power_shaft > 0
+
+
+def test_other_commands_say_that_it_cannot_run(tmp_path: Path) -> None:
+    found = run("check", TWO_CRANKS, "--set", "efficiency=0.8")
+    assert found.exit_code == 0
+    assert "cannot run" in found.stdout
+    assert "kurbel flywheel ends with status 3" in found.stdout
+    assert run("report", TWO_CRANKS, "--set", "efficiency=0.8", "-o", str(tmp_path / "report.html")).exit_code == 0
+    assert "it runs from" in (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert run("balance", TWO_CRANKS, "--set", "efficiency=0.8").exit_code == 0
+
+
+def test_sweeps_have_the_same_power_and_the_reason() -> None:
+    words = ("--vary", "efficiency=0.8,0.9,1", "--columns", "power_shaft", "-f", "json")
+    stands, *rows = map(json.loads, run("sweep", TWO_CRANKS, *words).stdout.splitlines())
+    assert stands["power_shaft_W"] is None
+    assert "it runs from 'efficiency: 0.8685' on" in stands["failure"]
+    assert [round(row["power_shaft_W"] / 1e3, 2) for row in rows] == [3.44, 14.33]
+
+
+def test_the_page_says_what_the_efficiency_acts_on() -> None:
+    page = " ".join(run("flywheel", TWO_CRANKS, "--set", "efficiency=0.9").stdout.split())
+    assert "with the efficiency 0.9; φ is its angle" in page
+    assert "the efficiency reduces the force of the driving pistons" in page
+    assert "takes its share of all of T" not in page
+    assert "friction is taken off twice" in page
+
+
+def test_an_engine_too_weak_for_its_pump_does_not_run() -> None:
+    """Steam of 74.9 kJ and a pump of 72.4 kJ on its rod: 0.9666 of the steam is what the pump takes."""
+    steam, water = (Constant.from_keys(expansion=p, compression=q) for p, q in ((74.9e5, 0.0), (0.0, 72.4e5)))
+    rod = replace(ENGINE, masses=None, friction=None, inclination=None)
+    bore = (4 * 0.01 / (0.8 * np.pi)) ** 0.5  # sweeps 0.01 m³
+    both = replace(rod, pistons=(Piston(bore, indicator=Indicator(steam)), Piston(bore, indicator=Indicator(water))))
+    with pytest.raises(NoSolutionError) as caught:
+        turning(both, eta=0.5)
+    least = float(re.search(r"efficiency: ([\d.]+)", str(caught.value))[1])
+    assert least == pytest.approx(72.4 / 74.9, abs=1e-4)
+    assert least >= 72.4 / 74.9
+    assert turning(both, eta=0.98).work_shaft == pytest.approx((0.98 * 74.9 - 72.4) * 1e3, rel=1e-9)
+    weak = replace(both, pistons=(replace(both.pistons[0], bore=0.9 * bore), both.pistons[1]))
+    with pytest.raises(NoSolutionError, match="it runs with no efficiency"):
+        turning(weak, eta=0.5)
+
+
+# the rule, at every angle
+
+
+def test_a_cylinder_whose_pistons_drive_loses_of_all_its_torque() -> None:
+    twice = replace(ENGINE, pistons=(STEAM, replace(STEAM, bore=0.3)))
+    assert pytest.approx(ETA * turning(twice).at(ANGLES).M, rel=1e-13) == turning(twice, eta=ETA).at(ANGLES).M
+
+
+def test_on_a_rod_with_both_only_the_driving_force_loses() -> None:
+    """T_eff = T − (1 − η) P_driving (dx/dφ)/R: inertia, weight and friction in full."""
+    whole, less = (turning(PUMPING, eta=eta).at(ANGLES) for eta in (1.0, ETA))
+    assert pytest.approx(whole.M - (1 - ETA) * gas_torque(STEAM), abs=1e-9) == less.M
+    assert less.T_inertia == pytest.approx(whole.T_inertia, rel=1e-14)
+
+
+def test_driven_cylinders_on_a_shaft_that_others_drive_count_in_full() -> None:
+    each = [turning(one).at(ANGLES).M for one in (ENGINE, DRIVEN)]
+    assert pytest.approx(ETA * each[0] + each[1], abs=1e-8) == turning(ENGINE, DRIVEN, eta=ETA).at(ANGLES).M
+
+
+def test_a_machine_that_is_only_driven_needs_more() -> None:
+    whole = turning(DRIVEN, replace(DRIVEN, crank_position=160.0))
+    less = turning(DRIVEN, replace(DRIVEN, crank_position=160.0), eta=ETA)
+    assert pytest.approx(whole.at(ANGLES).M / ETA, rel=1e-13) == less.at(ANGLES).M
+    press = replace(ENGINE, pistons=(), ram_force=RamForce(2e4), friction=None)
+    assert pytest.approx(turning(press).at(ANGLES).M / ETA, rel=1e-13) == turning(press, eta=ETA).at(ANGLES).M
+
+
+@pytest.mark.parametrize(("piston", "factor"), [(STEAM, ETA), (PUMP, 1 / ETA)], ids=["drives", "driven"])
+@pytest.mark.parametrize("idle", [constant_pressure(3e5), SPRING], ids=["constant", "gas spring"])
+def test_a_piston_without_work_is_neither(piston: Piston, factor: float, idle: Card) -> None:
+    beside = replace(ENGINE, pistons=(piston, replace(IDLE, indicator=Indicator(idle))))
+    assert pytest.approx(factor * turning(beside).at(ANGLES).M, rel=1e-13) == turning(beside, eta=ETA).at(ANGLES).M
+
+
+def test_a_given_effort_counts_by_its_mean() -> None:
+    points = [(0, 100.0), (90, -60.0), (360, 100.0)]
+    turned = [(angle, -torque) for angle, torque in points]
+    assert of_points(points, efficiency=ETA).M_mean == pytest.approx(ETA * 20, rel=1e-14)
+    assert of_points(turned, efficiency=ETA).M_mean == pytest.approx(-20 / ETA, rel=1e-14)
+
+
+# what follows from the torque
+
+
+def test_orders_are_those_of_the_torque() -> None:
+    """Of a sum of parts that lose differently, each at its own place on the shaft."""
+    whole = turning(PUMPING, DRIVEN, replace(ENGINE, crank_position=200.0), eta=ETA)
+    found = Case(whole.machine).harmonics()
+    wanted = spectrum(whole.turned.effort, found.orders)
+    size = np.abs(wanted.amplitudes).max()
+    assert found.machine.whole.mean == pytest.approx(whole.M_mean, rel=1e-12)
+    assert found.machine.whole.amplitudes == pytest.approx(wanted.amplitudes, abs=1e-12 * size)
+
+
+def test_kinetic_energy_gains_what_gas_and_pump_give_beyond_the_load() -> None:
+    """Masses count in full in ω: ½ J(φ) ω² changes by the work of η × steam less pump less the mean resistance."""
+    cylinder = Cylinder(SliderCrank(0.4, 2.0), pistons=(STEAM, PUMP), masses=Masses(800.0))
+    machine = turning(cylinder, eta=ETA, flywheel=Flywheel(20_000.0))
+    gas = turning(replace(cylinder, masses=None), eta=ETA)
+    slope = cylinder.mechanism.slope(CrankAngle.of(ANGLES))
+    energy = (20_000.0 + 800.0 * slope**2) * machine.at(ANGLES).omega ** 2 / 2
+    gained = gas.at(ANGLES).E
+    assert energy - energy[0] == pytest.approx(gained - gained[0], abs=1e-9 * energy[0])
