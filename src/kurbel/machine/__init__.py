@@ -221,7 +221,7 @@ class Machine(Described):
         given = (cylinder,) if cylinder else cylinders
         faults = _shaft_faults(shaft, given) if shaft else []
         try:
-            if firing_order or not isinstance(given, tuple):
+            if firing_order or not isinstance(given, tuple) or len(given) > 1:
                 from kurbel.machine.equal import in_order
 
                 given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
@@ -231,6 +231,8 @@ class Machine(Described):
                 keys["shaft"] = line_of(shaft, _names(given))
             elif not given:
                 refuse(*faults)
+            if len(given) == 1 and given[0].crank_position is None:
+                given = (replace(given[0], crank_position=0.0),)
             named = tuple(one if one.name else replace(one, name=name) for one, name in zip(given, _names(given)))
             machine = cls(named, load=None if isinstance(load, str) else load, **keys)
         except RuleError as error:
