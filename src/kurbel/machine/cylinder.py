@@ -101,7 +101,11 @@ class Cylinder(Described):
             "Friction of crosshead, piston rings, pins and journals, or a force",
             absent="no friction",
         ),
-        "crank_position": Key(Physical("angle"), "Angle by which this crank follows crank 1", absent="0 deg; or 360 deg, where a four-stroke engine then fires more evenly"),
+        "crank_position": Key(
+            Physical("angle"),
+            "Angle by which this crank follows crank 1",
+            absent="0 deg; or 360 deg, where a four-stroke engine then fires more evenly",
+        ),
         "bank_angle": Key(
             Physical("angle", least=-360, most=360),
             "Angle from the stroke line of cylinder 1 to this one, in the sense of rotation",

@@ -35,8 +35,8 @@ class EqualCylinders(Described):
         ),
         "crank_positions": Key(
             Listing(Physical("angle")),
-            "Angles by which the cranks follow crank 1, one for each cylinder, where they are not even; of a four-stroke "
-            "engine they are places of the pins, or, where one is 360 deg or more, firing angles",
+            "Angles by which the cranks follow crank 1, one for each cylinder, where no firing order makes them; if all "
+            "are less than 360 deg, a four-stroke engine fires in the turns that are most even",
             absent="from the firing order",
             instead="firing_order",
         ),

@@ -1,4 +1,4 @@
-"""When cylinders fire: the turn of a four-stroke cycle that each takes where the file leaves it open, and the intervals."""
+"""When cylinders fire: the turn of a four-stroke cycle that each takes where the file leaves it open; intervals."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
