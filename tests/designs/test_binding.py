@@ -144,7 +144,7 @@ LISTED = "cycle: four-stroke\ncylinders: [{stroke: 8 m, rod_ratio: 4}, {like: cy
 @pytest.mark.parametrize(
     ("text", "key", "values"),
     [
-        (TWIN, "cylinders.bank_angles.1", ("90 deg", "120 deg", "-60 deg", "359 deg", "0 deg")),
+        (TWIN, "cylinders.bank_angles.1", ("60 deg", "120 deg", "-60 deg", "359 deg", "0 deg", "90 deg")),
         (TWIN, "cycle", ("two-stroke", "four-stroke")),
         (TWIN, "cylinders.each.stroke", ("80 mm", "90 mm")),
         (PINS, "cylinders.crank_positions.2", ("90 deg", "240 deg", "450 deg", "360 deg", "-30 deg")),

@@ -81,7 +81,8 @@ class Machine(Described):
     driven; brake_power: measured, in W; limits: key-value id -> bound in SI; expect: key-value id -> the smallest and
     the largest value in SI that are met, either id after `machine.` or the name of a cylinder where it is of that one;
     uncertainty: dotted key -> its standard uncertainty as a text; rotation: `over` or `under`, the sense in which it
-    turns, None where it is not told; moment_reference: place along the shaft in m about which free moments are taken, None for the middle.
+    turns, None where it is not told; moment_reference: place along the shaft in m about which free moments are taken,
+    None for the middle.
     """
 
     cylinders: tuple[Cylinder, ...]

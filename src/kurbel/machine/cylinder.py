@@ -104,7 +104,7 @@ class Cylinder(Described):
         "crank_position": Key(
             Physical("angle"),
             "Angle by which this crank follows crank 1",
-            absent="0 deg; or 360 deg, where a four-stroke engine then fires more evenly",
+            absent="0 deg; 360 deg in a four-stroke cycle where the firing intervals are then more even",
         ),
         "bank_angle": Key(
             Physical("angle", least=-360, most=360),

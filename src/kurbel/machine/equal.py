@@ -35,14 +35,15 @@ class EqualCylinders(Described):
         ),
         "crank_positions": Key(
             Listing(Physical("angle")),
-            "Angles by which the cranks follow crank 1, one for each cylinder, where no firing order makes them; if all "
-            "are less than 360 deg, a four-stroke engine fires in the turns that are most even",
+            "Angles by which the cranks follow crank 1, one for each cylinder, where no firing order gives them; if all are "
+            "less than 360 deg, four-stroke cylinders fire in the turns with the most even intervals",
             absent="from the firing order",
             instead="firing_order",
+            example="[0 deg, 120 deg, 240 deg]",
         ),
         "spacing": not_negative(
             "length",
-            "From one cylinder of a bank to the next along the shaft; 0 of a single pair on one pin",
+            "From one cylinder of a bank to the next along the shaft; 0 mm: two rods on one pin",
             absent="free moments left out",
         ),
         "bank_angles": Key(
