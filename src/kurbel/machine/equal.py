@@ -35,8 +35,8 @@ class EqualCylinders(Described):
         ),
         "crank_positions": Key(
             Listing(Physical("angle")),
-            "Angles by which the cranks follow crank 1, one for each cylinder, where no firing order gives them; if all are "
-            "less than 360 deg, four-stroke cylinders fire in the turns with the most even intervals",
+            "Angles by which the cranks follow crank 1, one for each cylinder, where no firing order gives them; if "
+            "all are less than 360 deg, four-stroke cylinders fire in the turns with the most even intervals",
             absent="from the firing order",
             instead="firing_order",
             example="[0 deg, 120 deg, 240 deg]",

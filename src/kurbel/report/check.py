@@ -113,7 +113,7 @@ def _firing_entries(machine: Machine) -> Iterable[Entry]:
     order = f"order {'-'.join(str(number) for _, number in found)}, " if path else ""
     yield Entry("firing", f"{order}at {_listed(angles)} deg, intervals {listed} deg", "info", path)
     if uneven:
-        yield Entry("note", f"the firing intervals are uneven: {least:g} to {most:g} deg", "warning", path)
+        yield Entry("note", f"the firing intervals are uneven: {least:g} to {most:g} deg", "info", path)
 
 
 def _listed(angles: Iterable[float]) -> str:
