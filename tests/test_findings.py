@@ -21,7 +21,7 @@ from kurbel.report.check import checked
 from kurbel.report.compared import Unjudged, compared
 from kurbel.report.frame import Frame, report_of
 from kurbel.report.whole import COMMANDS
-from representative import case_of, few, shipped
+from representative import CONFIGS, case_of, few, shipped
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -332,3 +332,57 @@ def test_a_rod_whose_area_is_not_taken_off_is_told(command: str) -> None:
     single = ENGINE + f"indicator: {{head_end: {{{PRESSURE}}}}}\n" + SHAFT
     assert told not in run(single, command)[1]
     assert len(checked(loads(text)).errors) == 0
+
+
+# firing
+
+
+def firing(text: str) -> list[str]:
+    status, listed, _ = run(text, "check", "-f", "json")
+    assert status == 0
+    found = [one["message"] for one in json.loads(listed)["findings"]]
+    return [one for one in found if one.startswith("firing: ") or "uneven" in one]
+
+
+TWIN = "cycle: four-stroke\ncylinders: {count: 2, bank_angles: [0 deg, 90 deg], each: {stroke: 80 mm, rod_ratio: 4}}\n"
+
+
+def test_check_lists_firing_angles_and_intervals() -> None:
+    told = ["order 1-2, at 0, 450 deg, intervals 450, 270 deg", "the firing intervals are uneven: 270 to 450 deg"]
+    assert firing(TWIN) == [f"firing: {told[0]}", f"note: {told[1]}"]
+    listed = run(TWIN, "check")[1]
+    assert all(line in listed for line in told)
+    assert firing(TWIN.replace("90 deg", "360 deg")) == ["firing: order 1-2, at 0, 360 deg, intervals 360 deg"]
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("gas-engine", ["firing: at 0 deg, intervals 720 deg"]),
+        # the crank end fires one stroke after the head end (R p. 609)
+        (
+            "gas-engine-double-acting",
+            ["firing: at 0, 180 deg, intervals 180, 540 deg", "note: the firing intervals are uneven: 180 to 540 deg"],
+        ),
+        ("marine-diesel", ["firing: order 1-5-3-4-2-6, at 0, 60, 120, 180, 240, 300 deg, intervals 60 deg"]),
+        ("waterworks-two-cranks", []),
+        ("compressor-two-stage", []),
+    ],
+)
+def test_every_engine_and_nothing_else_fires(name: str, expected: list[str]) -> None:
+    assert firing(CONFIGS[name].read_text(encoding="utf-8")) == expected
+
+
+def test_a_driven_pump_and_an_open_crank_end_do_not_fire() -> None:
+    cards = (
+        "head_end: {otto: {intake: -0.1 bar, exhaust: 0.1 bar, peak: 25 bar, compression_ratio: 6}}, crank_end: 0.2 bar"
+    )
+    pump = "cycle: four-stroke\nstroke: 80 mm\nrod_ratio: 4\nbore: 80 mm\nindicator: {%s}\ntandem: [{bore: 9 mm, %s}]\n"
+    delivery = "indicator: {head_end: {constant: {expansion: 0 bar, compression: 3 bar}}}"
+    assert firing(pump % (cards, delivery)) == ["firing: at 0 deg, intervals 720 deg"]
+
+
+def test_a_firing_angle_is_that_of_the_dead_centre() -> None:
+    """Of an offset slider-crank φ_i = asin(e/(L + R)), here e/(L + R) = 1/10."""
+    (told,) = firing("cycle: four-stroke\ncrank: 100 mm\nrod: 400 mm\noffset: 50 mm\n")
+    assert abs(float(told.split()[2])) % 720 == pytest.approx(math.degrees(math.asin(0.1)), abs=1e-4)

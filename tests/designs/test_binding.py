@@ -133,6 +133,31 @@ def test_every_number_of_every_file_is_bound_as_it_is_read(path: Path) -> None:
     assert count > 1
 
 
+TWIN = """\
+cycle: four-stroke
+cylinders: {count: 3, bank_angles: [0 deg, 60 deg, 90 deg], each: {stroke: 80 mm, rod_ratio: 4}}
+"""
+PINS = TWIN.replace("bank_angles", "crank_positions")
+LISTED = "cycle: four-stroke\ncylinders: [{stroke: 8 m, rod_ratio: 4}, {like: cylinder 1, crank_position: 9 deg}]\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "values"),
+    [
+        (TWIN, "cylinders.bank_angles.1", ("60 deg", "120 deg", "-60 deg", "359 deg", "0 deg", "90 deg")),
+        (TWIN, "cycle", ("two-stroke", "four-stroke")),
+        (TWIN, "cylinders.each.stroke", ("80 mm", "90 mm")),
+        (PINS, "cylinders.crank_positions.2", ("90 deg", "240 deg", "450 deg", "360 deg", "-30 deg")),
+        (LISTED, "cylinders.1.crank_position", ("0 deg", "90 deg", "450 deg")),
+    ],
+)
+def test_each_row_fires_in_its_own_turns(text: str, key: str, values: Sequence[str]) -> None:
+    file, rows = source.decode("m.yaml", text.encode()), [(value,) for value in values]
+    found = bound(file, (key,), rows[0], rows)
+    for row, texts in enumerate(rows):
+        assert same(found[row], read(file, (key,), texts)), texts
+
+
 BORES = "{crank: 400 mm, rod: 2 m, speed: 50 rpm, bore: 450 mm, crank_end_rod: 100 mm, friction: {crosshead: 0.1}}"
 
 

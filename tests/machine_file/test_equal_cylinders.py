@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
+import random
 import re
+import time
 
 import jsonschema
 import pytest
@@ -118,6 +121,88 @@ def _numbers(machine: Machine) -> list[tuple[object, ...]]:
     ]
 
 
+# turns of a four-stroke cycle
+
+
+def positions(keys: str, cycle: str = "four-stroke") -> list[float]:
+    return [one.crank_position for one in equal(keys, cycle)]
+
+
+def degrees(*numbers: float) -> str:
+    return f"[{', '.join(f'{one!r} deg' for one in numbers)}]"
+
+
+@pytest.mark.parametrize(
+    ("keys", "expected"),
+    [
+        ("count: 2, bank_angles: [0 deg, 90 deg]", [0, 450]),  # Ducati and Moto Guzzi fire 450 and 270 deg apart
+        ("count: 2, bank_angles: [0 deg, 45 deg]", [0, 405]),  # Harley-Davidson: 405 and 315 deg
+        ("count: 2, spacing: 0 mm, bank_angles: [0 deg, 60 deg]", [0, 420]),
+        ("count: 2, crank_positions: [0 deg, 0 deg]", [0, 360]),  # a parallel twin with level pistons
+        ("count: 2, crank_positions: [0 deg, 180 deg]", [0, 180]),  # 180 and 540 deg either way
+        ("count: 2, bank_angles: [0 deg, 90 deg], crank_positions: [0 deg, 270 deg]", [0, 270]),
+        ("count: 3, crank_positions: [0 deg, 120 deg, 240 deg]", [0, 480, 240]),
+        ("count: 4, crank_positions: [0 deg, 180 deg, 180 deg, 0 deg]", [0, 180, 540, 360]),  # 1-2-4-3 and 1-3-4-2
+        # the cross-plane crank of the Yamaha R1, 270-180-90-180
+        ("count: 4, crank_positions: [0 deg, 450 deg, 270 deg, 540 deg]", [0, 450, 270, 540]),
+    ],
+)
+def test_each_cylinder_fires_in_the_turn_that_is_most_even(keys: str, expected: list[float]) -> None:
+    assert positions(keys) == expected
+
+
+@pytest.mark.parametrize("count", [3, 5, 7, 9, 11])
+def test_a_radial_engine_fires_every_other_cylinder(count: int) -> None:
+    """1-3-5-…-2-4-…, which needs an odd number of cylinders: every textbook of aircraft engines."""
+    fired = positions(f"count: {count}, bank_angles: {degrees(*(360 / count * i for i in range(count)))}")
+    order = sorted(range(1, count + 1), key=lambda number: fired[number - 1])
+    assert order == [*range(1, count + 1, 2), *range(2, count + 1, 2)]
+
+
+def test_as_in_an_exhaustive_search() -> None:
+    """Every combination of turns written out, with its sum of squares and its order as the rule says them."""
+    draw = random.Random(25)
+    for _ in range(40):
+        pins = [0, *(draw.choice(range(0, 360, 30)) for _ in range(draw.randrange(1, 6)))]
+        every = [[0, *turned] for turned in itertools.product(*((pin, pin + 360) for pin in pins[1:]))]
+        assert positions(f"count: {len(pins)}, crank_positions: {degrees(*pins)}") == min(every, key=_reads)
+
+
+def _reads(angles: list[int]) -> tuple[int, list[int], list[int]]:
+    order = sorted(range(len(angles)), key=lambda place: (angles[place], place))
+    at = [*(angles[place] for place in order), 720]
+    return sum((after - one) ** 2 for one, after in itertools.pairwise(at)), order, angles
+
+
+def test_of_more_than_twelve_one_pin_after_another() -> None:
+    """Cadillac V-16: two straight eights at 45 deg on one shaft, a firing every 45 deg."""
+    pins = [(eight + bank) % 360 for eight in (0, 180, 90, 270, 270, 90, 180, 0) for bank in (0, 45)]
+    keys = f"count: 16, spacing: 100 mm, bank_angles: [0 deg, 45 deg], crank_positions: {degrees(*pins)}"
+    fired = positions(keys)
+    assert [one % 360 for one in fired] == pins
+    assert sorted(fired) == [45 * i for i in range(16)]
+    begun = time.perf_counter()
+    positions(f"count: 100, crank_positions: {degrees(*[0] * 100)}")
+    assert time.perf_counter() - begun < 5
+
+
+def test_what_is_said_of_the_turn_holds() -> None:
+    """A crank position of a listed cylinder, a firing order, and positions that reach into the second turn."""
+    row = "{stroke: 80 mm, rod_ratio: 4, bank_angle: 90 deg"
+    for said, expected in (("", 360), (", crank_position: 90 deg", 90), (", crank_position: 0 deg", 0)):
+        listed = loads(f"cycle: four-stroke\ncylinders:\n- {{stroke: 80 mm, rod_ratio: 4}}\n- {row}{said}}}\n")
+        assert [one.crank_position for one in listed.cylinders] == [0, expected]
+    assert positions("count: 2, firing_order: 1-2, bank_angles: [0 deg, 90 deg]") == [0, 360]
+    assert positions("count: 4, crank_positions: [0 deg, 540 deg, 180 deg, 360 deg]") == [0, 540, 180, 360]
+
+
+def test_two_strokes_leave_no_choice() -> None:
+    assert positions("count: 2, bank_angles: [0 deg, 90 deg]", "two-stroke") == [0, 90]
+    pump = "{stroke: 80 mm, rod_ratio: 4, cycle: two-stroke}"
+    listed = loads(f"cycle: four-stroke\ncylinders:\n- {{stroke: 80 mm, rod_ratio: 4}}\n- {pump}\n")
+    assert [one.crank_position for one in listed.cylinders] == [0, 0]
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -136,6 +221,22 @@ def _numbers(machine: Machine) -> list[tuple[object, ...]]:
         (
             f"firing_order: 1-2\ncylinders: {{count: 2, firing_order: 1-2, {EACH}}}",
             "1:15: firing_order: a firing order also stands in 'cylinders'",
+        ),
+        (
+            f"cylinders: {{count: 3, crank_positions: [0 deg, 90 deg], {EACH}}}",
+            "cylinders.crank_positions: 2 angles for 3 cylinders; give one for each",
+        ),
+        (
+            f"cylinders: {{count: 2, firing_order: 1-2, crank_positions: [0 deg, 90 deg], {EACH}}}",
+            "'firing_order' and 'crank_positions' say the same thing; leave one of them out",
+        ),
+        (
+            f"firing_order: 1-2\ncylinders: {{count: 2, crank_positions: [0 deg, 90 deg], {EACH}}}",
+            "1:15: firing_order: crank positions also stand in 'cylinders'; leave one of them out",
+        ),
+        (
+            "cylinders: {count: 1, crank_positions: [9 deg], each: {stroke: 8 m, rod_ratio: 4, crank_position: 9 deg}}",
+            "cylinders.each.crank_position: 'crank_positions' sets it; leave it out",
         ),
         (
             f"cylinders: {{count: 3, bank_angles: [0 deg, 90 deg], {EACH}}}",

@@ -7,11 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.declared.forms.figures import scoped
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder, written_texts
-from kurbel.designs.columns import Answer, asked_answers, subjects
+from kurbel.designs.columns import Answer, asked_answers
 from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
 from kurbel.machine import Machine
@@ -86,6 +87,14 @@ KEPT = {True: "yes", False: "no", None: ""}
 """What is told of limits that are kept, are not, and cannot be judged."""
 
 
+class _Limit(NamedTuple):
+    """A limit of the file by its name, and the answer that its bound is for."""
+
+    name: str
+    answer: Answer
+    bound: float
+
+
 class Sweep:
     """Rows of one machine; heads: what stands over their values. Raises UsageError for what makes none."""
 
@@ -101,7 +110,7 @@ class Sweep:
         self.texts = ("keeps", "broken", "failure") if self.limited else ("failure",)
         """Heads of the texts after the values, as `Row.text` tells them."""
 
-    def _started(self) -> tuple[Binder, tuple[Answer, ...], tuple[tuple[Answer, float], ...]]:
+    def _started(self) -> tuple[Binder, tuple[Answer, ...], tuple["_Limit", ...]]:
         """Return what binds texts, starting from the first row whose machine tells what it answers, and who answers.
 
         That is what is asked for, and what limits are for, with their bounds.
@@ -169,7 +178,7 @@ class Sweep:
         texts = [self.plan.texts(row) for row in company]
         bound = self._binder.bound(texts)
         own = range(wanted.start - company.start, wanted.stop - company.start)
-        found = bound.failures | answers_of(bound.lots, (*self.asked, *(answer for answer, _ in self._limits)), own)
+        found = bound.failures | answers_of(bound.lots, (*self.asked, *(one.answer for one in self._limits)), own)
         inputs = list(self._inputs(texts))
         values = iter(self._values([found[row] for row in own if not isinstance(found[row], str)]))
         return [self._row(number + 1, inputs[row], found[row], values) for row, number in zip(own, wanted)]
@@ -198,14 +207,14 @@ class Sweep:
 
     def _judged(self, found: Sequence[Any]) -> tuple[bool | None, str, str]:
         """Return whether the limits are kept, the first that is not, and which cannot be judged."""
-        from kurbel.report.compared import breaks
+        from kurbel.report.compared import breaks, without
 
-        there = [(one.quantity, bound, value) for (one, bound), value in zip(self._limits, found) if value is not None]
-        broken = next((quantity.id for quantity, bound, value in there if breaks(quantity, bound, value)), "")
-        known = {quantity.id for quantity, _, _ in there}
-        unknown = dict.fromkeys(one.quantity.id for one, _ in self._limits if one.quantity.id not in known)
+        there = [(one, value) for one, value in zip(self._limits, found) if value is not None]
+        broken = next((one.name for one, value in there if breaks(one.answer.quantity, one.bound, value)), "")
+        known = {one.name for one, _ in there}
+        unknown = {one.name: one.answer.quantity.id for one in self._limits if one.name not in known}
         keeps = None if not self.limited or (unknown and not broken) else not broken
-        return keeps, broken, "; ".join(f"limits.{id}: this machine has no {id}" for id in unknown)
+        return keeps, broken, "; ".join(f"limits.{name}: {without(name, id)}" for name, id in unknown.items())
 
     def chunks(self, rows: range) -> Iterator[tuple[range, range]]:
         """Yield the chunks that these rows are computed in, each with those rows that are wanted of it.
@@ -222,7 +231,7 @@ class Sweep:
     @cached_property
     def _at_once(self) -> int:
         """Rows that are answered and handed over at once: few where each takes long."""
-        every = (*self.asked, *(answer for answer, _ in self._limits))
+        every = (*self.asked, *(one.answer for one in self._limits))
         return _SLOWLY if any(is_slow(self._binder.machine, one) for one in every) else CHUNK
 
 
@@ -260,25 +269,20 @@ def _in_unit(number: Any, kind: str, unit: str) -> Any:
     return None if number is None else convert(number, kind, unit) + 0.0
 
 
-def _limit_answers(machine: Machine) -> Iterable[tuple[Answer, float]]:
+def _limit_answers(machine: Machine) -> Iterable[_Limit]:
     """Yield whose value each limit of the file is for, with its bound; raises UsageError where nobody has it."""
+    from kurbel.report.compared import holders, without
+
+    case = Case(machine)
     for name, bound in machine.limits:
         try:
-            answers = list(_limited(Case(machine), name))
+            with np.errstate(all="ignore"):
+                found = holders(case, name)
         except UsageError as error:
             raise UsageError(f"limits.{name}: {error}") from None
-        if not answers:
-            raise UsageError(f"limits.{name}: this machine has no {name}")
-        yield from ((one, bound) for one in answers)
-
-
-def _limited(case: Case, name: str) -> Iterable[Answer]:
-    from kurbel.report.compared import commands_for
-
-    for command in commands_for(case.machine, name):
-        for subject in subjects(case, command):
-            if quantity := subject.lists.key_values(command).get(name):
-                yield Answer(quantity, command, subject.name)
+        if not found:
+            raise UsageError(f"limits.{name}: {without(name, scoped(name)[1])}")
+        yield from (_Limit(name, Answer(one.quantity, one.command, one.subject.name), bound) for one in found)
 
 
 _sweep = lru_cache(maxsize=4)(Sweep)

@@ -27,13 +27,14 @@ from kurbel.declared.forms import (
     Uncertainties,
     not_negative,
 )
-from kurbel.declared.forms.figures import Expected
+from kurbel.declared.forms.figures import MACHINE, Expected, scoped
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.quantity import Quantity
-from kurbel.declared.reading import REFUSED
+from kurbel.declared.reading import REFUSED, shown
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.frozen import frozen
 from kurbel.machine.cylinder import COUNTERWEIGHTS, CYCLES, Cylinder, crowded
+from kurbel.near_words import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -78,9 +79,10 @@ class Machine(Described):
     speed: revolutions per second, None where it is not given; cycle: `two-stroke` or `four-stroke`; ambient: absolute
     pressure in Pa; efficiency η of the driving side, by which the turning effort is divided where no piston
     drives; brake_power: measured, in W; limits: key-value id -> bound in SI; expect: key-value id -> the smallest and
-    the largest value in SI that are met; uncertainty: dotted key -> its standard
-    uncertainty as a text; rotation: `over` or `under`, the sense in which it turns, None where it is
-    not told; moment_reference: place along the shaft in m about which free moments are taken, None for the middle.
+    the largest value in SI that are met, either id after `machine.` or the name of a cylinder where it is of that one;
+    uncertainty: dotted key -> its standard uncertainty as a text; rotation: `over` or `under`, the sense in which it
+    turns, None where it is not told; moment_reference: place along the shaft in m about which free moments are taken,
+    None for the middle.
     """
 
     cylinders: tuple[Cylinder, ...]
@@ -189,9 +191,16 @@ class Machine(Described):
             absent="no torsional vibration",
             also=("shaft_line", "torsion"),
         ),
-        "limits": Key(Limits(_key_values), "Bounds for key values, checked by `kurbel check`", absent="none"),
+        "limits": Key(
+            Limits(_key_values),
+            "Bounds for key values, checked by `kurbel check`: of each cylinder that has one, else of the machine; "
+            "`machine.T_max` of the whole machine, `NAME.T_max` of one cylinder",
+            absent="none",
+        ),
         "expect": Key(
-            Expectations(_key_values), "Figures that key values are to meet, compared by `kurbel check`", absent="none"
+            Expectations(_key_values),
+            "Figures that key values are to meet, compared by `kurbel check`, with the names of `limits`",
+            absent="none",
         ),
         "uncertainty": Key(
             Uncertainties(),
@@ -221,7 +230,7 @@ class Machine(Described):
         given = (cylinder,) if cylinder else cylinders
         faults = _shaft_faults(shaft, given) if shaft else []
         try:
-            if firing_order or not isinstance(given, tuple):
+            if firing_order or not isinstance(given, tuple) or len(given) > 1:
                 from kurbel.machine.equal import in_order
 
                 given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
@@ -231,6 +240,8 @@ class Machine(Described):
                 keys["shaft"] = line_of(shaft, _names(given))
             elif not given:
                 refuse(*faults)
+            if len(given) == 1 and given[0].crank_position is None:
+                given = (replace(given[0], crank_position=0.0),)
             named = tuple(one if one.name else replace(one, name=name) for one, name in zip(given, _names(given)))
             machine = cls(named, load=None if isinstance(load, str) else load, **keys)
         except RuleError as error:
@@ -259,6 +270,15 @@ class Machine(Described):
         for index, name in enumerate(names):
             if name in names[:index]:
                 faults.append(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
+            if name == MACHINE:
+                message = f"'{MACHINE}' stands for the whole machine in 'limits' and 'expect'; give another name"
+                faults.append(Fault(("cylinders", index, "name"), message))
+        scopes = tuple(dict.fromkeys((MACHINE, *names)))
+        for key, id, figure in (*(("limits", *one) for one in self.limits), *(("expect", *one) for one in self.expect)):
+            if (scope := scoped(id)[0]) and scope not in scopes:
+                hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
+                written = getattr(figure, "name", "") or id
+                faults.append(Fault((key, written), f"no cylinder is called '{shown(scope)}'{hint}", at_key=True))
         faults += [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
         for index, cylinder in enumerate(self.cylinders):
             rubbing = cylinder.friction.faults_beside(self.crankshaft) if cylinder.friction else ()

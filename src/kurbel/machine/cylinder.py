@@ -54,7 +54,8 @@ class Cylinder(Described):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
-    is left out; crank_position: degrees by which this crank follows crank 1; bank_angle: degrees from the stroke line
+    is left out; crank_position: degrees by which this crank follows crank 1, None in a cylinder from a file that gives
+    none, until the machine has it; bank_angle: degrees from the stroke line
     of cylinder 1 to its own, in the sense of rotation; axial_position: place along the shaft in m, None where it is not
     known; ram_force, moment: what the output works against, where it slides or only swings. Raises
     RuleError for parts that the mechanism cannot have.
@@ -100,7 +101,11 @@ class Cylinder(Described):
             "Friction of crosshead, piston rings, pins and journals, or a force",
             absent="no friction",
         ),
-        "crank_position": Key(Physical("angle"), "Angle by which this crank follows crank 1", absent="0 deg"),
+        "crank_position": Key(
+            Physical("angle"),
+            "Angle by which this crank follows crank 1",
+            absent="0 deg; 360 deg in a four-stroke cycle where the firing intervals are then more even",
+        ),
         "bank_angle": Key(
             Physical("angle", least=-360, most=360),
             "Angle from the stroke line of cylinder 1 to this one, in the sense of rotation",
@@ -138,7 +143,7 @@ class Cylinder(Described):
             refused("'like' stands in a list of 'cylinders', which has another one above", "like")
         if tandem and piston is None:
             refused("a tandem piston stands beside the cylinder's own one; give its 'bore'", "tandem")
-        return cls(pistons=() if piston is None else (piston, *tandem), **{"name": "", **keys})
+        return cls(pistons=() if piston is None else (piston, *tandem), **{"name": "", "crank_position": None, **keys})
 
     def __post_init__(self) -> None:
         at_point = self.point.faults_on(self.mechanism) if self.point else ()

@@ -1,27 +1,29 @@
-"""Equal cylinders described at once, and cranks that follow from a firing order."""
+"""Equal cylinders described at once, and where the cranks of several cylinders stand."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record, positive
+from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record, not_negative
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.frozen import frozen
 from kurbel.machine.cylinder import CYCLES, Cylinder
+from kurbel.machine.firing import in_even_turns
 
 
 @frozen
 class EqualCylinders(Described):
     """Cylinders that differ in name, crank position and place only.
 
-    cylinders: with bank angle γ in degrees and place along the shaft in m; firing_order: their numbers, from 1; shared:
-    every bank has one cylinder, so that all can stand on one crank pin.
+    cylinders: with bank angle γ in degrees and place along the shaft in m; firing_order: their numbers, from 1; placed:
+    their crank positions are given; shared: every bank has one cylinder, so that all can stand on one crank pin.
     """
 
     cylinders: tuple[Cylinder, ...]
     firing_order: tuple[int, ...] | None
+    placed: bool
     shared: bool
 
     KEYS: ClassVar[Keys] = {
@@ -31,8 +33,18 @@ class EqualCylinders(Described):
             "Order in which they fire, at equal intervals over the cycle",
             absent="that of the machine; where every bank has one cylinder, all stand on one crank pin",
         ),
-        "spacing": positive(
-            "length", "From one cylinder of a bank to the next along the shaft", absent="free moments left out"
+        "crank_positions": Key(
+            Listing(Physical("angle")),
+            "Angles by which the cranks follow crank 1, one for each cylinder, where no firing order gives them; if "
+            "all are less than 360 deg, four-stroke cylinders fire in the turns with the most even intervals",
+            absent="from the firing order",
+            instead="firing_order",
+            example="[0 deg, 120 deg, 240 deg]",
+        ),
+        "spacing": not_negative(
+            "length",
+            "From one cylinder of a bank to the next along the shaft; 0 mm: two rods on one pin",
+            absent="free moments left out",
         ),
         "bank_angles": Key(
             Listing(Physical("angle", least=-360, most=360)),
@@ -50,6 +62,7 @@ class EqualCylinders(Described):
         count: int,
         each: Cylinder,
         firing_order: tuple[int, ...] | None = None,
+        crank_positions: tuple[float, ...] | None = None,
         spacing: float | None = None,
         bank_angles: tuple[float, ...] = (0.0,),
     ) -> "EqualCylinders":
@@ -57,27 +70,41 @@ class EqualCylinders(Described):
         if count % len(bank_angles):
             message = f"{len(bank_angles)} angles for {count} cylinders; give one for each bank or for each cylinder"
             refused(message, "bank_angles")
+        if crank_positions and len(crank_positions) != count:
+            message = f"{len(crank_positions)} angles for {count} cylinders; give one for each"
+            refused(message, "crank_positions")
+        if crank_positions and each.crank_position is not None:
+            refused("'crank_positions' sets it; leave it out", "each", "crank_position")
         angles = [bank_angles[index % len(bank_angles)] for index in range(count)]
         places = [None if spacing is None else spacing * angles[:index].count(one) for index, one in enumerate(angles)]
         cylinders = (_standing(each, angle - angles[0], place) for angle, place in zip(angles, places))
-        named = tuple(replace(one, name=f"{each.name or 'cylinder'} {i}") for i, one in enumerate(cylinders, 1))
-        return cls(named, firing_order, len(set(angles)) == count)
+        positions = crank_positions or (each.crank_position,) * count
+        named = tuple(
+            replace(one, name=f"{each.name or 'cylinder'} {i}", crank_position=position)
+            for i, (one, position) in enumerate(zip(cylinders, positions), 1)
+        )
+        return cls(named, firing_order, crank_positions is not None, len(set(angles)) == count)
 
-    def standing(self, order: tuple[int, ...] | None, cycle: float) -> tuple[Cylinder, ...]:
-        """Return the cylinders with their crank positions; order: of the machine, cycle: in degrees."""
-        if order and self.firing_order:
-            refused("a firing order also stands in 'cylinders'; leave one of them out", "firing_order")
+    def standing(self, order: tuple[int, ...] | None, cycle: str) -> tuple[Cylinder, ...]:
+        """Return the cylinders with their crank positions; order: of the machine; cycle: of the machine."""
+        if order and (self.firing_order or self.placed):
+            given = "crank positions also stand" if self.placed else "a firing order also stands"
+            refused(f"{given} in 'cylinders'; leave one of them out", "firing_order")
         if order or self.firing_order:
             where: Path = ("cylinders", "firing_order") if self.firing_order else ("firing_order",)
-            return fired(self.cylinders, self.firing_order or order or (), cycle, where)
+            return fired(self.cylinders, self.firing_order or order or (), _degrees(self.cylinders, cycle), where)
+        if self.placed:
+            only_pins = all(0 <= one.crank_position < 360 for one in self.cylinders)
+            return in_even_turns(self.cylinders, [only_pins] * len(self.cylinders), cycle)
         if not self.shared:
             message = (
                 "'firing_order' is missing: where the cranks stand; write for instance 'firing_order: 1-3-4-2', or "
-                "list the cylinders with 'crank_position', each 'like' the first"
+                "'crank_positions', one for each cylinder"
             )
             refused(message, "cylinders")
         # on one pin each dead centre follows by the angle between the stroke lines
-        return tuple(replace(one, crank_position=one.crank_position + one.bank_angle) for one in self.cylinders)
+        on_pin = [replace(one, crank_position=(one.crank_position or 0.0) + one.bank_angle) for one in self.cylinders]
+        return in_even_turns(on_pin, [True] * len(on_pin), cycle)
 
 
 def _standing(each: Cylinder, bank: float, place: float | None) -> Cylinder:
@@ -92,12 +119,22 @@ def _standing(each: Cylinder, bank: float, place: float | None) -> Cylinder:
 def in_order(
     cylinders: tuple[Cylinder, ...] | EqualCylinders, order: tuple[int, ...] | None, cycle: str
 ) -> tuple[Cylinder, ...]:
-    """Return the cylinders with the crank positions of their firing order; cycle: that of the machine."""
-    each = cylinders if isinstance(cylinders, tuple) else cylinders.cylinders
-    degrees = 360.0 * max((CYCLES[one.cycle or cycle] for one in each), default=1)
-    if isinstance(cylinders, tuple):
-        return fired(cylinders, order or (), degrees, ("firing_order",))
-    return cylinders.standing(order, degrees)
+    """Return the cylinders with their crank positions, those of the firing order if there is one.
+
+    cycle: that of the machine.
+    """
+    if not isinstance(cylinders, tuple):
+        return cylinders.standing(order, cycle)
+    if order:
+        return fired(cylinders, order, _degrees(cylinders, cycle), ("firing_order",))
+    free = [one.crank_position is None for one in cylinders]
+    at_pins = [replace(one, crank_position=0.0) if alone else one for one, alone in zip(cylinders, free)]
+    return in_even_turns(at_pins, free, cycle)
+
+
+def _degrees(cylinders: Sequence[Cylinder], cycle: str) -> float:
+    """Return the longest cycle of the cylinders, in degrees; cycle: that of the machine."""
+    return 360.0 * max((CYCLES[one.cycle or cycle] for one in cylinders), default=1)
 
 
 def fired(cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: float, where: Path) -> tuple[Cylinder, ...]:

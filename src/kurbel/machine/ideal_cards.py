@@ -189,6 +189,8 @@ class _Engine(Described):
     clearance: float
     exponent: float
 
+    fires: ClassVar[bool] = True
+
     @classmethod
     def of_keys(cls, compression_ratio: float = 0.0, clearance: float = 0.0, **keys: Any) -> Any:
         """Return the card with the clearance c = 1/(ε − 1); one of both is given."""

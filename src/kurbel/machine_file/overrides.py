@@ -10,6 +10,8 @@ from kurbel.machine_file.events import parse
 from kurbel.machine_file.source import decode
 
 _NUMBER = "[0-9]{1,9}"
+_FIGURE = re.compile(rf"\s*(limits|expect)\s*\.(.+?)(?:[.[]({_NUMBER})]?)?\s*", re.DOTALL)
+"""A limit or an expectation, before whose key value may stand whose it is; or one of two bounds of it."""
 
 
 class Override(NamedTuple):
@@ -54,10 +56,13 @@ def _bytes(argument: str) -> bytes:
 def path_of(key: str) -> Path:
     """Return the path that a dotted key is, the items of lists by their numbers.
 
-    >>> path_of("cylinders[0].bore")
-    ('cylinders', 0, 'bore')
+    >>> path_of("cylinders[0].bore"), path_of("limits.machine.T_max")
+    (('cylinders', 0, 'bore'), ('limits', 'machine.T_max'))
     """
-    steps = (step.strip() for step in key.replace("[", ".").replace("]", "").split("."))
+    if found := _FIGURE.fullmatch(key):
+        steps = [one.strip() for one in found.groups() if one is not None]
+    else:
+        steps = [step.strip() for step in key.replace("[", ".").replace("]", "").split(".")]
     return tuple(int(step) if re.fullmatch(_NUMBER, step) else step for step in steps)
 
 

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from kurbel.solver.case import Case
 
 
+_EVEN = 0.5
+"""Degrees by which firing intervals differ where angles were rounded."""
+
+
 class Section(NamedTuple):
     """A head line with its entries; cylinder: they are all of the one whose name it is."""
 
@@ -90,6 +94,30 @@ def _machine_entries(machine: Machine) -> Iterable[Entry]:
     yield Entry("cylinders", str(len(machine.cylinders)) if machine.cylinders else none)
     yield Entry("cycle", f"{machine.cycle}, {360 * machine.revolutions} deg")
     yield Entry("speed", "not given" if machine.speed is None else show(machine.speed, "speed"))
+    yield from _firing_entries(machine)
+
+
+def _firing_entries(machine: Machine) -> Iterable[Entry]:
+    """Yield the firing angles and intervals of an engine, and a note where they are uneven."""
+    from kurbel.machine.firing import firings, intervals
+
+    found = firings(machine)
+    if not found:
+        return
+    path: Path = ("cylinders",) if len(machine.cylinders) > 1 else ()
+    angles = [angle for angle, _ in found]
+    between = intervals(angles, 360.0 * machine.revolutions)
+    least, most = min(between), max(between)
+    uneven = most - least > _EVEN
+    listed = _listed(between) if uneven else f"{most:g}"
+    order = f"order {'-'.join(str(number) for _, number in found)}, " if path else ""
+    yield Entry("firing", f"{order}at {_listed(angles)} deg, intervals {listed} deg", "info", path)
+    if uneven:
+        yield Entry("note", f"the firing intervals are uneven: {least:g} to {most:g} deg", "info", path)
+
+
+def _listed(angles: Iterable[float]) -> str:
+    return ", ".join(f"{angle:g}" for angle in angles)
 
 
 def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note]) -> Section:

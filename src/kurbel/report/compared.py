@@ -1,10 +1,10 @@
 """How key values stand against the limits and the expectations of a machine file."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Union
 
-from kurbel.declared.forms.figures import Expected
+from kurbel.declared.forms.figures import MACHINE, Expected, scoped
 from kurbel.declared.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
@@ -15,6 +15,7 @@ from kurbel.report.alike import grouped, together
 from kurbel.report.notes import Solved
 
 if TYPE_CHECKING:
+    from kurbel.report.frame import Subject
     from kurbel.solver.case import Case
 
 Found = tuple[str, float]
@@ -52,16 +53,16 @@ def judged(machine: Machine, solved: Solved) -> Iterator[Judged]:
     if not machine.limits and not machine.expect:
         return
     declared = by_id(*every_quantity().all_key_values)
-    opposites = [other for name, _ in machine.limits if (other := _opposite(name)) in declared]
+    opposites = [other for name, _ in machine.limits if scoped(other := _opposite(name))[1] in declared]
     asked = (*(name for name, _ in (*machine.limits, *machine.expect)), *opposites)
     values = limited_values(solved(), dict.fromkeys(asked))
     for name, bound in machine.limits:
-        found = tuple(_all_of(_path("limits", name, bound), declared[name], bound, values[name]))
+        found = tuple(_all_of(_path("limits", name, bound), declared[scoped(name)[1]], bound, values[name]))
         yield from found
         if all(isinstance(one, Entry) and one.severity == "info" for one in found):
             yield from _beyond_by_sign(machine, name, bound, values, declared)
     for name, figure in machine.expect:
-        yield from _all_of(_path("expect", name, figure), declared[name], figure, values[name])
+        yield from _all_of(_path("expect", name, figure), declared[scoped(name)[1]], figure, values[name])
 
 
 def _path(key: str, id: str, figure: float | Expected) -> Path:
@@ -70,15 +71,21 @@ def _path(key: str, id: str, figure: float | Expected) -> Path:
 
 
 def _all_of(path: Path, quantity: Quantity, figure: float | Expected, found: Values) -> Iterator[Judged]:
-    """Yield how the values of every cylinder, and of the whole machine, stand against a figure."""
+    """Yield how the values of those that a figure is put on stand against it."""
     if isinstance(found, KurbelError):
         yield Unjudged(path, type(found)(f"{path_text(path)}: {found}"))
     elif not found:
-        text = f"this machine has no {quantity.id}: {quantity.text[:1].lower()}{quantity.text[1:]}"
+        text = f"{without(str(path[-1]), quantity.id)}: {quantity.text[:1].lower()}{quantity.text[1:]}"
         yield Unjudged(path, UsageError(f"{path_text(path)}: {text}"))
     else:
         for equal in grouped(found, lambda one: one[1]):
             yield compared(path, quantity, figure, together([where for where, _ in equal]), equal[0][1])
+
+
+def without(name: str, id: str) -> str:
+    """Return that nobody has the key value of a figure: the machine, or the one that its name is scoped to."""
+    scope = {"": "this machine", MACHINE: "the whole machine"}.get(scoped(name)[0], scoped(name)[0])
+    return f"{scope} has no {id}"
 
 
 def compared(path: Path, quantity: Quantity, figure: float | Expected, where: str, value: float) -> Judged:
@@ -137,11 +144,11 @@ def _beyond_by_sign(
     upward = 1 if name.endswith("_max") else -1
     if bound * upward <= 0 or isinstance(found, KurbelError) or any(other == limited for limited, _ in machine.limits):
         return
-    peak = f"{name[:-4]}_peak"
-    way = f"'{peak}' bounds the magnitude" if peak in declared else f"bound '{other}' too"
+    peak, quantity = f"{name[:-4]}_peak", declared.get(scoped(other)[1])
+    way = f"'{peak}' bounds the magnitude" if scoped(peak)[1] in declared else f"bound '{other}' too"
     for where, value in found:
-        if -value * upward > abs(bound) * (1 + _ROUNDING):
-            size = _shown(value, declared[other].kind, getattr(bound, "unit", ""))
+        if quantity and -value * upward > abs(bound) * (1 + _ROUNDING):
+            size = _shown(value, quantity.kind, getattr(bound, "unit", ""))
             text = f"{other} = {size} is beyond it with the other sign; {way}  ({where})"
             path = _path("limits", name, bound)
             yield Entry(str(path[-1]), text, "warning", path)
@@ -171,19 +178,53 @@ def limited_values(case: "Case", names: Iterable[str]) -> dict[str, Values]:
     return found
 
 
-def commands_for(machine: Machine, name: str) -> tuple[str, ...]:
-    """Return the commands whose value the limit is for; one cylinder has it as the machine, but for the efficiency."""
-    first, *others = every_quantity().commands_of(name)
-    alike = len(machine.cylinders) == 1 and machine.efficiency == 1
-    return (first, *(command for command in others if command == "flywheel" and not alike))
+class Holder(NamedTuple):
+    """Who has a key value, and the command that prints it."""
+
+    subject: "Subject"
+    quantity: Quantity
+    command: str
+
+    @property
+    def has_it(self) -> bool:
+        """Whether there is a value, or what keeps it from being computed."""
+        try:
+            return self.subject.answer(self.quantity) is not None
+        except KurbelError:
+            return True
+
+
+def holders(case: "Case", name: str) -> list[Holder]:
+    """Return whose key value a figure is put on: of the machine or a cylinder that its name is scoped to.
+
+    Where it is not, of each cylinder that has it, else of the machine.
+    """
+    from kurbel.report.frame import subjects_of
+
+    scope, id = scoped(name)
+    cylinders = [one.name for one in case.machine.cylinders]
+    of_machine: list[Holder] = []
+    first, *others = every_quantity().commands_of(id)
+    # what the only cylinder has not, the machine has not
+    whole = [one for one in others if one == "flywheel"] if scope or len(cylinders) != 1 else []
+    for command in (first, *whole):
+        listed = ((one, one.lists.key_values(command).get(id)) for one in subjects_of(case, command))
+        found = [Holder(subject, quantity, command) for subject, quantity in listed if quantity]
+        if scope and (own := [one for one in found if _owner(one.subject, cylinders) == scope]):
+            return own
+        if not scope and (own := [one for one in found if one.subject.name in cylinders and one.has_it]):
+            return own
+        of_machine += [one for one in found if one.subject.name not in cylinders]
+    return [] if scope else of_machine
+
+
+def _owner(subject: "Subject", cylinders: Sequence[str]) -> str:
+    """Return whose parts a subject is of: a cylinder, as one of its pins, or the machine."""
+    return subject.name if subject.name in cylinders else subject.of or MACHINE
 
 
 def _values(case: "Case", name: str) -> Iterator[Found]:
-    from kurbel.report.frame import subjects_of
-
-    for command in commands_for(case.machine, name):
-        for subject in subjects_of(case, command):
-            quantity = subject.lists.key_values(command).get(name)
-            value = quantity and subject.answer(quantity)
-            if isinstance(value, (Extreme, float)):
-                yield subject.name, number_of(value)
+    for subject, quantity, _ in holders(case, name):
+        value = subject.answer(quantity)
+        if isinstance(value, (Extreme, float)):
+            yield subject.name, number_of(value)

@@ -45,8 +45,25 @@ class Expected:
     name: str = ""
 
 
+MACHINE = "machine"
+"""What stands before the id of a key value of the whole machine, as the name of a cylinder before one of its own."""
+
+
+def scoped(name: str) -> tuple[str, str]:
+    """Return whose key value a name is, '' where it is not said, and its id.
+
+    >>> scoped("machine.T_max"), scoped("No. 1.c_max"), scoped("c_max")
+    (('machine', 'T_max'), ('No. 1', 'c_max'), ('', 'c_max'))
+    """
+    scope, _, id = name.rpartition(".")
+    return scope, id
+
+
 class _Figures(Form):
-    """A mapping from key values, by id or printed symbol, to a figure each; becomes pairs of id and figure."""
+    """A mapping from key values, by id or printed symbol, to a figure each; becomes pairs of id and figure.
+
+    Before the id may stand whose it is: `machine.T_max`, or the name of a cylinder.
+    """
 
     shape = dict
     what: str
@@ -76,7 +93,20 @@ class _Figures(Form):
             for name in (id, quantity.symbol, quantity.ascii_symbol)
             if not quantity.listed and (name == id or named[name] == 1)
         }
-        return {"type": "object", "additionalProperties": False, "properties": properties}
+        # the same below a scope: of those of one form one pattern
+        forms: dict[str, Schema] = {}
+        names: dict[str, list[str]] = {}
+        for name, schema in properties.items():
+            form = {key: value for key, value in schema.items() if key != "description"}
+            forms.setdefault(repr(form), form)
+            names.setdefault(repr(form), []).append(re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name))
+        patterns = {f"^.+\\.({'|'.join(names[form])})$": schema for form, schema in forms.items()}
+        return {
+            "type": "object",
+            "additionalProperties": False,
+            "properties": properties,
+            "patternProperties": patterns,
+        }
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read every figure by the form of its quantity."""
@@ -91,13 +121,17 @@ class _Figures(Form):
             if wrong:
                 reading.fault((*path, name), wrong, at_key=True)
             else:
-                read = self._figure_of(known[id]).read(reading, figure, (*path, name))
+                read = self._figure_of(known[scoped(id)[1]]).read(reading, figure, (*path, name))
                 found[id] = read if read is REFUSED else self.named(read, figure, name)
         return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
 
     def _meant(self, name: str, known: dict[str, Quantity]) -> tuple[str, str]:
-        """Return the id that a name stands for, and what is wrong with it."""
+        """Return the id that a name stands for, with whose it is before it, and what is wrong with it."""
         found = called(name, known.values())
+        scope, own = scoped(name)
+        if scope and not found and called(own, known.values()):
+            id, wrong = self._meant(own, known)
+            return f"{scope}.{id}", wrong
         if not found:
             hint = did_you_mean(name, tuple(id for id, one in known.items() if not one.listed))
             some = f"; known are {', '.join([*known][:6])}, …"
