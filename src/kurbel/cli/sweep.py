@@ -59,7 +59,9 @@ _where_it_goes = stacked(
     output_option,
     click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign."),
     click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4, and all in csv and json."),
-    click.option("--resume", is_flag=True, help="Go on where the --output file of an interrupted run ends."),
+    click.option(
+        "--resume", is_flag=True, help="Continue from the FILE.part of a run of --output FILE that ended early."
+    ),
 )
 _who_computes = stacked(
     click.option(
