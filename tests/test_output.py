@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import shlex
 import subprocess
 import sys
 import tracemalloc
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from command_lines import LINES
 from imported import modules_after
 from kurbel import loads
 from kurbel.cli import COMMANDS, kurbel
@@ -225,6 +227,26 @@ def test_no_status_hangs_on_standard_error(arguments: str, status: int, stderr: 
     (tmp_path / "stalls.yaml").write_text(MACHINE + PRESSURE + "flywheel: {inertia: 1e-3 kg m2}\n")
     command = f"{sys.executable} -m kurbel {arguments} {stderr}"
     assert subprocess.run(["bash", "-c", command], cwd=tmp_path, check=False, stdout=-3).returncode == status
+
+
+@POSIX_ONLY
+@pytest.mark.parametrize(
+    "command", few([one for one in LINES if one != "accuracy"], ["sweep"])
+)  # accuracy prints times of its run
+def test_closed_streams(command: str, tmp_path: Path) -> None:
+    """A sweep without standard error was a fault in kurbel after its first line."""
+
+    def ended(redirected: str) -> tuple[int, bytes, bytes]:
+        words = [sys.executable, "-m", "kurbel", *LINES[command]]
+        done = subprocess.run(["bash", "-c", f"{shlex.join(words)} {redirected}"], capture_output=True, cwd=tmp_path)
+        return done.returncode, done.stdout, done.stderr
+
+    as_ever = ended("")
+    assert as_ever[0] == 0
+    assert ended("<&-") == as_ever
+    assert ended("2>&-") == (*as_ever[:2], b"")
+    assert ended(">&-") == (2, b"", b"Error: cannot write to standard output: it is closed\n")
+    assert ended("<&- >&- 2>&-") == (2, b"", b"")
 
 
 @law_of_each(["", *COMMANDS])

@@ -1,8 +1,8 @@
-"""The way in, for `kurbel` and `python -m kurbel`: small, since nothing guards it against an interrupt but itself."""
+"""The way in, for `kurbel` and `python -m kurbel`: small, since nothing guards it against an interrupt but itself.
 
-from __future__ import annotations
+What it imports at its head Python has imported already: the working directory may still be the first place to look.
+"""
 
-import gc
 import os
 import sys
 
@@ -11,9 +11,10 @@ if TYPE_CHECKING:
     from typing import NoReturn
 
 
-def main() -> NoReturn:
+def main() -> "NoReturn":
     """Run the command line; an interrupt ends it silently with status 130, while it is being imported too."""
-    gc.disable()  # a run is too short for its garbage to matter; looking for it costs a twentieth of the time
+    _leave_out_working_directory()
+    _open_closed_streams()
     # matrices of nine rows are no work for many: threads cost their making, and wait for each other in a sweep
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
@@ -23,22 +24,30 @@ def main() -> NoReturn:
             from kurbel.cli import kurbel
         kurbel.main()
     except KeyboardInterrupt:
-        _end(130)
-    except SystemExit as end:
-        _end(end.code)
+        sys.exit(130)
 
 
-def _end(status: str | int | None) -> NoReturn:
-    """End without Python's tour through everything imported, a twentieth of a short run.
+def _leave_out_working_directory() -> None:
+    """Look for modules in the working directory no more, where `python -m` and an empty PYTHONPATH put it first.
 
-    Whatever needs an end of its own, as worker processes do, has come to it before.
+    It stays where kurbel itself comes from it.
     """
+    library = os.path.dirname(os.__file__)
+    first = sys.path.index(library) if library in sys.path else 1
+    own = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     try:
-        sys.stdout.flush()
-        sys.stderr.flush()
-    except (AttributeError, OSError, ValueError):  # none, full or closed: Python's own end knows what is to be done
-        sys.exit(status)
-    os._exit(status if isinstance(status, int) else 0)
+        here = os.path.realpath(os.getcwd())
+    except OSError:  # it is deleted
+        here = ""
+    if here != os.path.realpath(own):
+        sys.path[:first] = [one for one in sys.path[:first] if one and os.path.realpath(one) != here]
+
+
+def _open_closed_streams() -> None:
+    """Give closed standard streams to the null device, or else the first file that is opened becomes one of them."""
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
+        pass
+    os.close(descriptor)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A sweep on a cluster of Dask: in order, whole, though a worker is killed. Left out where dask is not installed."""
+"""A sweep on a cluster of Dask, of which parts are killed or missing. Left out where dask is not installed."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -17,38 +18,88 @@ distributed = pytest.importorskip("distributed")
 WATERWORKS = str(Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml")
 
 
+class Cluster:
+    """A scheduler and its workers, each a process."""
+
+    def __init__(self, folder: Path) -> None:
+        self._file = folder / "scheduler.json"
+        self.processes: list[subprocess.Popen[bytes]] = []
+        self._start("dask_scheduler", "--port", "0")
+        with self._client() as client:
+            self.address: str = client.scheduler.address
+
+    def add_workers(self, count: int) -> None:
+        for _ in range(count):
+            self._start("dask_worker", "--no-nanny", "--nthreads", "1")
+        with self._client() as client:
+            client.wait_for_workers(count, timeout=60)
+
+    def _start(self, module: str, *options: str) -> None:
+        command = [sys.executable, "-m", f"distributed.cli.{module}", "--no-dashboard", *options]
+        command += ["--scheduler-file", str(self._file)]
+        quiet = subprocess.DEVNULL
+        self.processes.append(subprocess.Popen(command, stdout=quiet, stderr=quiet, cwd=self._file.parent))
+
+    def _client(self) -> Any:
+        return distributed.Client(scheduler_file=str(self._file), timeout=60, set_as_default=False)
+
+
 @pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
-    """A scheduler and two workers, each a process."""
-    told = tmp_path / "scheduler.json"
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
-    dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard"]
-    processes = [subprocess.Popen([*dask, "--scheduler-file", str(told)], **quiet)]  # type: ignore[call-overload]
-    worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(told), "--no-nanny"]
-    processes += [
-        subprocess.Popen([*worker, "--nthreads", "1", "--no-dashboard"], **quiet)  # type: ignore[call-overload]
-        for _ in range(2)
-    ]
-    with distributed.Client(scheduler_file=str(told), timeout=60, set_as_default=False) as client:
-        client.wait_for_workers(2, timeout=60)
-        address = client.scheduler.address
-    yield address, processes[1:]
-    for process in processes:
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
+    made = Cluster(tmp_path)
+    yield made
+    for process in made.processes:
         process.kill()
         process.wait()
 
 
+SWEEP = [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, "--columns", "T_max,b_max", "--vary"]
+
+
+def in_the_midst(cluster: Cluster, file: Path) -> subprocess.Popen[str]:
+    """Return a sweep of 15,001 rows on two workers that has written some."""
+    cluster.add_workers(2)
+    asked = [*SWEEP, "rod_ratio=3:6:0.0002", "--dask", cluster.address, "-o", str(file)]
+    process = subprocess.Popen(asked, stderr=subprocess.PIPE, text=True)
+    part = file.with_name("rows.csv.part")
+    while process.poll() is None and not (part.exists() and part.stat().st_size > 1000):
+        time.sleep(0.01)
+    return process
+
+
 @pytest.mark.slow
-def test_a_killed_worker_loses_no_row(cluster: tuple[str, list[subprocess.Popen[bytes]]], tmp_path: Path) -> None:
-    address, workers = cluster
-    asked = ["--vary", "rod_ratio=3:6:0.0002", "--columns", "T_max,b_max"]
-    sweep = [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *asked]
+def test_a_killed_worker_loses_no_row(cluster: Cluster, tmp_path: Path) -> None:
     file = tmp_path / "rows.csv"
-    process = subprocess.Popen([*sweep, "--dask", address, "-o", str(file)])
-    while process.poll() is None and not (file.exists() and file.stat().st_size):
-        time.sleep(0.02)
-    os.kill(workers[0].pid, signal.SIGKILL)
-    assert process.wait(300) == 0
-    alone = subprocess.run([*sweep, "-f", "csv"], capture_output=True, check=True).stdout
+    process = in_the_midst(cluster, file)
+    os.kill(cluster.processes[1].pid, signal.SIGKILL)
+    assert (process.communicate(timeout=300)[1], process.returncode) == ("", 0)
+    alone = subprocess.run([*SWEEP, "rod_ratio=3:6:0.0002", "-f", "csv"], capture_output=True, check=True).stdout
     assert file.read_bytes() == alone
     assert alone.count(b"\n") == 15_002
+
+
+@pytest.mark.slow
+def test_a_killed_scheduler_is_named_and_resume_goes_on(cluster: Cluster, tmp_path: Path) -> None:
+    """It was a fault in kurbel, after a traceback of Dask."""
+    file, part = tmp_path / "rows.csv", tmp_path / "rows.csv.part"
+    file.write_text("old")
+    process = in_the_midst(cluster, file)
+    os.kill(cluster.processes[0].pid, signal.SIGKILL)
+    stderr = process.communicate(timeout=300)[1]
+    rows = part.read_bytes().count(b"\n") - 1
+    assert stderr == (
+        f"{part} holds {rows} rows; run again with --resume to continue\n"
+        f"Error: --dask {cluster.address}: the connection to the scheduler is lost\n"
+    )
+    assert (process.returncode, file.read_text()) == (2, "old")
+
+
+@pytest.mark.slow
+def test_a_cluster_without_workers_is_waited_for(cluster: Cluster) -> None:
+    asked = [*SWEEP, "rod_ratio=4,5", "-f", "csv", "--dask", cluster.address]
+    process = subprocess.Popen(asked, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stderr
+    assert process.stderr.readline() == f"--dask {cluster.address}: the cluster has no workers; waiting for one\n"
+    cluster.add_workers(1)
+    stdout, stderr = process.communicate(timeout=300)
+    assert (process.returncode, stderr, stdout.count("\n")) == (0, "", 3)

@@ -1,5 +1,7 @@
 """`kurbel sweep --resume`: it goes on in the file of the same sweep only."""
 
+import sys
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -7,6 +9,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel as command
+from kurbel.designs.sweep import Row, Sweep
+from kurbel.errors import KurbelError
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
 ASKED = ("--vary", "rod_ratio=3:6:0.3", "--columns", "c_max,T_max")
@@ -126,3 +130,86 @@ def test_a_device_without_an_end_has_no_rows(machine: Path) -> None:
     asked = ["sweep", str(machine), "--vary", "rod_ratio=3,4", "-f", "csv", "-o", "/dev/full", "--resume"]
     result = CliRunner().invoke(command, asked)
     assert (result.exit_code, "No space left on device" in result.output) == (2, True)
+
+
+# what was there before
+
+
+def files(folder: Path) -> dict[str, str]:
+    return {path.name: path.read_text() for path in folder.iterdir() if path.suffix != ".yaml"}
+
+
+@pytest.mark.parametrize("name", ["rows.csv", "rows.json", "rows.md", "rows.parquet"])
+@pytest.mark.parametrize("refused", ["--dask=tcp://127.0.0.1:1", "--dask=tcp://no.such.node:1", "--set=stroke=-1 m"])
+def test_what_cannot_begin_leaves_the_old_file(
+    name: str, refused: str, machine: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if refused == "--dask=tcp://127.0.0.1:1":
+        monkeypatch.setitem(sys.modules, "distributed", None)
+    if name == "rows.parquet" and refused.startswith("--set"):
+        monkeypatch.setitem(sys.modules, "pyarrow", None)
+    machine.with_name(name).write_text("old")
+    assert run(machine, *ASKED, refused, "-o", str(machine.with_name(name))).exit_code == 2
+    assert files(machine.parent) == {name: "old"}
+
+
+@pytest.fixture
+def lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweeps that get no further than 20 rows."""
+
+    def chunk(self: Sweep, company: range, wanted: range) -> Sequence[Row]:
+        if wanted.start >= 20:
+            raise KurbelError("a worker process was killed (SIGKILL)")
+        return whole(self, company, wanted)
+
+    whole = Sweep.chunk
+    monkeypatch.setattr(Sweep, "chunk", chunk)
+
+
+MANY = ("--vary", "rod_ratio=3:6:0.1", "--columns", "c_max")
+
+
+@pytest.mark.usefixtures("lost")
+def test_an_early_end_leaves_the_old_file_and_a_part(machine: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = "".join(swept(machine.read_text(), (*MANY[:1], "rod_ratio=3:4.9:0.1", *MANY[2:], "-f", "csv")))
+    file, link = machine.with_name("rows.csv"), machine.with_name("link.csv")
+    file.write_text("old")
+    file.chmod(0o640)
+    link.symlink_to(file)
+    result = run(machine, *MANY, "-o", str(link))
+    assert (result.exit_code, result.stderr) == (
+        2,
+        f"{file}.part holds 20 rows; run again with --resume to continue\n"
+        "Error: a worker process was killed (SIGKILL)\n",
+    )
+    assert files(machine.parent) == {"rows.csv": "old", "link.csv": "old", "rows.csv.part": whole}
+    assert "holds 20 rows" in run(machine, *MANY, "-o", str(link), "--resume").stderr
+    monkeypatch.undo()
+    assert run(machine, *MANY, "-o", str(link), "--resume").exit_code == 0
+    whole = "".join(swept(machine.read_text(), (*MANY, "-f", "csv")))
+    assert files(machine.parent) == {"rows.csv": whole, "link.csv": whole}
+    assert (link.is_symlink(), file.stat().st_mode & 0o777) == (True, 0o640)
+
+
+@pytest.mark.usefixtures("lost")
+def test_what_an_early_end_leaves_of_other_formats(machine: Path) -> None:
+    """They cannot go on; rows that are sorted are none before all are there."""
+    for name, options, holds in (
+        ("rows.md", (), "holds 20 rows\n"),
+        ("rows.csv", ("--sort", "c_max"), ""),
+        ("-", ("-f", "csv"), "20 rows written\n"),
+    ):
+        path = name if name == "-" else str(machine.with_name(name))
+        result = run(machine, *MANY, *options, "-o", path)
+        assert (result.exit_code, result.stderr.partition("Error")[0].endswith(holds)) == (2, True)
+        assert "--resume" not in result.stderr
+    assert set(files(machine.parent)) == {"rows.md.part"}
+
+
+def test_a_part_of_another_sweep_does_not_go_on(machine: Path) -> None:
+    file = interrupted(machine, *ASKED)
+    part = file.rename(f"{file}.part")
+    result = run(machine, *ASKED, "--set", "speed=60 rpm", "-o", str(file), "--resume")
+    assert (result.exit_code, f"--resume: {part} is not of this sweep: row 6 has 2." in result.stderr) == (2, True)
+    assert run(machine, *ASKED, "-o", str(file), "--resume").exit_code == 0
+    assert files(machine.parent) == {"rows.csv": "".join(swept(machine.read_text(), (*ASKED, "-f", "csv")))}

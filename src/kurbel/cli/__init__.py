@@ -9,6 +9,7 @@ import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import StringIO
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
@@ -128,7 +129,7 @@ class _Kurbel(click.Group):
             return super().invoke(ctx)
 
     def main(self, *args: Any, **extra: Any) -> NoReturn:
-        _survive_missing_characters()
+        _prepare_streams()
         warnings.simplefilter("error", RuntimeWarning)  # what numpy warns of is no result
         try:
             status = super().main(*args, **(extra | {"standalone_mode": False}))
@@ -172,16 +173,15 @@ def _silent_interrupt() -> Iterator[None]:
         raise
 
 
-def _survive_missing_characters() -> None:
-    """Let no message fail because the output encoding lacks one of its characters."""
+def _prepare_streams() -> None:
+    """Let no message fail because standard error is closed or an encoding lacks one of its characters."""
+    sys.stderr = sys.stderr or StringIO()
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")
 
 
 def _shown(error: click.ClickException) -> str:
-    from io import StringIO
-
     text = StringIO()
     error.show(text)
     return text.getvalue()
@@ -203,14 +203,19 @@ def _stderr_charset() -> "Charset":
 
 
 def _failed(message: str, status: int) -> int:
-    """Say what went wrong and return the status, which stays the same where standard error is full or closed."""
+    """Write what went wrong and return the status, which stays the same where standard error is full or closed."""
+    to_stderr(message)
+    return status
+
+
+def to_stderr(message: str) -> None:
+    """Write a message to standard error, in characters that it has; nothing where it is full or closed."""
     try:
         click.echo("\n".join(_stderr_charset().text(line) for line in message.splitlines()), err=True)
     except (OSError, ValueError):
         from kurbel.render.output import silence
 
         silence(sys.stderr)
-    return status
 
 
 def _output_failed(error: OSError) -> int:

@@ -83,7 +83,7 @@ class Progress:
         self._timer: Timer | None = None
 
     def __enter__(self) -> "Progress":
-        if sys.stderr is not None and sys.stderr.isatty():
+        if sys.stderr.isatty():
             from threading import Timer
 
             self._timer = Timer(_PATIENCE, self._tell)

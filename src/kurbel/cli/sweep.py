@@ -1,10 +1,8 @@
 """`kurbel sweep`: key values over a grid, a list or a sample of machines."""
 
-import gc
-import signal
 import sys
 from collections.abc import Iterable, Sequence
-from contextlib import suppress
+from contextlib import closing
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
@@ -20,6 +18,8 @@ if TYPE_CHECKING:
     from kurbel.render.sweep_output import SweepOutput
 
 _SUFFIXES = {".csv": "csv", ".json": "json", ".jsonl": "json", ".md": "markdown", ".parquet": "parquet"}
+_LINES = ("csv", "json")
+"""Formats that can go on where they end."""
 _FORMATS = ("table", "csv", "json", "markdown", "parquet")
 
 _what_varies = stacked(
@@ -59,7 +59,9 @@ _where_it_goes = stacked(
     output_option,
     click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign."),
     click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4, and all in csv and json."),
-    click.option("--resume", is_flag=True, help="Go on where the --output file of an interrupted run ends."),
+    click.option(
+        "--resume", is_flag=True, help="Continue from the FILE.part of a run of --output FILE that ended early."
+    ),
 )
 _who_computes = stacked(
     click.option(
@@ -139,6 +141,10 @@ class _Asked(NamedTuple):
         """Whether rows are told as they come."""
         return not (self.sort or self.pareto or self.summary)
 
+    @property
+    def _resumable(self) -> bool:
+        return bool(self.file_name and self.file_name != "-" and self._written in _LINES and self._in_order)
+
     def refuse_contradictions(self) -> None:
         """Raise click.UsageError for options that do not go together."""
         named = self.file_name not in (None, "-")
@@ -146,7 +152,7 @@ class _Asked(NamedTuple):
             (self.top and not self.sort, "--top N takes the first rows of --sort ID; give --sort too."),
             (self.sobol and not self.sample, "--sobol is a way to draw a sample; give --sample N too."),
             (self.resume and not named, "--resume goes on in a file; give --output FILE."),
-            (self.resume and self._written not in ("csv", "json"), "--resume goes on in csv or json lines."),
+            (self.resume and self._written not in _LINES, "--resume goes on in csv or json lines."),
             (self.resume and not self._in_order, "--resume cannot go on where rows are sorted, chosen or summed up."),
             (self._written == "parquet" and not named, "Parquet is a file; give --output FILE.parquet."),
             (self.summary and self._written == "parquet", "--summary is a table, csv, json or markdown."),
@@ -160,11 +166,7 @@ class _Asked(NamedTuple):
 
     def run(self) -> None:
         """Compute and write the rows."""
-        gc.freeze()
-        gc.enable()  # what thousands of machines leave behind in circles would fill the memory
-        with suppress(ValueError):  # in a thread of its own nobody can hear
-            # a scheduler's word is an interrupt: whole rows, and no semaphores of the system left behind
-            signal.signal(signal.SIGTERM, signal.default_int_handler)
+        from kurbel.cli import to_stderr
         from kurbel.designs.chosen import read_aim, read_condition, summary, unbettered
         from kurbel.designs.plan import shard
         from kurbel.designs.sweep import Sweep
@@ -177,13 +179,19 @@ class _Asked(NamedTuple):
         order = read_aim(self.sort, found.heads, "--sort") if self.sort else None
         out, rows = self._out(found, rows, conditions)
         jobs = self.jobs or (1 if self.shard else likely_jobs(len(rows)))
-        told: Iterable[Row] = rows_of(found, rows, jobs, self.dask or "")
-        if self.file_name or not sys.stdout.isatty():  # else the rows themselves go to the terminal
-            told = with_bar(told, "designs", length=len(rows), update_min_steps=100)
-        kept: Iterable[Any] = (row for row in told if all(one.holds(row) for one in conditions))
-        kept = unbettered(kept, aims) if aims else kept
-        kept = sorted(kept, key=order.of)[: self.top] if order else kept
-        out.write(summary(kept, found.heads) if self.summary else kept)
+        with closing(rows_of(found, rows, jobs, self.dask or "", to_stderr)) as computed:
+            told: Iterable[Row] = computed
+            if self.file_name or not sys.stdout.isatty():  # else the rows themselves go to the terminal
+                told = with_bar(told, "designs", length=len(rows), update_min_steps=100)
+            kept: Iterable[Any] = (row for row in told if all(one.holds(row) for one in conditions))
+            kept = unbettered(kept, aims) if aims else kept
+            kept = sorted(kept, key=order.of)[: self.top] if order else kept
+            try:
+                out.write(summary(kept, found.heads) if self.summary else kept)
+            except BaseException:
+                if left := out.left():
+                    to_stderr(left + "; run again with --resume to continue" * self._resumable)
+                raise
 
     def _spec(self) -> "Spec":
         from kurbel.designs.plan import MOST_ROWS
@@ -213,5 +221,5 @@ class _Asked(NamedTuple):
 
         assert self.file_name is not None
         kept = KeptRows(self.file_name, titles, self._look, rows)
-        headed = rows.start == 0 and not kept.size
-        return SweepOutput(titles, self._look, self.file_name, headed, kept.size), kept.rest(found, conditions)
+        headed = rows.start == 0 and not any(kept.kept)
+        return SweepOutput(titles, self._look, self.file_name, headed, kept.kept), kept.rest(found, conditions)

@@ -1,38 +1,51 @@
 """Who computes the chunks of a sweep: this process, others on this machine, or a cluster; the order stays."""
 
 import os
-import signal
+import pickle
+import subprocess
+import sys
+import warnings
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 from kurbel.designs.sweep import Row, Spec, Sweep, computed
-from kurbel.errors import UsageError
+from kurbel.errors import KurbelError, UsageError
 
 _FOR_ONE = 5_000
 """Rows that one process should have at least: about so many are computed while another one starts."""
 _MOST_JOBS = 4
-"""Processes that are started unasked: the machine may have other work, and each holds the library."""
+"""Processes that are started unless a number is given: the machine may have other work, and each holds the library."""
 _AHEAD = 3
 """Chunks per worker that are on their way: what is computed and not yet read stays little."""
 _RETRIES = 5
 """How often a chunk is sent anew whose worker was lost."""
 _ANSWERS_WITHIN = 10.0
 """Seconds in which a cluster must answer."""
+_LOOKED_EVERY = 1.0
+"""Seconds after which a chunk that is not there yet raises the question whether the cluster has workers at all."""
+
+Answer = Callable[[], list[Row]]
+"""Waits for the rows of a chunk and returns them."""
+Submit = Callable[[Spec, range, range], Answer]
+"""Has a chunk computed: see `computed`."""
 
 
-def rows_of(sweep: Sweep, rows: range, jobs: int = 1, dask: str = "") -> Iterator[Row]:
-    """Yield rows in their order as soon as they are there; jobs: processes of this machine; dask: address of a cluster.
+def rows_of(
+    sweep: Sweep, rows: range, jobs: int = 1, dask: str = "", note: Callable[[str], None] = lambda _: None
+) -> Generator[Row, None, None]:
+    """Yield rows in their order as soon as they are computed.
 
-    Raises UsageError for an address that does not answer.
+    jobs: processes of this machine; dask: address of a cluster; note: is called with what a user should know meanwhile.
+    Raises UsageError for an address that does not answer, KurbelError where a process or the cluster is lost.
     """
     if dask:
-        with _cluster(dask) as (submit, workers):
+        with _cluster(dask, note) as (submit, workers):
             yield from _gathered(sweep, rows, submit, workers)
     elif jobs > 1:
         with _processes(jobs) as submit:
-            yield from _gathered(sweep, rows, submit, jobs)
+            yield from _gathered(sweep, rows, submit, lambda: jobs)
     else:
         for company, wanted in sweep.chunks(rows):
             yield from sweep.chunk(company, wanted)
@@ -45,86 +58,140 @@ def likely_jobs(rows: int) -> int:
     return max(min(cores, _MOST_JOBS, rows // _FOR_ONE), 1)
 
 
-def _gathered(sweep: Sweep, rows: range, submit: Callable[..., Any], workers: int) -> Iterator[Row]:
-    """Yield the rows that others compute, in order, with few chunks of them ahead."""
-    waiting: deque[Any] = deque()
+def _gathered(sweep: Sweep, rows: range, submit: Submit, workers: Callable[[], int]) -> Iterator[Row]:
+    """Yield the rows that others compute, in order, with few chunks of them ahead; workers: how many there are now."""
+    waiting: deque[Answer] = deque()
     for company, wanted in sweep.chunks(rows):
-        waiting.append(submit(computed, sweep.spec, company, wanted))
-        if len(waiting) > _AHEAD * workers:
-            yield from waiting.popleft().result()
+        waiting.append(submit(sweep.spec, company, wanted))
+        if len(waiting) > _AHEAD * workers():
+            yield from waiting.popleft()()
     while waiting:
-        yield from waiting.popleft().result()
+        yield from waiting.popleft()()
 
 
 @contextmanager
-def _processes(jobs: int) -> Iterator[Callable[..., Any]]:
-    from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import active_children, get_context
+def _processes(jobs: int) -> Iterator[Submit]:
+    from concurrent.futures import ThreadPoolExecutor
+    from queue import SimpleQueue
 
-    pool = ProcessPoolExecutor(jobs, get_context("spawn"), initializer=_end_with_parent)
+    # isolated, so that none looks for modules in the working directory; a session of its own hears no interrupt
+    code = f"import sys; sys.path[:] = {list(filter(None, sys.path))}; from kurbel.designs.workers import work; work()"
+    pipe = subprocess.PIPE
+    processes = [
+        subprocess.Popen([sys.executable, "-I", "-c", code], stdin=pipe, stdout=pipe, start_new_session=True)
+        for _ in range(jobs)
+    ]
+    idle = SimpleQueue[Any]()
+    for process in processes:
+        idle.put(process)
+    threads = ThreadPoolExecutor(jobs)
 
-    def submit(*task: Any) -> Any:
-        with _interrupts_wait():  # for ever in the processes that are started here: one is for this process alone
-            return pool.submit(*task)
+    def answer(*task: Any) -> list[Row]:
+        process = idle.get()
+        try:
+            return _answered(process, task)
+        finally:
+            idle.put(process)
 
     try:
-        yield submit
-    except BaseException:  # nobody waits for what they still compute
-        with _interrupts_wait():
-            for worker in active_children():
-                worker.terminate()
-        raise
+        yield lambda *task: threads.submit(answer, *task).result
     finally:
-        with _interrupts_wait():  # the second of an impatient user would leave half of it behind
-            pool.shutdown(wait=True, cancel_futures=True)
+        for process in processes:
+            process.kill()
+        threads.shutdown(cancel_futures=True)
+        for process in processes:
+            process.communicate()
 
 
-def _end_with_parent() -> None:
-    """End this process when the one that started it does, killed or not: nobody else would tell it to."""
-    from multiprocessing import parent_process
-    from threading import Thread
+def _answered(process: "subprocess.Popen[bytes]", task: tuple[Any, ...]) -> list[Row]:
+    """Return the rows that a process computes; raises what it meets, and KurbelError where it ends instead."""
+    assert process.stdin
+    assert process.stdout
+    try:
+        pickle.dump(task, process.stdin)
+        process.stdin.flush()
+        found = pickle.load(process.stdout)
+    except (OSError, EOFError, pickle.UnpicklingError):  # its ends of the pipes are closed
+        raise KurbelError(_end_of(process.wait())) from None
+    if isinstance(found, Exception):
+        raise found
+    return found  # type: ignore[no-any-return]
 
-    if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # by which that one ends it
-    parent = parent_process()
-    assert parent is not None
 
-    def follow() -> None:
-        parent.join()
-        os._exit(1)
+def _end_of(status: int) -> str:
+    if status >= 0:
+        return f"a worker process ended early with status {status}"
+    from signal import Signals
 
-    Thread(target=follow, daemon=True).start()
+    try:
+        name = Signals(-status).name
+    except ValueError:  # one that has no name, as those for real time
+        name = f"signal {-status}"
+    return f"a worker process was killed ({name}), by the system if memory ran out; --jobs 1 needs the least"
+
+
+def work() -> None:
+    """Compute the chunks that standard input has, until it ends, and write their rows to standard output."""
+    warnings.simplefilter("error", RuntimeWarning)  # as in the process that started this one
+    while True:
+        try:
+            task = pickle.load(sys.stdin.buffer)
+        except EOFError:
+            return
+        try:
+            found: Any = computed(*task)
+        except Exception as error:
+            found = error
+        try:
+            pickle.dump(found, sys.stdout.buffer)
+            sys.stdout.buffer.flush()
+        except BrokenPipeError:  # nobody reads it: the process that started this one has ended
+            os._exit(1)
 
 
 @contextmanager
-def _interrupts_wait() -> Iterator[None]:
-    """Hear an interrupt that comes meanwhile afterwards, where the system can keep it; SIGTERM may be heard as one."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
+def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit, Callable[[], int]]]:
     try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextmanager
-def _cluster(address: str) -> Iterator[tuple[Callable[..., Any], int]]:
-    try:
-        from distributed import Client
+        from distributed import Client, TimeoutError
     except ImportError:
         raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
+    import logging
+    from concurrent.futures import CancelledError
+
+    logging.disable()  # of a lost scheduler it writes tracebacks
     try:
         client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:  # no address, no answer in time, or a way that is not set up
-        raise UsageError(f"--dask {address}: no scheduler answers there ({str(error).splitlines()[0]})") from None
+    except (OSError, ValueError, TypeError) as error:  # no address, no answer in time, or a protocol that is not set up
+        raise UsageError(f"--dask {address}: no scheduler answers there ({_first_line(error)})") from None
 
-    def submit(function: Callable[..., Any], spec: Spec, company: range, wanted: range) -> Any:
+    def workers() -> int:
+        return max(len(client.nthreads()), 1)
+
+    def submit(spec: Spec, company: range, wanted: range) -> Answer:
         key = f"kurbel-{hash(spec)}-{wanted}"
-        return client.submit(function, spec, company, wanted, retries=_RETRIES, key=key)
+        future = client.submit(computed, spec, company, wanted, retries=_RETRIES, key=key)
+
+        def answer() -> list[Row]:
+            waiting = False
+            while True:
+                try:
+                    return future.result(timeout=_LOOKED_EVERY)  # type: ignore[no-any-return]
+                except TimeoutError:
+                    if not waiting and not client.nthreads():
+                        note(f"--dask {address}: the cluster has no workers; waiting for one")
+                        waiting = True
+
+        return answer
 
     try:
-        yield submit, max(len(client.scheduler_info()["workers"]), 1)
+        yield submit, workers
+    except Exception as error:
+        if client.status != "running" or isinstance(error, CancelledError):
+            raise KurbelError(f"--dask {address}: the connection to the scheduler is lost") from None
+        raise KurbelError(f"--dask {address}: {type(error).__name__}: {_first_line(error)}") from None
     finally:
         client.close()
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).partition("\n")[0]

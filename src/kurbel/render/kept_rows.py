@@ -11,7 +11,7 @@ from kurbel.designs.chosen import Condition
 from kurbel.designs.sweep import Row, Sweep
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.sweep_output import WRITERS, Titles, csv_rows
+from kurbel.render.sweep_output import WRITERS, Titles, csv_rows, part_of
 
 _SAME = 1e-9
 """What two processors may differ by in a number, relatively and in SI: they round otherwise, but are of one sweep."""
@@ -25,21 +25,25 @@ class _Line(NamedTuple):
 
 
 class KeptRows:
-    """What a file has of these rows of a sweep; size: the bytes of its whole lines, which stay.
+    """What a file, or the part of it that an early end left, has of these rows of a sweep.
 
+    kept: the number of its rows, and the bytes of its whole lines, which stay.
     Raises UsageError for a file that begins otherwise.
     """
 
     def __init__(self, file_name: str, titles: Titles, look: Look, rows: range) -> None:
-        self._file_name, self._titles, self._look, self._rows = file_name, titles, look, rows
-        content = _content(file_name)
-        self.size = content.rfind(b"\n") + 1
-        self._lines = content[: self.size].decode("utf-8", "replace").split("\n")[:-1]
+        part = part_of(file_name)
+        self._file_name = part if os.path.isfile(part) else file_name
+        self._titles, self._look, self._rows = titles, look, rows
+        content = _content(self._file_name)
+        size = content.rfind(b"\n") + 1
+        self._lines = content[:size].decode("utf-8", "replace").split("\n")[:-1]
         head = next(csv_rows(titles, (), look)) if look.format == "csv" and rows.start == 0 else ""
         opening, text = head or '{"row": ' * (look.format == "json"), content.decode("utf-8", "replace")
         if text[: len(opening)] != opening[: len(text)] or not (opening or text[:1] in "0123456789"):
             self._refuse(f"it begins with {text.partition(chr(10))[0][:60]!r}")
         self._headed = bool(head)
+        self.kept = max(len(self._lines) - self._headed, 0), size
 
     def rest(self, sweep: Sweep, conditions: Sequence[Condition]) -> range:
         """Return the rows that are still to be computed.

@@ -132,24 +132,38 @@ def replaced(file_name: str) -> Iterator[str]:
 
     What is no file, such as a pipe or /dev/stdout, is written to as it is.
     """
-    old = _status(file_name)
-    if old and (not stat.S_ISREG(old.st_mode) or _is_open(old)):
+    if not (target := whole_file(file_name)):
         yield file_name
         return
-    if old and not os.access(file_name, os.W_OK):  # a rename would not ask
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), file_name)
-    target = os.path.realpath(file_name)  # a link stays one
     beside = os.path.join(os.path.dirname(target), f".kurbel-{os.urandom(8).hex()}{os.path.splitext(file_name)[1]}")
     try:
         os.close(os.open(beside, os.O_CREAT | os.O_EXCL, 0o666))
-        if old:
-            os.chmod(beside, stat.S_IMODE(old.st_mode))
+        take_mode(beside, target)
         yield beside
         os.replace(beside, target)
     except BaseException:  # an interrupt, too, leaves nothing behind
         with suppress(OSError):
             os.unlink(beside)
         raise
+
+
+def whole_file(file_name: str) -> str:
+    """Return the path of a file that may be replaced once a new one is whole, "" for a device, a pipe or /dev/stdout.
+
+    Raises OSError where it may not be written.
+    """
+    old = _status(file_name)
+    if old and (not stat.S_ISREG(old.st_mode) or _is_open(old)):
+        return ""
+    if old and not os.access(file_name, os.W_OK):  # a rename would not ask
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), file_name)
+    return os.path.realpath(file_name)  # a link stays one
+
+
+def take_mode(new: str, target: str) -> None:
+    """Give a file the mode of the one that it is to replace, if there is one."""
+    with suppress(FileNotFoundError):
+        os.chmod(new, stat.S_IMODE(os.stat(target).st_mode))
 
 
 def _status(file_name: str) -> os.stat_result | None:

@@ -1,15 +1,17 @@
 """The rows of a sweep, as csv, json lines, Markdown, a table or Parquet, and where they go.
 
-Whole lines are written, the first ones at once, so that an interrupted run keeps its own.
+Whole lines are written, the first ones at once, to a file FILE.part that becomes FILE when it has all: what was there
+stays until then, and an interrupted run keeps its own.
 """
 
 import json
+import os
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from itertools import islice
+from itertools import chain, islice
 from typing import Any, NamedTuple
 
 from kurbel.designs.chosen import Unit
@@ -17,7 +19,7 @@ from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.csv_text import _harmless, _quoted
 from kurbel.render.numbers import decimal, exact, single
-from kurbel.render.output import silence, stdout_look
+from kurbel.render.output import silence, stdout_look, take_mode, whole_file
 
 _AT_LEAST_EVERY = 0.5
 """Seconds after which lines that are ready are written."""
@@ -139,45 +141,115 @@ WRITERS: dict[str, Callable[..., Iterator[str]]] = {
 }
 
 
-class SweepOutput:
-    """The output of a sweep; headed: csv with its head; kept: bytes of the file that stay, 0 to begin it anew."""
+def part_of(file_name: str) -> str:
+    """Return the path that holds the rows of a sweep until all are there."""
+    return os.path.realpath(file_name) + ".part"
 
-    def __init__(self, titles: Titles, look: Look, file_name: str | None, headed: bool = True, kept: int = 0) -> None:
+
+class SweepOutput:
+    """The output of a sweep; headed: csv with its head; kept: rows that the file has, and their bytes, which stay."""
+
+    def __init__(
+        self,
+        titles: Titles,
+        look: Look,
+        file_name: str | None,
+        headed: bool = True,
+        kept: tuple[int, int] = (0, 0),
+    ) -> None:
         self.titles = titles
+        self.rows, self._kept = kept
+        """Rows that are written, and bytes of those that were there before."""
         self._file_name = None if file_name == "-" else file_name
         self._look = look if self._file_name else replace(look, encoding=stdout_look().encoding)
-        self._headed, self._kept = headed, kept
+        self._headed = headed
 
     def write(self, rows: Iterable[Any]) -> None:
         """Write the rows; a reader that leaves early is no fault. Raises UsageError."""
-        if self._look.format == "parquet":
-            self._write_parquet(rows)
-            return
-        texts = WRITERS[self._look.format](self.titles, rows, self._look)
-        if self._look.format == "csv" and not self._headed:
-            next(texts)
+        write = self._write_parquet() if self._look.format == "parquet" else self._write_lines
+        following = iter(rows)
+        first = list(islice(following, 1))  # before anything is opened: there may be none, for whatever reason
         with self._opened() as file:
-            _flow(texts, file, self._look.encoding)
+            write(chain(first, following), file)
+
+    def left(self) -> str:
+        """Return what an early end leaves, "" for nothing."""
+        count = f"{self.rows} row{'s' * (self.rows > 1)}"
+        if self.rows <= 0:
+            return ""
+        if self._file_name is None:
+            return f"{count} written"
+        part = part_of(self._file_name)
+        return f"{part} holds {count}" if os.path.isfile(part) else ""
 
     @contextmanager
     def _opened(self) -> Iterator[Any]:
+        path = self._file_name
         try:
-            if self._file_name is None:
+            if path is None:
                 sys.stdout.flush()
                 yield getattr(sys.stdout, "buffer", sys.stdout)
-                return
-            with open(self._file_name, "r+b" if self._kept else "wb") as file:
-                if self._kept:  # a device or a pipe begins anew by itself and has no place to go to
-                    file.seek(self._kept)
-                    file.truncate()
-                yield file
+            elif target := whole_file(path):
+                path = part_of(target)
+                with self._part(path, target) as file:
+                    yield file
+                os.replace(path, target)
+            else:  # a device or a pipe begins anew by itself and has no place to go to
+                with open(path, "wb") as file:
+                    yield file
         except BrokenPipeError:
             silence(sys.stdout)
         except OSError as error:
-            where = self._file_name or "to standard output"
+            where = path or "to standard output"
             raise UsageError(f"cannot write {where}: {error.strerror or error}") from None
 
-    def _write_parquet(self, rows: Iterable[Any]) -> None:
+    @contextmanager
+    def _part(self, path: str, target: str) -> Iterator[Any]:
+        """Yield the file at a path, after the bytes that stay; one without rows goes again."""
+        if self._kept and not os.path.isfile(path):
+            from shutil import copyfile
+
+            copyfile(target, path)
+        try:
+            with open(path, "r+b" if self._kept else "wb") as file:
+                take_mode(path, target)
+                file.seek(self._kept)
+                file.truncate()
+                yield file
+        except BaseException:
+            if self.rows <= 0:
+                os.unlink(path)
+            raise
+
+    def _write_lines(self, rows: Iterable[Any], file: Any) -> None:
+        """Write whole lines, those that are ready whenever some time has passed, and at an interrupt too."""
+        writer = WRITERS[self._look.format]
+        texts, heads = writer(self.titles, rows, self._look), len(list(writer(self.titles, (), self._look)))
+        if self._look.format == "csv" and not self._headed:
+            next(texts)
+            heads = 0
+        ready: list[bytes] = []
+        written = 0.0
+        self.rows -= heads
+
+        def put() -> None:
+            lines, count = b"".join(ready), len(ready)
+            ready.clear()
+            file.write(lines)
+            file.flush()
+            self.rows += count
+
+        try:
+            for text in texts:
+                ready.append(text.encode(self._look.encoding, "replace"))
+                if time.monotonic() - written >= _AT_LEAST_EVERY:
+                    put()
+                    written = time.monotonic()
+        finally:
+            put()
+
+    def _write_parquet(self) -> Callable[[Iterable[Any], Any], None]:
+        """Return what writes rows to a file as Parquet. Raises UsageError where pyarrow is missing."""
         try:
             import pyarrow
             from pyarrow import parquet
@@ -187,39 +259,20 @@ class SweepOutput:
         stored = {"number": pyarrow.float64(), "text": pyarrow.string(), "list": pyarrow.list_(pyarrow.float64())}
         fields = {name: stored[one] for name, one in zip(names, types)} | {names[0]: pyarrow.int64()}
         schema = pyarrow.schema(list(fields.items()))
-        following = iter(rows)
-        try:
-            with parquet.ParquetWriter(self._file_name, schema) as writer:
+
+        def write(rows: Iterable[Any], file: Any) -> None:
+            following = iter(rows)
+            with parquet.ParquetWriter(file, schema) as writer:
                 while group := list(islice(following, _IN_A_GROUP)):
                     columns = zip(*(self.titles.values(row) for row in group))
                     found = dict(zip(names, map(_column, columns, types)))
                     writer.write_table(pyarrow.table(found, schema=schema))
-        except OSError as error:
-            raise UsageError(f"cannot write {self._file_name}: {error.strerror or error}") from None
+                    self.rows += len(group)
+
+        return write
 
 
 def _column(values: tuple[Any, ...], type: str) -> list[Any]:
     """Return the values of a column as what is stored of them: texts, numbers, or lists of them."""
     as_stored: dict[str, Callable[[Any], Any]] = {"text": str, "number": lambda one: one, "list": list}
     return [None if one is None else as_stored[type](one) for one in values]
-
-
-def _flow(texts: Iterable[str], file: Any, encoding: str) -> None:
-    """Write whole lines, those that are ready whenever some time has passed, and at an interrupt too."""
-    ready: list[bytes] = []
-    written = 0.0
-    try:
-        for text in texts:
-            ready.append(text.encode(encoding, "replace"))
-            if time.monotonic() - written >= _AT_LEAST_EVERY:
-                _put(ready, file)
-                written = time.monotonic()
-    finally:
-        _put(ready, file)
-
-
-def _put(ready: list[bytes], file: Any) -> None:
-    lines = b"".join(ready)
-    ready.clear()
-    file.write(lines)
-    file.flush()
