@@ -22,9 +22,8 @@ from kurbel.cli import kurbel
 from representative import few
 from swept_rows import WATERWORKS
 
-ENGINE = (
-    "cycle: four-stroke\nspeed: 1500 rpm\nstroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\nmasses: {reciprocating: 1 kg}\n"
-)
+CYLINDER = "stroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\nmasses: {reciprocating: 1 kg}\n"
+ENGINE = f"cycle: four-stroke\nspeed: 1500 rpm\n{CYLINDER}"
 TRACE = "indicator: {pressures: absolute, head_end: {trace: {unit: bar, %s}}}\n"
 OTTO = "otto: {intake: 0 bar, exhaust: 0.1 bar, compression_ratio: 9, exponent: 1.33, peak: 40 bar}"
 
@@ -164,7 +163,7 @@ def test_a_report_of_a_smooth_trace_takes_a_few_times_its_reading() -> None:
 @pytest.mark.xfail(
     strict=True,
     raises=AssertionError,
-    reason="478 MB at L/R = 1.0000001 where L/R = 1.001 takes 17: Fourier sums of millions of nodes, 4 to 26 s",
+    reason="50 MB at L/R = 1.00001 and 478 MB at 1.0000001, 17 at 1.001: Fourier sums of millions of nodes, 4 to 26 s",
 )
 @pytest.mark.parametrize("ratio", few(["1.00001", "1.0000001"], ["1.00001"]))
 def test_a_rod_hardly_longer_than_the_crank_is_no_larger_a_problem(ratio: str) -> None:
@@ -182,7 +181,7 @@ def test_a_rod_hardly_longer_than_the_crank_is_no_larger_a_problem(ratio: str) -
 )
 def test_check_grows_with_the_cylinders_not_with_their_square() -> None:
     run("check", in_line(2))
-    found = [peak("check", in_line(count)) for count in (15, 30)]
+    found = [peak("check", in_line(count)) for count in (16, 32)]
     assert found[1] < 2.5 * found[0]
 
 

@@ -311,6 +311,20 @@ def test_a_dead_centre_two_degrees_off_is_seen_by_both_exponents(
     assert float(re.findall(r"-?[0-9.]+", keys)[0]) == pytest.approx(degrees, abs=1.0)
 
 
+@pytest.mark.parametrize("degrees", [-2.0, 2.0])
+def test_a_motored_trace_finds_the_dead_centre_of_the_fired_one(tmp_path: Path, degrees: float) -> None:
+    """Of the same encoder, its peak 0.7 deg before the dead centre; 0.05 bar of noise, 0.05 deg."""
+    noise = 0.05 * np.random.default_rng(3).standard_normal(len(FINE))
+    motored = absolute(ENGINE._replace(heat=0.0), FINE - degrees + 0.7) + noise
+    columns_file(tmp_path / "motored.csv", np.column_stack((FINE, motored)))
+    keys = f", angle_zero: {{motored: '{tmp_path / 'motored.csv'}', loss_angle: 0.7 deg}}"
+    machine = loads(machine_text(written(tmp_path, FINE, late(degrees)), keys))
+    found: Any = machine.cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
+    assert (found.angle_zero + 360) % 720 - 360 == pytest.approx(degrees, abs=0.05)
+    true = indicated(FINE, absolute(ENGINE, FINE)) * 1e5
+    assert Case(machine).cylinders[0]["p_i"].value == pytest.approx(true, rel=0.005)
+
+
 @pytest.mark.parametrize("degrees", [-0.7, 0.7])
 def test_a_loss_angle_is_no_dead_centre_that_is_off(tmp_path: Path, degrees: float) -> None:
     """Heat loss and leakage bend both exponents as a dead centre 0.4 to 1 deg off does."""
