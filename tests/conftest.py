@@ -1,4 +1,4 @@
-"""No test measures time; and one switch rewrites every text that the tests keep of the program's output."""
+"""No test is held to a time; and one switch rewrites every text that the tests keep of the program's output."""
 
 from __future__ import annotations
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 
 import pytest
 from click.testing import CliRunner
 
 from kurbel.cli import kurbel
+from kurbel.declared.units import unit_names
+from kurbel.errors import MachineFileError
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 
@@ -82,3 +85,55 @@ def test_limits_and_places_count_as_the_file_does() -> None:
     assert "7 bar > 6.5 bar  BROKEN" in CliRunner().invoke(kurbel, ["check", "-"], input=limited).stdout
     found = run("forces", "--where", "p_head = 7 bar", "--columns", "p_head", "-f", "csv")
     assert float(found.splitlines()[1].split(",")[1]) == pytest.approx(7e5, rel=1e-15)
+
+
+# units that say which zero they have, of ISO 80000-4 and of DIN 1314 before 1977
+
+PSI, AT = 0.45359237 * 9.80665 / 0.0254**2, 98066.5
+ZEROED = {
+    "psia": ("absolute", PSI),
+    "psig": ("gauge", PSI),
+    "bara": ("absolute", 1e5),
+    "barg": ("gauge", 1e5),
+    "ata": ("absolute", AT),
+    "atü": ("gauge", AT),
+}
+SINGLE_ACTING = "crank: 400 mm\nrod: 2 m\nbore: 450 mm\nambient: 1 bar\n"
+FORMS = [
+    "head_end: 5 %s",
+    "head_end: {constant: {expansion: 5 %s, compression: 5 %s}}",
+    "head_end: {unit: %s, expansion: [[0, 5], [1, 5]], compression: [[1, 5], [0, 5]]}",
+    "head_end: {trace: {unit: %s, points: [[0, 5], [180, 5], [360, 5]]}}",
+]
+
+
+def written_in(unit: str, counted: str, form: str) -> str:
+    return f"{SINGLE_ACTING}indicator: {{pressures: {counted}, {form.replace('%s', unit)}}}\n"
+
+
+@pytest.mark.xfail(strict=True, raises=MachineFileError, reason="'unknown pressure unit': which zero, 'pressures' says")
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("unit", ZEROED)
+def test_units_that_say_which_zero_they_have(unit: str, form: str) -> None:
+    """5 units on the piston, against 1 bar outside where they count from the vacuum."""
+    counted, size = ZEROED[unit]
+    (cylinder,) = Case(loads(written_in(unit, counted, form))).cylinders
+    over = 5 * size - (1e5 if counted == "absolute" else 0)
+    assert cylinder.at([90.0]).P[0] == pytest.approx(over * math.pi / 4 * 0.45**2, rel=1e-12)
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="'unknown pressure unit' is all that is said")
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("unit", ZEROED)
+def test_units_that_say_another_zero_than_the_machine_are_refused(unit: str, form: str) -> None:
+    """Both readings are shown: the unit of the machine's zero, or the zero of the unit."""
+    counted = ZEROED[unit][0]
+    with pytest.raises(MachineFileError) as caught:
+        loads(written_in(unit, "gauge" if counted == "absolute" else "absolute", form))
+    assert f"'pressures: {counted}'" in str(caught.value)
+    assert unit in str(caught.value)
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="none of them is known")
+def test_units_that_say_which_zero_they_have_are_listed() -> None:
+    assert set(ZEROED) <= set(unit_names("pressure"))

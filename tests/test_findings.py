@@ -266,6 +266,43 @@ def test_a_check_goes_to_a_file_but_never_over_its_own(tmp_path: Path) -> None:
     assert (result.exit_code, "writes table or json" in result.stderr) == (2, True)
 
 
+SEVERAL = {
+    "good.yaml": ENGINE,
+    "slow.yaml": "name: The slow one\n" + ENGINE + "limits: {c_max: 9 m/s}\n",
+    "fast.yaml": ENGINE + "limits:\n  c_max: 1 m/s\n",
+    "wrong.yaml": ENGINE + "bor: 1 m\n",
+}
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="'Got unexpected extra argument': check takes one file")
+@pytest.mark.parametrize(
+    ("names", "status"),
+    [
+        (("good", "slow"), 0),
+        (("fast", "good", "slow"), 1),
+        (("wrong", "fast", "good"), 2),
+        (("good", "none"), 2),
+    ],
+)
+def test_many_files_are_checked_in_one_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, names: tuple[str, ...], status: int
+) -> None:
+    """The gravest status of all; each file is named with what is found in it, and none hides another one."""
+    monkeypatch.chdir(tmp_path)
+    for name, text in SEVERAL.items():
+        Path(name).write_text(text)
+    files = [f"{name}.yaml" for name in names]
+    result = CliRunner().invoke(kurbel, ["check", *files])
+    assert result.exit_code == status
+    assert all(name in result.stdout + result.stderr for name in files)
+    assert result.stdout.count("a valid machine") == len({*names} & {"good", "slow", "fast"})
+    assert ("wrong.yaml:5:1: bor: unknown key" in result.stderr) == ("wrong" in names)
+    as_json = CliRunner().invoke(kurbel, ["check", *files, "-f", "json"])
+    assert as_json.exit_code == status
+    found = json.loads(as_json.stdout)["findings"]
+    assert {one["file"] for one in found} == set(files)
+
+
 # notes
 
 

@@ -114,3 +114,30 @@ def test_files_are_left_to_the_shell() -> None:
         "COMP_CWORD": "2",
     }
     assert CliRunner().invoke(kurbel, [], env=environment, prog_name="kurbel").stdout.startswith("file,")
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="'tandem' is told with no key below it")
+def test_a_tandem_shows_what_stands_below_it() -> None:
+    lines = dict(line.split("  ", 1) for line in told("tandem").splitlines())
+    named = set(lines.get("below it", "").replace(",", " ").split())
+    assert {"name", "bore", "head_end_rod", "crank_end_rod"} <= named
+    assert any(one.startswith("indicator") for one in named)
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="'no key', though a machine file takes it")
+@pytest.mark.parametrize("end", ["head_end", "crank_end"])
+def test_the_mean_pressure_of_an_end_is_a_key(end: str) -> None:
+    result = CliRunner().invoke(kurbel, ["keys", f"indicator.{end}.mean_pressure"])
+    assert result.exit_code == 0
+    assert "meaning" in result.stdout
+    assert f"indicator.{end}.mean_pressure" in every_place()
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="87 units of products with um, km and dm, such as N/um2")
+def test_no_unit_is_listed_that_nobody_writes() -> None:
+    """Micrometres, kilometres and decimetres: lengths and what people make of them, speeds in km/h, and densities."""
+    written = {"um", "km", "dm", "um2", "km2", "dm2", "dm3", "kg/dm3", "km/h", "km/s", "um/s"}
+    listed = [line.split(None, 1)[1] for line in CliRunner().invoke(kurbel, ["units"]).stdout.splitlines()]
+    units = {unit.strip() for line in listed for unit in line.split(",")}
+    assert len(units) > 100
+    assert sorted(unit for unit in units - written if re.search(r"\b(um|km|dm)[23]?\b", unit)) == []

@@ -334,3 +334,18 @@ def test_too_many_rows_are_refused_before_anything_is_computed() -> None:
             stepped(step, 360, parts)
     result = CliRunner().invoke(kurbel, ["table", "--step", "0.0004", *["--ratio", "5"] * 4])
     assert (result.exit_code, f"more than {MOST_ROWS} rows" in result.stderr) == (2, True)
+
+
+MARKED = [["forces", "-"], ["forces", "-", "-f", "csv"], ["forces", "-", "-f", "json"], ["check", "-", "-f", "json"]]
+
+
+@pytest.mark.xfail(
+    strict=True, raises=AssertionError, reason="a byte order mark before every written piece: up to 756 in one output"
+)
+@pytest.mark.parametrize("words", [*MARKED, ["table"], ["keys"], ["units"]])
+def test_an_output_has_one_byte_order_mark(words: list[str]) -> None:
+    """utf-8-sig marks the beginning of a stream, not each of its lines."""
+    result = CliRunner(charset="utf-8-sig").invoke(kurbel, words, input=MACHINE + PRESSURE)
+    assert result.exit_code == 0
+    assert result.stdout_bytes.startswith(b"\xef\xbb\xbf")
+    assert result.stdout_bytes.count(b"\xef\xbb\xbf") == 1

@@ -187,7 +187,7 @@ def test_csv_round_trips_to_the_same_floats() -> None:
         (["--step", "1e-9"], "more than"),
         (["--angles", "0,x"], "expected a number, got 'x'"),
         (["--rows", "accelaration_factor"], "did you mean 'acceleration_factor'?"),
-        (["--rows", ","], "no row asked for"),
+        (["--rows", ","], "',' names no column; leave the option out, or name one"),
         (["--format", "xml"], "xml"),
         (["--digits", "0"], "0"),
         (["--decimal", "comma", "-f", "json"], "JSON has the decimal point only"),

@@ -464,3 +464,21 @@ def test_a_device_takes_rows_as_a_file_does() -> None:
     args = ["-m", "kurbel", "sweep", "configs/waterworks.yaml", "--vary", "rod_ratio=3,4", "-o", "/dev/stdout"]
     done = subprocess.run([sys.executable, *args, "-f", "csv", "--columns", "T_max"], capture_output=True, text=True)
     assert (done.returncode, done.stderr, len(done.stdout.splitlines())) == (0, "", 3)
+
+
+@pytest.mark.parametrize("option", ["--sort", "--columns", "--pareto", "--shard", "--where", "--dask"])
+def test_an_option_without_a_value_is_refused(option: str) -> None:
+    """An empty variable of a shell script is no choice of all rows or columns."""
+    result = run("--vary", "rod_ratio=4,5", option, "")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert option in result.stderr
+    assert run("--vary", "rod_ratio=4,5", "--columns", " , ").exit_code == 2
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="a byte order mark before every written piece: 4 here")
+def test_rows_have_one_byte_order_mark() -> None:
+    """utf-8-sig, as spreadsheets want it, marks the beginning of a stream."""
+    arguments = ["sweep", WATERWORKS, "--vary", "rod_ratio=4,5,6", "-f", "csv"]
+    written = CliRunner(charset="utf-8-sig").invoke(command, arguments).stdout_bytes
+    assert written.startswith(b"\xef\xbb\xbfrow,rod_ratio")
+    assert written.count(b"\xef\xbb\xbf") == 1

@@ -6,7 +6,9 @@ import re
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from kurbel.cli import kurbel
 from kurbel.declared.numerals import parse_number
 from kurbel.declared.units import parse_quantity
 from kurbel.errors import MachineFileError, UnitError
@@ -85,3 +87,40 @@ def test_odd_spaces_in_a_trace(tmp_path: Path) -> None:
     )
     trace = load(tmp_path / "m.yaml").cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
     assert trace.pressures.tolist() == [1e5, 2e5, 1e5]  # type: ignore[union-attr]
+
+
+TURNED = "en\u202elmay.gine"
+"""What a terminal shows as 'en' and 'enig.yaml': the sign turns the direction of writing."""
+WORDS: dict[str, list[str]] = {
+    "check": ["check", f"{TURNED}.yaml"],
+    "check as json": ["check", f"{TURNED}.yaml", "-f", "json"],
+    "forces as json": ["forces", f"{TURNED}.yaml", "-f", "json"],
+    "report": ["report", f"{TURNED}.yaml"],
+    "a fault in the file": ["forces", f"{TURNED}.yaml", "--set", "crank=5"],
+    "a fault of the file": ["forces", f"bad{TURNED}.yaml"],
+    "no such file": ["forces", f"no{TURNED}.yaml"],
+    "no such format": ["forces", f"{TURNED}.yaml", "-o", f"{TURNED}.foo"],
+}
+RAW = "forces as json", "check as json", "report", "a fault of the file", "no such file", "no such format"
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(
+            case,
+            marks=pytest.mark.xfail(strict=True, raises=AssertionError, reason="U+202E of the file name is raw there")
+            if case in RAW
+            else (),
+        )
+        for case in WORDS
+    ],
+)
+def test_a_file_name_turns_no_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, case: str) -> None:
+    """What a file is called reaches the terminal and the report without a sign that turns the writing."""
+    monkeypatch.chdir(tmp_path)
+    Path(f"{TURNED}.yaml").write_text("speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\n")
+    Path(f"bad{TURNED}.yaml").write_text("crank: 400\n")
+    result = CliRunner().invoke(kurbel, WORDS[case])
+    assert result.stdout + result.stderr
+    assert "\u202e" not in result.stdout + result.stderr

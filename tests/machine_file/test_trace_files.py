@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,9 @@ from kurbel.errors import MachineFileError
 from kurbel.machine import Machine
 from kurbel.machine.trace import Trace
 from kurbel.machine_file import load
+from kurbel.report.notes import machine_notes
+from kurbel.solver.case import Case
+from representative import few
 
 ENGINE = Engine()
 ANGLES = np.arange(0.0, 720.0, 2.0)
@@ -263,3 +267,71 @@ def test_figures_beyond_all_numbers(tmp_path: Path) -> None:
         machine(tmp_path, "0,1\n100,1e300\n720,1\n", ", scale: 1e15")
     with pytest.raises(MachineFileError, match="motored: has 0 samples only"):
         machine(tmp_path, "0,1\n720,1\n", ", angle_zero: {motored: p.csv, loss_angle: 0.5 deg}")
+
+
+# what is read otherwise than it is meant, or said in part
+
+
+def said_of(folder: Path, content: str, keys: str = "", unit: str = "bar") -> str:
+    """The fault of a file, or else all notes on the machine that was read."""
+    try:
+        one = machine(folder, content, keys, unit)
+    except MachineFileError as error:
+        return str(error)
+    return "\n".join(note.text for note in machine_notes(one, lambda: Case(one)))
+
+
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="columns 1 and 2 of '0,37,66' are read: whole bars, and a note about gauge",
+)
+@pytest.mark.parametrize("heading", ["", "Winkel,Druck\n"])
+def test_whole_degrees_and_decimal_commas_between_comma_columns(tmp_path: Path, heading: str) -> None:
+    """'0,37,66' is 0 deg and 37.66 bar, or three columns: refused, or doubted, with both readings."""
+    lines = "".join(f"{angle:g},{pressure:.2f}\n".replace(".", ",") for angle, pressure in zip(ANGLES, PRESSURES))
+    said = said_of(tmp_path, heading + lines, ", skip_rows: 1" if heading else "")
+    assert "decimal comma" in said
+    assert "delimiter" in said
+
+
+@pytest.mark.xfail(
+    strict=True, raises=AssertionError, reason="quoted as '37.661.00', which is not in the file, and called no number"
+)
+def test_a_point_between_thousands_is_named_as_it_stands_in_the_file(tmp_path: Path) -> None:
+    german = str.maketrans(".,", ",.")
+    lines = "".join(f"{a:.10g};{f'{p * 1000:,.2f}'.translate(german)}\n" for a, p in zip(ANGLES, PRESSURES))
+    said = said_of(tmp_path, lines, ", delimiter: semicolon, decimal: comma", "mbar")
+    assert "'37.661,00'" in said
+    assert "thousands" in said
+
+
+def _all_limits_in(text: str) -> bool:
+    """Whether the three limits of size stand in a text, with or without signs between thousands."""
+    plain = re.sub(r"(?<=[0-9])[ ,_\u202f](?=[0-9]{3})", "", text)
+    return "64 MiB" in plain and bool(re.search(r"5000000|5 million|5·10⁶", plain)) and "500000" in plain
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="the limits of size of a trace stand in no page")
+def test_the_docs_have_the_limits_of_size() -> None:
+    page = Path(__file__).parents[2] / "docs" / "traces.md"
+    assert _all_limits_in(page.read_text(encoding="utf-8"))
+
+
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="each limit is reported alone: who thins a file to 64 MiB meets the next one",
+)
+@pytest.mark.parametrize("large", few(["bytes", "samples"], ["bytes"]))
+def test_all_limits_of_size_are_reported_at_once(tmp_path: Path, large: str) -> None:
+    (tmp_path / "p.csv").write_text("".join(f"{i},1\n" for i in range(500_001)) if large == "samples" else "0,1\n")
+    if large == "bytes":
+        os.truncate(tmp_path / "p.csv", 64 * 2**20 + 1)
+    (tmp_path / "m.yaml").write_text(
+        "cycle: four-stroke\nstroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\n"
+        f"indicator: {{head_end: {{trace: {{file: p.csv, unit: bar, angle_step: {720 / 500_001!r} deg}}}}}}\n"
+    )
+    with pytest.raises(MachineFileError) as caught:
+        load(tmp_path / "m.yaml")
+    assert _all_limits_in(str(caught.value))

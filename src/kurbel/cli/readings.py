@@ -38,8 +38,11 @@ def numbers(text: str) -> tuple[float, ...]:
 
 
 def words(text: str) -> tuple[str, ...]:
-    """Return words separated by commas, in the order given, without those that are empty."""
-    return tuple(word.strip() for word in text.split(",") if word.strip())
+    """Return words separated by commas, in the order given, without those that are empty, one at least."""
+    found = tuple(word.strip() for word in text.split(",") if word.strip())
+    if not found:
+        raise click.BadParameter(f"'{text}' names no column; leave the option out, or name one")
+    return found
 
 
 def columns(text: str) -> tuple[str, ...]:

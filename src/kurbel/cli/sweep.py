@@ -157,6 +157,8 @@ class _Asked(NamedTuple):
             (self._written == "parquet" and not named, "Parquet is a file; give --output FILE.parquet."),
             (self.summary and self._written == "parquet", "--summary is a table, csv, json or markdown."),
             (self.summary and self.shard, "--summary is of all rows; leave --shard out."),
+            (self.sort == "", "--sort names no column; leave it out, or name one."),
+            (self.shard == "", "--shard has no number; write K/N, such as 2/8, K from 1 to N."),
             (self.dask == "", "--dask has no address; give that of a scheduler, such as tcp://node:8786."),
             (self.dask and self.jobs, "--dask and --jobs both say who computes; leave one of them out."),
             (self.decimal == "comma" and self._written in ("json", "parquet"), "--decimal comma: not in this format."),

@@ -74,8 +74,6 @@ def zusammenstellung(
     below the computed ones and marks the misprints. Raises UsageError for L/R that do not turn and unknown rows.
     """
     ids = tuple(dict.fromkeys(_row_id(row) for row in rows))
-    if not ids:
-        raise UsageError(f"--rows: no row asked for (known: {', '.join(ROWS)})")
     ratios = tuple(dict.fromkeys(ratios))
     parts = tuple(_part(ratio, ids, angles, formula) for ratio in ratios)
     symbols = [column.symbol for column in parts[0].columns[1:]]

@@ -1,0 +1,240 @@
+"""How the work of a command grows with what it is given: counted calls, peaks of memory, and CPU times in ratio.
+
+No bound is a time. Python calls and peaks of memory are the same at every run; where the work is within numpy, CPU
+times of one run are divided by one another, with margins of three and more.
+"""
+
+from __future__ import annotations
+
+import cProfile
+import pstats
+import time
+import tracemalloc
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from indicated import Engine, absolute, columns_file
+from kurbel.cli import kurbel
+from representative import few
+from swept_rows import WATERWORKS
+
+CYLINDER = "stroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\nmasses: {reciprocating: 1 kg}\n"
+ENGINE = f"cycle: four-stroke\nspeed: 1500 rpm\n{CYLINDER}"
+TRACE = "indicator: {pressures: absolute, head_end: {trace: {unit: bar, %s}}}\n"
+OTTO = "otto: {intake: 0 bar, exhaust: 0.1 bar, compression_ratio: 9, exponent: 1.33, peak: 40 bar}"
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def run(*words: str) -> None:
+    result = CliRunner().invoke(kurbel, list(words))
+    assert result.exit_code == 0, result.output
+
+
+def calls(*words: str) -> int:
+    """How many functions a command calls, once all that it imports is there."""
+    profile = cProfile.Profile()
+    profile.runcall(run, *words)
+    return int(pstats.Stats(profile).total_calls)  # type: ignore[attr-defined]
+
+
+def peak(*words: str) -> int:
+    """Bytes that a command has at most."""
+    tracemalloc.start()
+    try:
+        run(*words)
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def cpu(work: Callable[[], object]) -> float:
+    """Seconds of the processor, the least of two runs."""
+    found = []
+    for _ in range(2):
+        begun = time.process_time()
+        work()
+        found.append(time.process_time() - begun)
+    return min(found)
+
+
+def traced(samples: int, noise: float = 0.0) -> str:
+    """A machine with a trace of so many samples in a file, with noise in bar."""
+    angles = np.arange(samples) * 720 / samples
+    shaken = absolute(Engine(), angles) + noise * np.random.default_rng(1).standard_normal(samples)
+    columns_file(Path("p.csv"), np.column_stack((angles, shaken)))
+    Path("m.yaml").write_text(ENGINE + TRACE % "file: p.csv")
+    return "m.yaml"
+
+
+def pointed(samples: int) -> str:
+    """A machine with as many samples in its own file."""
+    angles = np.arange(samples) * 720 / samples
+    points = ", ".join(f"[{a:.6f}, {p:.4f}]" for a, p in zip(angles, absolute(Engine(), angles)))
+    Path("m.yaml").write_text(ENGINE + TRACE % f"points: [{points}]")
+    return "m.yaml"
+
+
+def in_line(count: int) -> str:
+    """A four-stroke engine with so many equal cylinders that fire at equal intervals, and a flywheel."""
+    first = CYLINDER.strip().replace("\n", ", ")
+    cylinders = [f"{{name: c0, {first}, indicator: {{head_end: {{{OTTO}}}}}}}"]
+    cylinders += [f"{{like: c0, name: c{i}, crank_position: {720 * i / count!r} deg}}" for i in range(1, count)]
+    text = "cycle: four-stroke\nspeed: 1500 rpm\nflywheel: {inertia: 1 kg m2}\ncylinders:\n"
+    Path("m.yaml").write_text(text + "".join(f"  - {one}\n" for one in cylinders))
+    return "m.yaml"
+
+
+def swept(rows: int, *options: str) -> tuple[str, ...]:
+    """A sweep of so many rows in one process."""
+    values = f"rod_ratio=3:{3 + (rows - 1) * 1e-4:.4f}:0.0001"
+    return "sweep", WATERWORKS, "--vary", values, "--columns", "stroke", "-j", "1", *options
+
+
+def per_sample(command: Callable[[str], tuple[str, ...]], machine: Callable[[int], str], few: int, many: int) -> float:
+    """Calls of a command for each further sample."""
+    run(*command(machine(few)))
+    counted = [calls(*command(machine(samples))) for samples in (few, many)]
+    return (counted[1] - counted[0]) / (many - few)
+
+
+# samples: 500,000 are allowed, and each command is to take 5 s at most, so 10 microseconds a sample
+
+
+@pytest.mark.parametrize("noise", [0.0, 3.0])
+def test_check_takes_the_samples_of_a_file_together(noise: float) -> None:
+    """No call a sample: what is done with them is done in whole arrays."""
+    assert per_sample(lambda file: ("check", file), lambda n: traced(n, noise), 2000, 4000) < 0.1
+
+
+def test_a_smooth_trace_is_drawn_from_whole_arrays() -> None:
+    assert per_sample(lambda file: ("plot", file, "-o", "m.svg"), traced, 2000, 4000) < 0.1
+
+
+@pytest.mark.xfail(
+    strict=True, raises=AssertionError, reason="52 calls a sample in the machine file (check of 160,000: 5.8 s)"
+)
+def test_points_in_the_machine_file_are_read_together() -> None:
+    assert per_sample(lambda file: ("check", file), pointed, 1000, 2000) < 10
+
+
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="100 calls a sample: one shaded piece for each of the crossings in the noise (160,000 samples: 21 s)",
+)
+def test_a_picture_has_no_piece_for_every_crossing_in_the_noise() -> None:
+    """A picture of 1000 dots across shows no more than it has dots, whatever crosses between them."""
+    assert per_sample(lambda file: ("plot", file, "-o", "m.svg"), lambda n: traced(n, 3.0), 1000, 2000) < 5
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(
+    strict=True, raises=AssertionError, reason="600 calls a sample: each crossing in the noise is a root to be found"
+)
+def test_a_report_finds_no_root_for_every_crossing_in_the_noise() -> None:
+    assert per_sample(lambda file: ("report", file, "-o", "m.html"), lambda n: traced(n, 3.0), 500, 1000) < 20
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="a further sample takes 400 to 500 times what numpy takes to read it (500,000: 207 s, to be 5 s, 12 times)",
+)
+def test_a_report_of_a_smooth_trace_takes_a_few_times_its_reading() -> None:
+    run("report", traced(500), "-o", "m.html")
+    found = [cpu(lambda n=samples: run("report", traced(n), "-o", "m.html")) for samples in (1000, 6000)]
+    traced(100_000)
+    reading = cpu(lambda: np.loadtxt("p.csv", delimiter=",")) / 20
+    assert found[1] - found[0] < 50 * reading
+
+
+# mechanisms and cylinders
+
+
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="50 MB at L/R = 1.00001 and 478 MB at 1.0000001, 17 at 1.001: Fourier sums of millions of nodes, 4 to 26 s",
+)
+@pytest.mark.parametrize("ratio", few(["1.00001", "1.0000001"], ["1.00001"]))
+def test_a_rod_hardly_longer_than_the_crank_is_no_larger_a_problem(ratio: str) -> None:
+    """Its forces bend sharply within √(2(L/R − 1)) of 90°, and nowhere else: few more nodes if they stand there."""
+    for name, one in (("m.yaml", "1.001"), ("n.yaml", ratio)):
+        Path(name).write_text(f"speed: 1 rpm\nstroke: 1 m\nrod_ratio: {one}\nmasses: {{reciprocating: 10 kg}}\n")
+    run("balance", "m.yaml")
+    assert peak("balance", "n.yaml") < 2 * peak("balance", "m.yaml")
+
+
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="four times the memory for twice the cylinders: 346 MB for 40, 2.2 GB and 7 s for 100",
+)
+def test_check_grows_with_the_cylinders_not_with_their_square() -> None:
+    run("check", in_line(2))
+    found = [peak("check", in_line(count)) for count in (16, 32)]
+    assert found[1] < 2.5 * found[0]
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="200,000 calls for each further cylinder equal to the first (100: over 40 s), a third of the first",
+)
+def test_a_report_solves_equal_cylinders_once() -> None:
+    """5 s for 100 cylinders leave a tenth of today's work to each."""
+    run("report", in_line(2), "-o", "m.html")
+    found = [calls("report", in_line(count), "-o", "m.html") for count in (4, 8)]
+    assert (found[1] - found[0]) / 4 < 40_000
+
+
+# sweeps
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="each row is compared with the whole front: 10,000 rows take 11 times as long as without, 20,000 18 times",
+)
+def test_the_front_of_two_aims_takes_hardly_more_than_its_rows() -> None:
+    """Of one aim against itself every row is on the front; two aims need no more than an order of the rows."""
+    run(*swept(100))
+    plain, chosen = (cpu(lambda a=aims: run(*swept(10_000, *a))) for aims in ((), ("--pareto", "rod_ratio,-rod_ratio")))
+    assert chosen < 4 * plain
+
+
+@pytest.mark.xfail(
+    strict=True, raises=AssertionError, reason="148 calls to read a row that stands, 99 to compute and write one"
+)
+def test_resume_reads_a_row_faster_than_it_is_computed() -> None:
+    found = {}
+    for rows in (500, 1500):
+        run(*swept(rows, "-o", f"{rows}.csv"))
+        computed = calls(*swept(rows, "-o", f"{rows}.csv"))
+        found[rows] = computed, calls(*swept(rows, "-o", f"{rows}.csv", "--resume"))
+    computed, resumed = np.subtract(found[1500], found[500]) / 1000
+    assert resumed < computed / 2
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(
+    strict=True, raises=AssertionError, reason="the whole file in memory, four times: 25 MB for one of 6.7 MB, else 17"
+)
+def test_resume_does_not_hold_the_whole_file() -> None:
+    wide = ("--vary", f"name={'x' * 150}")
+    found = []
+    for rows in (500, 40_000):
+        run(*swept(rows, *wide, "-o", f"{rows}.csv"))
+        found.append(peak(*swept(rows, *wide, "-o", f"{rows}.csv", "--resume")))
+    assert found[1] < 1.2 * found[0]
