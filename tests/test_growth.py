@@ -19,7 +19,6 @@ from click.testing import CliRunner
 
 from indicated import Engine, absolute, columns_file
 from kurbel.cli import kurbel
-from representative import few
 from swept_rows import WATERWORKS
 
 CYLINDER = "stroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\nmasses: {reciprocating: 1 kg}\n"
@@ -165,10 +164,9 @@ def test_a_report_of_a_smooth_trace_takes_a_few_times_its_reading() -> None:
     raises=AssertionError,
     reason="50 MB at L/R = 1.00001 and 478 MB at 1.0000001, 17 at 1.001: Fourier sums of millions of nodes, 4 to 26 s",
 )
-@pytest.mark.parametrize("ratio", few(["1.00001", "1.0000001"], ["1.00001"]))
-def test_a_rod_hardly_longer_than_the_crank_is_no_larger_a_problem(ratio: str) -> None:
+def test_a_rod_hardly_longer_than_the_crank_is_no_larger_a_problem() -> None:
     """Its forces bend sharply within √(2(L/R − 1)) of 90°, and nowhere else: few more nodes if they stand there."""
-    for name, one in (("m.yaml", "1.001"), ("n.yaml", ratio)):
+    for name, one in (("m.yaml", "1.001"), ("n.yaml", "1.00001")):
         Path(name).write_text(f"speed: 1 rpm\nstroke: 1 m\nrod_ratio: {one}\nmasses: {{reciprocating: 10 kg}}\n")
     run("balance", "m.yaml")
     assert peak("balance", "n.yaml") < 2 * peak("balance", "m.yaml")
