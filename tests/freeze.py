@@ -1,7 +1,7 @@
 """The answers of every command for many machines, written to a file and compared with those of another one:
 
-    python tests/freeze.py write OUT.json.xz
-    python tests/freeze.py compare OLD.json.xz NEW.json.xz [--tight]
+    python tests/freeze.py write OUT
+    python tests/freeze.py compare OLD NEW [--tight]
 
 What is frozen stands in `frozen_runs`.
 """

@@ -46,7 +46,7 @@ def ran(folder: Path, *command: str, **environment: str) -> tuple[int, str]:
 
 @pytest.mark.parametrize("command", few(LINES, ["sweep"]))
 def test_no_command_imports_from_the_working_directory(start: tuple[list[str], Path], command: str) -> None:
-    """The processes of a sweep ran a file signal.py that was there."""
+    """The processes of a sweep ran a file there that was named as a module of Python."""
     starting, folder = start
     assert ran(folder, *starting, *LINES[command]) == (0, "")
 

@@ -90,7 +90,7 @@ def test_odd_spaces_in_a_trace(tmp_path: Path) -> None:
 
 
 TURNED = "en\u202elmay.gine"
-"""What a terminal shows as 'en' and 'enig.yaml': the sign turns the direction of writing."""
+"""What a terminal shows as 'en' and the rest turned round: the sign turns the direction of writing."""
 WORDS: dict[str, list[str]] = {
     "check": ["check", f"{TURNED}.yaml"],
     "check as json": ["check", f"{TURNED}.yaml", "-f", "json"],
