@@ -1,6 +1,6 @@
 """Types of arrays, said without numpy.typing, which would be one module more at every start."""
 
-from typing import Any
+from typing import Any, Union
 
 import numpy as np
 
@@ -8,3 +8,5 @@ Array = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 ComplexArray = np.ndarray[tuple[Any, ...], np.dtype[np.complex128]]
 Flags = np.ndarray[tuple[Any, ...], np.dtype[np.bool_]]
 Indices = np.ndarray[tuple[Any, ...], np.dtype[np.intp]]
+Number = Union[float, Array]
+"""A number of one machine, or of many machines, (machines,)."""

@@ -41,7 +41,8 @@ class CrankAngle(NamedTuple):
     @classmethod
     def at_nodes(cls, pieces: "Pieces") -> "CrankAngle":
         """Return the angles of the nodes of pieces of a cycle, (pieces, nodes)."""
-        return cls(pieces.degrees, *_turned(pieces.right_angle, pieces.offset))
+        offsets = pieces.offset if pieces.offset.ndim > 1 else pieces.offsets
+        return cls(pieces.degrees, *_turned(pieces.right_angle, offsets))
 
     @property
     def jets(self) -> "CrankAngle":

@@ -1,7 +1,10 @@
 """An extreme: the value and where it stands."""
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
+from kurbel.arrays import Array
 from kurbel.numerics.arithmetic import where
 
 
@@ -14,6 +17,12 @@ class Extreme(NamedTuple):
 
     value: float
     degrees: float
+
+    @classmethod
+    def of(cls, values: Array, degrees: Array) -> Extreme:
+        """Return what was found of every machine (machines,); of one machine two floats."""
+        pair: Any = (values, degrees) if len(values) > 1 else (float(values[0]), float(degrees[0]))
+        return cls(*pair)
 
 
 def number_of(answer: Any) -> Any:
@@ -44,3 +53,21 @@ def smallest(first: Extreme, *others: Extreme) -> Extreme:
 def chosen(condition: Any, extreme: Extreme, otherwise: Extreme) -> Extreme:
     """Return the one extreme where a condition holds, else the other."""
     return Extreme(*(where(condition, one, other) for one, other in zip(extreme, otherwise, strict=True)))
+
+
+_ALIKE = 1e-13
+"""Of a value: by what two that are alike differ by rounding."""
+
+
+class Extremes(NamedTuple):
+    """Largest and smallest value of one quantity over the cycle, with their angles."""
+
+    largest: Extreme
+    smallest: Extreme
+
+    @property
+    def peak(self) -> Extreme:
+        """The largest magnitude, whichever sign it has; of two that are alike but for rounding the first."""
+        high, low = self.largest, Extreme(-self.smallest.value, self.smallest.degrees)
+        alike = abs(low.value - high.value) <= _ALIKE * abs(high.value)
+        return chosen(where(alike, low.degrees < high.degrees, low.value > high.value), low, high)

@@ -1,0 +1,351 @@
+"""Smooth pieces of the cycles of many machines in one flat row, and what polynomials through their samples tell.
+
+Every quantity is sampled once at the Lobatto nodes of the pieces, (nodes, pieces). Means, integrals, crossings,
+extremes and samples on finer pieces follow from these samples by constant matrices. A piece on which the samples are no
+polynomial yet, by the tail of its Chebyshev coefficients, is halved: no other knowledge of poles or kinks is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array, Flags, Indices, Number
+from kurbel.numerics.lobatto import Rule, rule, series_at, slope_of_series
+
+ROUNDING = 1e-14
+"""Of the largest value of a quantity: what is smaller is zero."""
+TAIL = 1e-13
+"""Of the largest value: a piece whose last two coefficients are larger is halved."""
+NARROWEST = 1e-5
+"""Degrees of a piece that is halved no more: only the rounding of angles is rough there."""
+_REPEATED = 1e-12
+"""Of the largest value: by what equal summits of a curve differ that is summed over cylinders, or solved for."""
+_SUMMIT = 0.5
+"""Degrees in which as high a value belongs to one summit."""
+_CROWD = 100
+"""Rough pieces of one machine: a pole or a kink keeps two to four, noise makes them ever more."""
+_NOISE = 1e-8
+"""Of the largest value: the tail of such a crowd is noise."""
+_SAME = 1e-9
+"""Degrees between crossings that are one, made many by rounding."""
+_NO_WIDTH = 1e-11
+"""Degrees of a piece that is none."""
+
+Sample = Callable[["Pieces"], Array]
+"""Gives quantities at the nodes of pieces, (quantities, nodes, pieces)."""
+
+
+class Angles(NamedTuple):
+    """Angles in degrees (n,), each of a machine (n,), in order."""
+
+    machine: Indices
+    degrees: Array
+
+    def of_each(self, count: int) -> list[Array]:
+        """Return those of every machine."""
+        return np.split(self.degrees, np.searchsorted(self.machine, np.arange(1, count)))
+
+
+class Extremes(NamedTuple):
+    """Largest and smallest values of quantities, and the first angles in degrees that have them; each (q, machines)."""
+
+    largest: Array
+    largest_at: Array
+    smallest: Array
+    smallest_at: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Pieces (n,) of the cycles of `count` machines, ordered by machine and angle.
+
+    right_angle: the multiple of 90° beside a piece; offset: from there to its beginning; half: half its width, in
+    degrees, so that no digit is lost beside dead centres and at 90°. machine: whose each is. cycle: degrees.
+    """
+
+    right_angle: Array
+    offset: Array
+    half: Array
+    machine: Indices
+    count: int
+    cycle: float
+    rule: Rule
+
+    @classmethod
+    def between(cls, breaks: Angles, count: int, cycle: float, nodes: int = 16) -> Pieces:
+        """Return the pieces between these angles, taken modulo the cycle, and all multiples of 45°."""
+        eighths = np.arange(0.0, cycle + 1, 45.0)
+        machine = np.append(np.repeat(np.arange(count), len(eighths)), breaks.machine)
+        degrees = np.append(np.tile(eighths, count), np.mod(breaks.degrees, cycle))
+        order = np.lexsort((degrees, machine))
+        machine, degrees = machine[order], degrees[order]
+        width = np.append(np.diff(degrees), 0.0)
+        kept = np.flatnonzero(width > _NO_WIDTH)
+        right_angle = 90.0 * np.rint((degrees[kept] + width[kept] / 2) / 90.0)
+        return cls(right_angle, degrees[kept] - right_angle, width[kept] / 2, machine[kept], count, cycle, rule(nodes))
+
+    def split(self, at: Angles) -> Pieces:
+        """Return these pieces cut at more angles."""
+        if not len(at.degrees):
+            return self
+        breaks = Angles(np.append(self.machine, at.machine), np.append(self.low, at.degrees))
+        return Pieces.between(breaks, self.count, self.cycle, len(self.rule.nodes))
+
+    def taken(self, rows: Indices | Flags) -> Pieces:
+        """Return these of the pieces; they then no longer fill the cycle."""
+        columns = (self.right_angle, self.offset, self.half, self.machine)
+        return Pieces(*(one[rows] for one in columns), self.count, self.cycle, self.rule)
+
+    def halved(self, rows: Indices | Flags) -> Pieces:
+        """Return the halves of these pieces, in order."""
+        right_angle, half, machine = (
+            np.repeat(one[rows], 2) for one in (self.right_angle, self.half / 2, self.machine)
+        )
+        offset = np.repeat(self.offset[rows], 2)
+        offset[1::2] += 2 * half[1::2]
+        return Pieces(right_angle, offset, half, machine, self.count, self.cycle, self.rule)
+
+    # where they lie
+
+    @cached_property
+    def low(self) -> Array:
+        """The angles in degrees at which they begin."""
+        return self.right_angle + self.offset
+
+    @cached_property
+    def middle(self) -> Array:
+        """Their middles in degrees: what says on which side of a jump a piece lies."""
+        return self.right_angle + (self.offset + self.half)
+
+    @cached_property
+    def offsets(self) -> Array:
+        """How far the nodes are from the right angles in degrees, (nodes, pieces)."""
+        return self.offset + self.half * (1 + self.rule.nodes[:, None])
+
+    @cached_property
+    def degrees(self) -> Array:
+        """The angles of the nodes, (nodes, pieces)."""
+        return self.right_angle + self.offsets
+
+    @cached_property
+    def first(self) -> Indices:
+        """The first piece of every machine."""
+        return np.searchsorted(self.machine, np.arange(self.count))
+
+    @cached_property
+    def after(self) -> Indices:
+        """The piece that follows each, the first after the last of a machine."""
+        following = np.arange(1, len(self.half) + 1)
+        following[np.append(self.first[1:], len(self.half)) - 1] = self.first
+        return following
+
+    @cached_property
+    def ends(self) -> Array:
+        """The angles in degrees at which they end, within the cycle."""
+        return self.low[self.after]
+
+    def of(self, numbers: Number) -> Number:
+        """Return numbers of the machines, (machines,), at their pieces; one number stays one."""
+        return numbers[self.machine] if isinstance(numbers, np.ndarray) and numbers.ndim else numbers
+
+    def holding(self, machine: Indices, degrees: Array) -> Indices:
+        """Return the pieces (n,) that hold angles (n,) in degrees of these machines, or begin there."""
+        keys = self.machine * (2 * self.cycle) + self.low
+        found = np.searchsorted(keys, machine * (2 * self.cycle) + np.mod(degrees, self.cycle), side="right") - 1
+        return np.maximum(found, self.first[machine])
+
+    # what samples (nodes, pieces) tell
+
+    def largest(self, values: Array) -> Array:
+        """Return the largest magnitude (…, machines) of samples (…, nodes, pieces)."""
+        return np.maximum.reduceat(np.abs(values).max(axis=-2), self.first, axis=-1)
+
+    def integral(self, values: Array) -> Array:
+        """Return ∫ value dφ (φ in radians) over the cycle, (…, machines)."""
+        return np.add.reduceat(np.radians(self.half) * (self.rule.weights @ values), self.first, axis=-1)
+
+    def mean(self, values: Array) -> Array:
+        """Return the means over the cycle, (…, machines)."""
+        return self.integral(values) / np.radians(self.cycle)
+
+    def running(self, values: Array) -> Array:
+        """Return ∫ value dφ (φ in radians) from the angle 0 to every node, (nodes, pieces)."""
+        inside = (self.rule.area @ values) * np.radians(self.half)
+        before = np.cumsum(inside[-1]) - inside[-1]
+        return inside + (before - before[self.first][self.machine])
+
+    def carried(self, values: Array, source: Pieces, later: Number = 0.0) -> Array:
+        """Return samples (…, nodes, pieces) of other pieces, within which these lie, at the nodes of these.
+
+        later: degrees by which each machine's own angle stands behind these.
+        """
+        behind = self.of(later)
+        row = source.holding(self.machine, self.middle - behind)
+        # differences of right angles are exact
+        from_low = (self.right_angle - source.right_angle[row] - behind) + (self.offset - source.offset[row])
+        from_low = from_low - source.cycle * np.rint((from_low + self.half - source.half[row]) / source.cycle)
+        places = (from_low + self.half * (1 + self.rule.nodes[:, None])) / source.half[row] - 1
+        series = np.moveaxis(source.rule.series @ values, -2, 0)
+        return series_at(
+            series[..., None, row], np.broadcast_to(np.clip(places, -1, 1), values.shape[:-2] + places.shape)
+        )
+
+    def at(self, values: Array, machine: Indices, degrees: Array) -> Array:
+        """Return values (n,) at angles (n,) in degrees, just after a jump, of these machines."""
+        row = self.holding(machine, degrees)
+        from_low = np.mod(degrees, self.cycle) - self.right_angle[row] - self.offset[row]
+        return series_at((self.rule.series @ values)[:, row], np.clip(from_low / self.half[row] - 1, -1, 1))
+
+    def zeros(self, values: Array, size: Array | None = None) -> Angles:
+        """Return where values (nodes, pieces) change sign, by a jump as well, within [0, cycle).
+
+        size: (machines,), of the terms of which the values are sums, beside which they are zero.
+        """
+        size = (self.largest(values) if size is None else size)[self.machine]
+        rows, places = _sign_changes(values, self.rule, self.rule.scan, self.rule.series, size)
+        tiny = -ROUNDING * size
+        jumps = np.flatnonzero((values[-1] < tiny) != (values[0, self.after] < tiny))
+        machine = np.append(self.machine[rows], self.machine[jumps])
+        degrees = np.mod(np.append(self._at(rows, places), self.ends[jumps]), self.cycle)
+        order = np.lexsort((degrees, machine))
+        machine, degrees = machine[order], degrees[order]
+        # beside a break rounding crosses more than once: an odd number of times is once, an even number never
+        begins = np.append(True, (np.diff(degrees) > _SAME) | (np.diff(machine) > 0))[: len(degrees)]
+        odd = np.bincount(np.cumsum(begins) - 1) % 2 == 1 if len(degrees) else begins
+        return Angles(machine[begins][odd], degrees[begins][odd])
+
+    def extremes(self, values: Array, size: Array | None = None) -> Extremes:
+        """Return largest and smallest values of quantities (q, nodes, pieces), of equal ones the first.
+
+        size: (q, machines), of the terms of which the quantities are sums: what is smaller but for rounding is zero.
+        """
+        largest = self.largest(values)
+        size = largest if size is None else np.maximum(size, largest)
+        (high, high_at), (low, low_at) = (self._highest(sign * values, size) for sign in (1, -1))
+        # beside the values of the other sign this is the rounding of a dead centre, which is no float
+        high, low = (np.where(np.abs(one) > ROUNDING * size, one, 0.0) for one in (high, low))
+        return Extremes(high + 0.0, high_at, 0.0 - low, low_at)
+
+    def _highest(self, values: Array, size: Array) -> tuple[Array, Array]:
+        """Return the largest values, and the angles of the first summits that reach them, each (q, machines)."""
+        tops, bottoms = values.max(axis=1), values.min(axis=1)
+        best = np.maximum.reduceat(tops, self.first, axis=-1)
+        # a piece exceeds its samples by less than they differ
+        which, piece = np.nonzero(tops + (tops - bottoms) >= (best - _REPEATED * size)[:, self.machine])
+        samples = values.transpose(1, 0, 2)[:, which, piece]
+        slope = self.rule.slope @ self.rule.series
+        rows, places = _sign_changes(samples, self.rule, self.rule.scan_slope, slope, np.zeros(samples.shape[1]))
+        turning = series_at(self.rule.series @ samples[:, rows], places)
+        value = np.concatenate((samples[0], samples[-1], turning))
+        ends = self.low[piece], self._at(piece, np.ones(len(piece))), self._at(piece[rows], places)
+        quantity, owner = (
+            np.concatenate((which, which, which[rows])),
+            self.machine[np.concatenate((piece, piece, piece[rows]))],
+        )
+        np.maximum.at(best, (quantity, owner), value)
+        return best, _first_summits(quantity, owner, np.concatenate(ends), value, best, _REPEATED * size)
+
+    def _at(self, rows: Indices, places: Array) -> Array:
+        """Return the angles in degrees at places in [−1, 1] of these pieces."""
+        return self.right_angle[rows] + (self.offset[rows] + self.half[rows] * (1 + places))
+
+    def ranges(self, values: Array) -> tuple[Array, Array]:
+        """Return smallest and largest value (pieces,) of samples inside each piece."""
+        slope = self.rule.slope @ self.rule.series
+        rows, places = _sign_changes(values, self.rule, self.rule.scan_slope, slope, np.zeros(values.shape[-1]))
+        turning = series_at(self.rule.series @ values[:, rows], places)
+        low, high = np.minimum(values[0], values[-1]), np.maximum(values[0], values[-1])
+        np.minimum.at(low, rows, turning)
+        np.maximum.at(high, rows, turning)
+        return low, high
+
+
+def refined(pieces: Pieces, sample: Sample) -> tuple[Pieces, Array]:
+    """Return pieces halved until the samples are polynomials on them, and the samples there, (q, nodes, pieces)."""
+    todo, size, done, found = pieces, np.zeros(()), [], []
+    while True:
+        values = sample(todo)
+        top = np.zeros((len(values), pieces.count))
+        np.maximum.at(top, (slice(None), todo.machine), np.abs(values).max(axis=1))
+        size = np.maximum(size, top)
+        rough = _rough(todo, values, size)
+        done.append(todo.taken(~rough))
+        found.append(values[..., ~rough])
+        if not rough.any():
+            break
+        todo = todo.halved(rough)
+    return joined(done, found)
+
+
+def _rough(pieces: Pieces, values: Array, size: Array) -> Flags:
+    """Return which pieces are to be halved; size: of the quantities, (q, machines), as far as it is known."""
+    tails = np.abs(pieces.rule.series[-2:] @ values).max(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.nan_to_num(tails / size[:, pieces.machine], nan=0.0, posinf=0.0).max(axis=0)
+    rough: Flags = (share > TAIL) & (pieces.half > NARROWEST / 2)
+    crowd = np.bincount(pieces.machine[rough], minlength=pieces.count) > _CROWD
+    return rough & ((share > _NOISE) | ~crowd[pieces.machine])
+
+
+def joined(parts: list[Pieces], values: list[Array]) -> tuple[Pieces, Array]:
+    """Return pieces that together fill the cycles as one row, in order, and their samples (…, pieces)."""
+    one = parts[0]
+    if len(parts) == 1:
+        return one, values[0]
+    columns = [(part.right_angle, part.offset, part.half, part.machine) for part in parts]
+    right_angle, offset, half, machine = (np.concatenate(column) for column in zip(*columns))
+    order = np.lexsort((offset, right_angle, machine))
+    ordered = right_angle[order], offset[order], half[order], machine[order]
+    whole = Pieces(*ordered, one.count, one.cycle, one.rule)
+    return whole, np.concatenate(values, axis=-1)[..., order]
+
+
+def _first_summits(
+    quantity: Indices, machine: Indices, degrees: Array, value: Array, best: Array, slack: Array
+) -> Array:
+    """Return the angles (q, machines) of the first summits that reach the best values but for the slack."""
+    first, level, found = (np.full(best.shape, empty) for empty in (np.inf, -np.inf, np.inf))
+    reached = value >= (best - slack)[quantity, machine]
+    quantity, machine, degrees, value = (one[reached] for one in (quantity, machine, degrees, value))
+    np.minimum.at(first, (quantity, machine), degrees)
+    own = degrees <= first[quantity, machine] + _SUMMIT
+    quantity, machine, degrees, value = (one[own] for one in (quantity, machine, degrees, value))
+    np.maximum.at(level, (quantity, machine), value)
+    top = value >= (level - slack / 100)[quantity, machine]  # of a plateau the beginning
+    np.minimum.at(found, (quantity[top], machine[top]), degrees[top])
+    return found
+
+
+def _sign_changes(values: Array, of: Rule, scan: Array, series: Array, size: Array) -> tuple[Indices, Array]:
+    """Return columns and places in [−1, 1] where polynomials change sign between scanned places.
+
+    values: samples (nodes, n); scan, series: matrices for values at the scanned places, and for coefficients; size:
+    (n,), beside which values are zero.
+    """
+    fine = scan @ values
+    below = fine < -ROUNDING * size
+    i, rows = np.nonzero(below[1:] != below[:-1])
+    here, there = np.abs(fine[i, rows]), np.abs(fine[i + 1, rows])
+    start = of.places[i] + (of.places[i + 1] - of.places[i]) * (here / np.maximum(here + there, 1e-300))
+    return rows, _roots(series @ values[:, rows], start, of.places[i], of.places[i + 1], below[i, rows])
+
+
+def _roots(series: Array, places: Array, low: Array, high: Array, rising: Flags) -> Array:
+    """Return the zeros of series (k, n) between low and high (n,): Newton steps, clipped to the bracket."""
+    slopes = slope_of_series(len(series)) @ series
+    for _ in range(60):
+        value = series_at(series, places)
+        below = (value < 0) == rising
+        low, high = np.where(below, places, low), np.where(below, high, places)
+        with np.errstate(all="ignore"):
+            step = places - value / series_at(slopes, places)
+        new = np.where((step >= low - 1e-10) & (step <= high + 1e-10), np.clip(step, low, high), (low + high) / 2)
+        moved, places = np.abs(new - places), new
+        if not (moved > 4e-16).any():
+            break
+    return places

@@ -1,0 +1,217 @@
+"""Motion of one cylinder's mechanism: dead centres, strokes, velocities, accelerations and their exact extremes."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from kurbel.arrays import Array
+from kurbel.crank_angle import CrankAngle
+from kurbel.machine.variants import taken
+from kurbel.mechanisms import Mechanism, Offer
+from kurbel.numerics.arithmetic import every, where
+from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
+from kurbel.numerics.pieces import Angles, Pieces, refined
+
+
+class Motion:
+    """What the mechanism does at a speed of rotation. Attributes are named by the ids of the key values, in SI.
+
+    speed: revolutions per second, or None: then velocities and accelerations are None. So is all that the mechanism
+    does not have, as a stroke where nothing slides. What it offers itself is `offered(id)`. count: of how many machines
+    the numbers are, (machines,); None for one.
+    """
+
+    def __init__(self, mechanism: Mechanism, speed: Any, count: int | None = None) -> None:
+        self.mechanism, self.speed, self._count = mechanism, speed, count
+
+    @cached_property
+    def omega(self) -> float | None:
+        """Angular velocity in rad/s."""
+        return None if self.speed is None else 2 * math.pi * self.speed
+
+    @cached_property
+    def stroke(self) -> Any:
+        """s in m."""
+        return self.mechanism.stroke if self.mechanism.slides else None
+
+    @cached_property
+    def phi_idc(self) -> Any:
+        """Inner dead centre in degrees, from 0 to 360; None where there is none."""
+        return _within_turn(self.mechanism.dead_centres()[0]) if self.mechanism.has_dead_centres else None
+
+    @cached_property
+    def phi_odc(self) -> Any:
+        """Outer dead centre in degrees, from 0 to 360; None where there is none."""
+        return _within_turn(self.mechanism.dead_centres()[1]) if self.mechanism.has_dead_centres else None
+
+    @cached_property
+    def phi_work(self) -> Any:
+        """Crank rotation in degrees of the outstroke, or of the working stroke."""
+        return self.mechanism.phi_work
+
+    @cached_property
+    def phi_return(self) -> Any:
+        """Crank rotation in degrees of the return stroke."""
+        return self.mechanism.phi_return
+
+    @cached_property
+    def time_ratio(self) -> Any:
+        """Time of the outstroke (working stroke) over that of the return stroke."""
+        return self.mechanism.time_ratio
+
+    @cached_property
+    def v(self) -> Any:
+        """Crank-pin speed Rω in m/s."""
+        return None if self.omega is None else self.mechanism.crank * self.omega
+
+    @cached_property
+    def c_m(self) -> Any:
+        """Mean piston speed 2 s n in m/s, R 290."""
+        return None if self.speed is None or self.stroke is None else 2 * self.stroke * self.speed
+
+    @property
+    def c_work_m(self) -> Any:
+        """Mean speed in m/s of the outstroke, or of the working stroke: s n · 360°/φ_w (R p. 615)."""
+        return None if self.c_m is None else self.c_m * (180.0 / self.phi_work)
+
+    @property
+    def c_return_m(self) -> Any:
+        """Mean speed in m/s of the return stroke, positive."""
+        return None if self.c_m is None else self.c_m * (180.0 / self.phi_return)
+
+    @cached_property
+    def _pieces(self) -> Pieces:
+        """One revolution, halved until all that the mechanism does is a polynomial on every piece."""
+        count = self._count or 1
+        each = np.stack([np.broadcast_to(one, count) for one in self.mechanism.dead_centres()], axis=1)
+        turn = Pieces.between(Angles(np.repeat(np.arange(count), 2), each.ravel()), count, 360.0)
+        return refined(turn, self._sampled)[0]
+
+    def _sampled(self, pieces: Pieces) -> Array:
+        """Return velocity and acceleration factor, and what is offered besides, at the nodes, (q, nodes, pieces)."""
+        mechanism = self.mechanism if self._count is None else taken(self.mechanism, pieces.machine)
+        angle = CrankAngle.at_nodes(pieces)
+        found = (
+            mechanism.slope(angle),
+            mechanism.curvature(angle),
+            *(one.factor(mechanism, angle) for one in self._offers),
+        )
+        return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in found if one is not None])
+
+    @cached_property
+    def _offers(self) -> list[Offer]:
+        """What the mechanism offers of which the extremes are told."""
+        here = CrankAngle.of(45.0)
+        declared = [one for one in self.mechanism.OFFERS if "motion" in one.quantity.extremes]
+        return [one for one in declared if one.factor(self.mechanism, here) is not None]
+
+    @cached_property
+    def _searched(self) -> list[Extremes]:
+        """Largest and smallest values of what is sampled."""
+        high, high_at, low, low_at = (
+            map(self._told, part) for part in self._pieces.extremes(self._sampled(self._pieces))
+        )
+        return [Extremes(*pair) for pair in zip(map(Extreme, high, high_at), map(Extreme, low, low_at))]
+
+    def _told(self, values: Array) -> Any:
+        return float(values[0]) if self._count is None else values
+
+    @property
+    def _moves(self) -> bool:
+        """Whether there is a velocity: something slides, at a speed that is known."""
+        return self.mechanism.slides and self.omega is not None
+
+    @cached_property
+    def _velocity(self) -> Extremes:
+        return self._times_omega(_ends(self.mechanism.velocity_extremes()) or self._searched[0], 1)
+
+    @cached_property
+    def _acceleration(self) -> Extremes:
+        return self._times_omega(_ends(self.mechanism.acceleration_extremes()) or self._searched[1], 2)
+
+    def _times_omega(self, found: Extremes, order: int) -> Extremes:
+        """Return extremes over a turn times ω^order."""
+        # a power would raise where a product is inf, which is refused by name
+        scale = math.prod((0.0 if self.omega is None else self.omega,) * order)
+        return Extremes(*(Extreme(one.value * scale, one.degrees) for one in found))
+
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes over a turn of a column that the mechanism offers; None for what does not vary."""
+        number = next((n for n, one in enumerate(self._offers) if one.quantity.id == column), None)
+        if number is None or self.omega is None:
+            return None
+        found = self._times_omega(self._searched[2 + number], len(self._offers[number].times))
+        return None if every(found.largest.value - found.smallest.value <= 1e-14 * abs(found.largest.value)) else found
+
+    def offered(self, id: str) -> Any:
+        """Return a key value that the mechanism offers."""
+        return self.mechanism.offered(id, self)
+
+    @property
+    def equal_strokes(self) -> bool:
+        """Whether the strokes take equal times, so that nothing need be said of each."""
+        return every(abs(self.time_ratio - 1) <= 1e-12)
+
+    @property
+    def has_no_c_min(self) -> bool:
+        """Whether the return stroke is as fast as the outstroke, or its speed is told as `c_return_max`."""
+        return self.equal_strokes or self.mechanism.quick_return
+
+    @cached_property
+    def c_max(self) -> Extreme | None:
+        """Largest velocity on the outstroke, of a piston toward the shaft, in m/s."""
+        return self._velocity.largest if self._moves else None
+
+    @cached_property
+    def c_min(self) -> Extreme | None:
+        """Largest velocity on the return stroke in m/s, negative."""
+        return self._velocity.smallest if self._moves else None
+
+    @cached_property
+    def c_work_max(self) -> Extreme | None:
+        """Largest speed of the working stroke in m/s, R 304."""
+        return self.c_max if self.mechanism.quick_return else None
+
+    @cached_property
+    def c_return_max(self) -> Extreme | None:
+        """Largest speed of the return stroke in m/s, R 305, positive."""
+        if not self.mechanism.quick_return or self.c_min is None:
+            return None
+        return Extreme(-self.c_min.value, self.c_min.degrees)
+
+    @cached_property
+    def b_max(self) -> Extreme | None:
+        """Largest acceleration in m/s²."""
+        return self._acceleration.largest if self._moves else None
+
+    @cached_property
+    def b_min(self) -> Extreme | None:
+        """Smallest acceleration in m/s²."""
+        return self._acceleration.smallest if self._moves else None
+
+    @cached_property
+    def phi_b_zero(self) -> tuple[Any, ...] | None:
+        """Crank angles in degrees at which the acceleration is zero."""
+        if not self.mechanism.slides:
+            return None
+        closed = self.mechanism.velocity_extremes()
+        if closed:
+            angles = np.sort(np.stack([extreme.degrees for extreme in closed], axis=-1))
+            return tuple(angles.tolist() if angles.ndim == 1 else map(tuple, angles.tolist()))
+        found = self._pieces.zeros(self._sampled(self._pieces)[1])
+        if self._count is None:
+            return tuple(found.degrees.tolist())
+        return tuple(tuple(one.tolist()) for one in found.of_each(self._count))
+
+
+def _ends(found: tuple[Extreme, ...]) -> Extremes | None:
+    return Extremes(largest(*found), smallest(*found)) if found else None
+
+
+def _within_turn(degrees: Any) -> Any:
+    """Return an angle between −360° and 720° as one from 0 to 360."""
+    return where(degrees < 0, degrees + 360.0, where(degrees >= 360.0, degrees - 360.0, degrees))
