@@ -11,8 +11,9 @@ from kurbel.declared.quantity import called
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import quantities_of
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cylinder.forces import CylinderForces as OldForces
 from kurbel.solver.figures import Figure, Results, Shown
+from kurbel.solver.forces import CylinderForces
 
 if TYPE_CHECKING:
     from kurbel.solver.balance.machine_balance import MachineBalance
@@ -28,7 +29,7 @@ _WHOLE = ("stress", "flywheel", "balance", "torsion")
 
 
 class Case(Shown):
-    """A machine with its results.
+    """A machine with its results; count: of how many machines its numbers are arrays (machines,), None for one.
 
     >>> from kurbel.machine import Cylinder, Machine
     >>> from kurbel.mechanisms.slider_crank import SliderCrank
@@ -37,8 +38,8 @@ class Case(Shown):
     2.135933
     """
 
-    def __init__(self, machine: Machine) -> None:
-        self.machine = machine
+    def __init__(self, machine: Machine, count: int | None = None) -> None:
+        self.machine, self.count = machine, count
 
     def __getitem__(self, name: str) -> Figure:
         """Return a key value by its id or printed symbol, of the only cylinder, or of the whole machine.
@@ -63,35 +64,40 @@ class Case(Shown):
     @cached_property
     def cylinders(self) -> tuple[CylinderForces, ...]:
         """Motion, forces and key values of every cylinder, in the order of the machine file."""
-        return tuple(CylinderForces(self.machine, cylinder) for cylinder in self.machine.cylinders)
+        return tuple(CylinderForces(self.machine, cylinder, self.count) for cylinder in self.machine.cylinders)
+
+    @cached_property
+    def old_cylinders(self) -> tuple[OldForces, ...]:
+        """The same of the old solver, for the chapters that are not yet moved: scaffolding that goes with the last."""
+        return tuple(OldForces(self.machine, cylinder) for cylinder in self.machine.cylinders)
 
     @cached_property
     def stress(self) -> CrankshaftStrength:
         """Strength of the crankshaft. Raises UsageError where the machine has none that can be examined."""
         from kurbel.solver.strength.crankshaft import CrankshaftStrength
 
-        return CrankshaftStrength(self.machine, self.cylinders)
+        return CrankshaftStrength(self.machine, self.old_cylinders)
 
     @cached_property
     def bearings(self) -> ShaftBearings:
         """Loads on pins and main bearings. Raises UsageError where nothing loads them."""
         from kurbel.solver.bearings.shaft_bearings import ShaftBearings
 
-        return ShaftBearings(self.machine, self.cylinders)
+        return ShaftBearings(self.machine, self.old_cylinders)
 
     @cached_property
     def balance(self) -> MachineBalance:
         """Free forces and moments of the whole machine. Raises UsageError where no masses move."""
         from kurbel.solver.balance.machine_balance import MachineBalance
 
-        return MachineBalance(self.machine, self.cylinders)
+        return MachineBalance(self.machine, self.old_cylinders)
 
     @cached_property
     def flywheel(self) -> MachineTurning:
         """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
         from kurbel.solver.turning.flywheel import MachineTurning
 
-        return MachineTurning(self.machine, self.cylinders)
+        return MachineTurning(self.machine, self.old_cylinders)
 
     def harmonics(self, orders: Array | None = None) -> MachineOrders:
         """Return the orders (n,) of the turning effort, or the usual ones. Raises UsageError where nothing turns it."""
@@ -108,4 +114,4 @@ class Case(Shown):
         """Return the torsional vibration by these orders (k,)."""
         from kurbel.solver.torsion.vibration import ShaftVibration
 
-        return ShaftVibration(self.machine, self.cylinders, orders)
+        return ShaftVibration(self.machine, self.old_cylinders, orders)
