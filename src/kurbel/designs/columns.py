@@ -15,9 +15,6 @@ from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.solver.case import Case
 
-SIDE_BY_SIDE = ("forces", "motion")
-"""Commands whose key values a cylinder answers."""
-
 
 class Answer(NamedTuple):
     """A key value of a command; subject: whose it is, as the report of that command names it.
@@ -41,11 +38,6 @@ class Answer(NamedTuple):
         if self.angle:
             return found.degrees if isinstance(found, Extreme) else None
         return number_of(found)
-
-    @property
-    def of_cylinder(self) -> bool:
-        """Whether a cylinder answers it by its forces or motion."""
-        return self.command in SIDE_BY_SIDE
 
 
 def subjects(case: Case, command: str) -> Iterable[Any]:
@@ -122,17 +114,19 @@ def _answer(subject: Any, quantity: Quantity, unasked: bool = False) -> Any:
 
 def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
     """Return the values of a machine alone, in SI, a number, a tuple or None; raises KurbelError."""
-    case = Case(machine)
+    from kurbel.report.shown import too_large
+
+    found = answers_in(Case(machine), answers)
+    for one, value in zip(answers, found):
+        if value is not None and not np.isfinite(value).all():
+            raise too_large(one.quantity)
+    return found
+
+
+def answers_in(case: Case, answers: Sequence[Answer]) -> list[Any]:
+    """Return the values of a case of one machine or of many, in SI; raises KurbelError."""
     known: dict[tuple[str, str], Any] = {}
     for command in dict.fromkeys(one.command for one in answers):
         known |= {(command, subject.name): subject for subject in subjects(case, command)}
-    return [_checked(known.get((one.command, one.subject)), one) for one in answers]
-
-
-def _checked(subject: Any, asked: Answer) -> Any:
-    from kurbel.report.shown import too_large
-
-    value = asked.part_of(subject.answer(asked.quantity)) if subject else None
-    if value is not None and not np.isfinite(value).all():
-        raise too_large(asked.quantity)
-    return value
+    found = ((one, known.get((one.command, one.subject))) for one in answers)
+    return [one.part_of(subject.answer(one.quantity)) if subject else None for one, subject in found]

@@ -16,7 +16,7 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Values, answers_of, stands_beside
+from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder, written
 from kurbel.designs.columns import Answer, subjects
 from kurbel.designs.sampling import latin_hypercube
@@ -116,7 +116,7 @@ class Uncertainty:
     def of(self, asked: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
         """Return the uncertainties of those key values that are numbers; counted: goes through parts of a sample."""
         linear, bends = self._of_first_order(asked)
-        beside = [place for place in bends if stands_beside(self._binder.machine, linear[place].answer)]
+        beside = [place for place in bends if not is_slow(self._binder.machine, linear[place].answer)]
         alone = [place for place in bends if place not in beside]
         found = dict(enumerate(linear))
         for places, count, at_once in ((beside, SAMPLE, _AT_ONCE), (alone, SLOW_SAMPLE, _SLOWLY)):

@@ -89,7 +89,7 @@ _LEAST_REVERSAL = 15.0, 0.03
 
 
 def _reversal_warnings(forces: CylinderForces) -> Iterable[str]:
-    load = forces.rod_load
+    load = forces
     if load.no_compressor:
         return
     angle, ratio = load.reversal_longest, load.reversal_ratio

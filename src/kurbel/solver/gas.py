@@ -29,7 +29,7 @@ from kurbel.machine.indicator import STROKES, Card
 from kurbel.machine.piston import Piston
 from kurbel.machine.rectangle import Rectangle
 from kurbel.machine.trace import Trace
-from kurbel.machine.variants import Chambers, taken
+from kurbel.machine.variants import Chambers, count_of, taken
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import total
 from kurbel.numerics.extreme import Extreme
@@ -254,11 +254,13 @@ class CardPressure:
     """
 
     def __init__(self, chamber: Any, setting: Setting, count: int | None) -> None:
-        self.setting = setting
+        self.setting, self._count = setting, count
         self.processes = _processes(chamber, setting, count)
-        self._machine, self._begins, self._ends, self._table = _over_the_angle(self.processes, setting, count)
+        self._alike = len(self.processes) == 1 and count_of(setting.mechanism) is None
+        own = None if self._alike else count
+        self._machine, self._begins, self._ends, self._table = _over_the_angle(self.processes, setting, own)
         self._keys = self._machine * (2 * setting.cycle) + self._begins
-        self._first = np.searchsorted(self._machine, np.arange(len(self.processes)))
+        self._first = np.searchsorted(self._machine, np.arange(own or 1))
         z, p, next_z, next_p, exponent = self._table
         self._rows = np.stack((z, p, next_z, exponent, (next_p - p) / (next_z - z), self._begins, self._ends))
         self.straight = not exponent.any()
@@ -266,7 +268,9 @@ class CardPressure:
     @property
     def starts(self) -> Angles:
         """Where segments begin, of one machine those of machine 0."""
-        return Angles(self._machine, self._begins)
+        if not (self._alike and self._count):
+            return Angles(self._machine, self._begins)
+        return Angles(np.repeat(np.arange(self._count), len(self._begins)), np.tile(self._begins, self._count))
 
     def _of_machines(self, name: str) -> Number:
         values = [getattr(one, name) for one in self.processes]
@@ -279,7 +283,7 @@ class CardPressure:
     def held(self, within: Array, machine: Indices | None) -> Held:
         """Return the segments that hold angles (n,) in degrees, of these machines."""
         turned = within_cycle(within, self.setting.cycle)
-        own = np.zeros(1, dtype=np.intp) if machine is None or len(self.processes) == 1 else machine
+        own = np.zeros(1, dtype=np.intp) if machine is None or self._alike else machine
         row = np.searchsorted(self._keys, own * (2 * self.setting.cycle) + turned, side="right") - 1
         last = np.append(self._first[1:], len(self._keys))[own] - 1
         row = np.where(row < self._first[own], last, row)
