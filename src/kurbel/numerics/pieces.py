@@ -274,6 +274,8 @@ def refined(pieces: Pieces, sample: Sample) -> tuple[Pieces, Array]:
         np.maximum.at(top, (slice(None), todo.machine), np.abs(values).max(axis=1))
         size = np.maximum(size, top)
         rough = _rough(todo, values, size)
+        if not (done or rough.any()):
+            return pieces, values
         done.append(todo.taken(~rough))
         found.append(values[..., ~rough])
         if not rough.any():

@@ -25,6 +25,7 @@ from kurbel.solver.state import State
 
 _SURE = 4.0
 """Standard deviations that the noise of thousands of samples does not reach."""
+_SENSE = ("guide_sense", "curvature", "P_gas", "P")
 _RUBBING = ("at_crank", "at_crosshead", "journals")
 _SMOOTH = ("curvature", "P_gas", "P", "N", "T", "D", *_RUBBING)
 """What is to be a polynomial on every piece: columns, and the moments of friction in pins and journals."""
@@ -42,6 +43,7 @@ class SampledCylinder:
 
     drive: Drive
     motion: Motion
+    _last: tuple[Pieces, State]
 
     def told(self, values: Array) -> Any:
         """Return what was found of every machine (machines,), or of the only one as a number."""
@@ -62,18 +64,17 @@ class SampledCylinder:
     def _cut_at_sides(self, pieces: Pieces) -> Pieces:
         """Return the pieces cut where the guide force changes sides, with and without friction in pins."""
         drive = self.drive
-        free = refined(
-            pieces, lambda some: self._values_on(some, ("curvature", "P_gas", "P", "guide_sense"), rubs=False)
-        )[0]
+        pieces, (sense, *_) = refined(pieces, lambda some: self._values_on(some, _SENSE, rubs=False))
         if drive.rubs:
-            free = free.split(free.zeros(drive.on(free).unrubbed.guide_sense))
+            pieces = pieces.split(pieces.zeros(sense))
         if drive.pin_friction is None:
-            return free
-        loaded = refined(free, lambda some: self._values_on(some, ("guide_sense", *_RUBBING)))[0]
-        return loaded.split(loaded.zeros(drive.on(loaded).guide_sense)) if drive.rubs else loaded
+            return pieces
+        pieces, (sense, *_) = refined(pieces, lambda some: self._values_on(some, ("guide_sense", *_RUBBING)))
+        return pieces.split(pieces.zeros(sense)) if drive.rubs else pieces
 
     def _values_on(self, pieces: Pieces, names: Iterable[str], rubs: bool = True) -> Array:
         state = self.drive.on(pieces)
+        self._last = pieces, state
         state = state if rubs else state.unrubbed
         values = (_column(state, name) for name in names)
         return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None])
@@ -95,7 +96,9 @@ class SampledCylinder:
     @cached_property
     def samples(self) -> State:
         """The state at the nodes of the pieces."""
-        return self.drive.on(self.pieces)
+        pieces = self.pieces
+        last, state = self._last  # where no piece was halved it is known already
+        return state if last is pieces else self.drive.on(pieces)
 
     def sampled(self, column: str) -> Array | None:
         """Return a column at the nodes of the pieces, (nodes, pieces); None for one that is left out."""
