@@ -24,13 +24,13 @@ from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.bearings.bearing import Bearing
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.brake import Brake
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import Brake
+from kurbel.solver.forces import CylinderForces
 from kurbel.solver.cylinder.guide_load import GuideLoad
-from kurbel.solver.cylinder.indicated import Indicated
-from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.indicated import Indicated
+from kurbel.solver.motion import Motion
 from kurbel.solver.cylinder.rod_load import RodLoad
-from kurbel.solver.cylinder.state import State
+from kurbel.solver.state import State
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
 from kurbel.solver.turning.coupling import ElasticCoupling
 from kurbel.solver.turning.flywheel import MachineTurning

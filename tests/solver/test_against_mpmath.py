@@ -17,7 +17,7 @@ from kurbel.machine.indicator import Card, Constant, Indicator, Line
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import AT, STEAM_CARD, one_cylinder
 from representative import few
 

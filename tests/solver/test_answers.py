@@ -17,7 +17,7 @@ from kurbel.machine_file import loads
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import Curve, lasting
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

@@ -11,7 +11,7 @@ from kurbel.machine import Machine
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import Evaluate, Sampled, curves, zeros
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import single_acting
 from random_cylinders import cylinders
 

@@ -23,7 +23,7 @@ from kurbel.report.angles import stepped
 from kurbel.report.forces import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import STEAM_CARD, constant_pressure
 
 BAR = 1e5

@@ -14,7 +14,7 @@ from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Stea
 from kurbel.machine.indicator import Card, Indicator
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from kurbel.solver.pressure.ideal import ideal_process
 
 mpf = mpmath.mpf

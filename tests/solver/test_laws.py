@@ -18,7 +18,7 @@ from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import STEAM_CARD, one_cylinder
 from representative import few
 

@@ -25,7 +25,7 @@ from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
 from kurbel.numerics.gauss import GAUSS
 from kurbel.numerics.grid import Pieces
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import AT, STEAM_CARD
 from representative import law_of_each
 

@@ -18,8 +18,8 @@ from kurbel.machine.piston import Piston
 from kurbel.machine.trace import Trace
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.cylinder.state import State
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.state import State
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
 from machines import one_cylinder
 from random_cylinders import cylinders

@@ -13,7 +13,7 @@ from kurbel.cli import kurbel
 from kurbel.machine_file import loads
 from kurbel.report.warnings import cylinder_warnings
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

@@ -28,7 +28,7 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.check import checked
 from kurbel.report.warnings import brake_warnings, trace_warnings
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import one_cylinder
 from representative import few
 

@@ -11,7 +11,7 @@ from kurbel.report.left_out import flywheel_left_out
 from kurbel.report.notes import of_machine
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from kurbel.solver.turning.flywheel import MachineTurning
 from kurbel.solver.turning.machine_effort import dead_centre_force
 

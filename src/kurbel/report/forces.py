@@ -11,7 +11,7 @@ from kurbel.report.frame import Frame, Subject, refuse_without_cylinder
 from kurbel.report.shown import place_table
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 
 def forces_report(case: Case, frame: Frame) -> Report:

@@ -11,8 +11,8 @@ from kurbel.machine import Machine
 from kurbel.report.guide import guide_warnings
 from kurbel.report.notes import LARGEST_PEAK
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.brake import Brake
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import Brake
+from kurbel.solver.forces import CylinderForces
 
 if TYPE_CHECKING:
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
