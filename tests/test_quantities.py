@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,6 @@ from kurbel.cli import kurbel
 from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import Quantity, ambiguity, by_id, called, placed
 from kurbel.errors import KurbelError, UsageError
-from kurbel.frozen import frozen
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.masses import Masses
 from kurbel.mechanisms import Mechanism, every_quantity
@@ -127,7 +127,7 @@ def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> 
 
 
 def test_a_mechanism_may_build_on_another() -> None:
-    @frozen
+    @dataclass(frozen=True, eq=False)
     class Wide(ScotchYoke):
         extra: float = 0.0
 

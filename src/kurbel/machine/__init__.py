@@ -7,6 +7,7 @@ Records check their own rules and raise RuleError. They hold numbers only; what 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
@@ -32,7 +33,6 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.reading import REFUSED, shown
 from kurbel.errors import Fault, RuleError, refuse
-from kurbel.frozen import frozen
 from kurbel.machine.cylinder import COUNTERWEIGHTS, CYCLES, Cylinder, crowded
 from kurbel.near_words import did_you_mean
 
@@ -72,7 +72,7 @@ def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: tuple[Cylinder, .
     return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Machine(Described):
     """A whole machine.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
@@ -11,7 +12,6 @@ from kurbel.declared.forms import Choice, Inline, Listing, OneOf, Physical, Reco
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse, refused
-from kurbel.frozen import frozen
 from kurbel.mechanisms import MECHANISMS, Mechanism
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ COUNTERWEIGHTS = Key(
 """Of a cylinder beside its throw, or of the whole machine."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Cylinder(Described):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 

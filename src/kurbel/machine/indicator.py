@@ -1,6 +1,7 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName, not_negative
@@ -8,7 +9,6 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, refuse, refused
-from kurbel.frozen import frozen
 from kurbel.machine.rectangle import Rectangle, Rectangular
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Chamber(Protocol):
         ...
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Line:
     """One line of a card: pressures in Pa over fractions of the chamber's stroke, in the order of the process.
 
@@ -53,7 +53,7 @@ STROKES = {"two-stroke": ("expansion", "compression"), "four-stroke": ("expansio
 """Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Card(Described):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
@@ -238,7 +238,7 @@ _CHAMBER = Keyed(
 _ONE_PRESSURE = Rectangular("level")
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Indicator(Described):
     """The pressures in the two ends of a cylinder; an end that is None is open to the ambient.
 

@@ -1,19 +1,19 @@
 """A piston with the pressures on its two sides."""
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from kurbel.declared.forms import Record, Text, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, refuse
-from kurbel.frozen import frozen
 
 if TYPE_CHECKING:
     from kurbel.machine.indicator import Chamber, Indicator
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Piston(Described):
     """A piston: bore and rod diameters in m, and what the indicator shows on its two sides."""
 

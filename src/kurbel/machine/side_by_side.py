@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Indices
-from kurbel.frozen import values_of
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.variants import Chambers, Lot, one_of, record_of, varies
+from kurbel.machine.variants import Chambers, Lot, one_of, record_of, values_of, varies
 from kurbel.numerics.varied import Varied
 
 _SIDE_BY_SIDE = ("slider-crank", "yoke-frame", "scotch-yoke")

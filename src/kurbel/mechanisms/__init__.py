@@ -5,6 +5,7 @@ the crank angle is made of. What a new mechanism must supply stands in `Mechanis
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -14,7 +15,6 @@ from kurbel.declared.keys import Described, Keys
 from kurbel.declared.quantities import Lists
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, UsageError, refuse
-from kurbel.frozen import frozen
 from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 
@@ -33,7 +33,7 @@ MECHANISMS = {
 """Word in the machine file -> class; imported only when a machine names it."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Offer:
     """A column that only some mechanisms have, with its formula.
 
@@ -55,7 +55,7 @@ on_request = partial(Quantity, commands=("motion", "forces"), on_request=("motio
 """Declares a column that a mechanism adds to both, where it is asked for, behind the one that it names."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class KeyOffer:
     """A key value that only some mechanisms have, with its formula.
 

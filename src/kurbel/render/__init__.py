@@ -1,9 +1,9 @@
 """From a neutral report to text: the page of the book, one line per angle, CSV, JSON, Markdown, HTML and LaTeX."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from importlib import import_module
 
-from kurbel.frozen import frozen
 from kurbel.render.charset import Charset
 from kurbel.report.tables import Report
 
@@ -13,7 +13,7 @@ FORMATS = ("table", *_WRITERS)
 LAYOUTS = ("book", "rows")
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Look:
     """How a report is to look.
 
@@ -35,7 +35,7 @@ class Look:
         return Charset(self.encoding)
 
 
-def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
+def render(report: Report, look: Look = Look()) -> str:
     """Return the report as text that ends with a newline; the same report gives the same text every time."""
     return "".join(pieces(report, look))
 

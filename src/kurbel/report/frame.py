@@ -1,6 +1,7 @@
 """The frame of every report on a machine: from the results of a command and its declared quantities to tables."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,6 @@ from kurbel.declared.quantities import COMMON, Lists
 from kurbel.declared.quantity import Quantity, called
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, Nowhere, UsageError
-from kurbel.frozen import frozen
 from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kurbel.solver.case import Case
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Subject:
     """What a command speaks of: one cylinder, or the whole machine.
 
@@ -80,7 +80,7 @@ def _nowhere(parts: Sequence[Part]) -> Iterator[str]:
     return (f"{one}." for one in without)
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Frame:
     """A report to be made: of which command, at which crank angles (n,) in degrees, with which columns, in which units.
 

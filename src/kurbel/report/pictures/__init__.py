@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,6 @@ import numpy as np
 from kurbel.declared.reading import shown
 from kurbel.declared.shaft import SHAFT_PARTS
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.frozen import frozen
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.near_words import did_you_mean
 from kurbel.report.alike import together
@@ -26,7 +25,7 @@ FILE, TERMINAL = 1 / 2000, 1 / 250
 """By what of its height a line of points may miss a curve: less than can be seen on paper, or in a terminal."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Declared:
     """A picture: its word, its German title, and a sentence; command: whose results it shows.
 
@@ -184,7 +183,7 @@ PICTURES = (
 """The pictures, the one that says most of a machine first."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Wish:
     """How pictures are wanted: in which system of units, how finely (FILE or TERMINAL), of which cylinder alone.
 
