@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from kurbel import Machine, load, loads
-from kurbel.designs import answers
 from kurbel.designs.answers import Values, answers_of, stands_beside
 from kurbel.designs.columns import Answer, answered_alone, asked_answers
 from kurbel.errors import KurbelError, RuleError
@@ -230,48 +229,3 @@ def test_many_machines_leave_nothing_for_the_garbage_collection() -> None:
         assert alive() == before
     finally:
         gc.enable()
-
-
-class Options:
-    """A C library that takes note of its options."""
-
-    def __init__(self, name: None) -> None:
-        self.set: list[tuple[int, int]] = []
-        LIBRARIES.append(self)
-
-    def mallopt(self, option: int, value: int) -> int:
-        self.set.append((option, value))
-        return 1
-
-
-LIBRARIES: list[Options] = []
-
-
-def no_library(name: None) -> None:
-    raise TypeError("on Windows None is no library")
-
-
-def test_freed_memory_is_kept_where_the_c_library_can_be_asked(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By M_TRIM_THRESHOLD = −1 and M_MMAP_THRESHOLD = −3 of malloc.h, once; elsewhere nothing happens."""
-    monkeypatch.setattr("ctypes.CDLL", Options)
-    answers._keep_memory.cache_clear()
-    answers._keep_memory()
-    answers._keep_memory()
-    assert [sorted(library.set) for library in LIBRARIES] == [[(-3, 2**28), (-1, 2**28)]]
-    for other in (no_library, lambda name: object()):
-        monkeypatch.setattr("ctypes.CDLL", other)
-        answers._keep_memory.cache_clear()
-        answers._keep_memory()
-
-
-@pytest.mark.parametrize(("count", "asks"), [(3, True), (2, False)])
-def test_memory_is_kept_of_chunks_of_which_some_rows_fail(
-    count: int, asks: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A chunk short of one row asked for nothing, and a sweep with a few failures was as slow as before."""
-    asked: list[bool] = []
-    monkeypatch.setattr(answers, "AT_ONCE", 4)
-    monkeypatch.setattr(answers, "_keep_memory", lambda: asked.append(True))
-    machines = [loads(f"{{stroke: 1 m, rod_ratio: {4 + row}, speed: 60 rpm}}") for row in range(count)]
-    together(machines, asked_of(machines[0]))
-    assert bool(asked) == asks

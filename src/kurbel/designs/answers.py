@@ -1,7 +1,6 @@
 """The answers of many machines: those of one kind side by side, the others one after another."""
 
 from collections.abc import Container, Sequence
-from functools import cache
 from itertools import compress
 from typing import Any, Union
 
@@ -29,11 +28,6 @@ _FEWEST = 3
 """Machines of one kind; fewer are answered as quickly alone."""
 AT_ONCE = 1000
 """Machines side by side: enough to share the overhead of one run; more would only take memory."""
-
-_KEPT = 256 * 2**20
-"""Bytes that are freed and may be kept: what one run over many machines gives back the next one takes again."""
-_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
-"""What malloc.h of the GNU C library calls M_TRIM_THRESHOLD and M_MMAP_THRESHOLD."""
 
 Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, a tuple or None each; or why it answers nothing."""
@@ -88,8 +82,6 @@ class _Answers:
 
     def found(self, wanted: Container[int] | None) -> dict[int, Values]:
         for rows in self._alike() if self._names else ():
-            if 2 * len(rows) > AT_ONCE:  # of a whole chunk some fail
-                _keep_memory()
             for start in range(0, len(rows), AT_ONCE):
                 self._together(rows[start : start + AT_ONCE])
         return {
@@ -152,22 +144,6 @@ class _Answers:
             return str(error)
         except ArithmeticError as error:
             return f"these numbers lead beyond what can be computed with ({error})"
-
-
-@cache
-def _keep_memory() -> None:
-    """Ask the C library, where it is that of GNU, to keep what is freed.
-
-    It would give it to the system, which hands it out again page by page: a third of the time of a sweep.
-    """
-    try:
-        from ctypes import CDLL
-
-        set_option = CDLL(None).mallopt
-    except (ImportError, OSError, TypeError, AttributeError):  # there is none to ask
-        return
-    for option in (_TRIM_THRESHOLD, _MMAP_THRESHOLD):
-        set_option(option, _KEPT)
 
 
 def _listed(value: Any, count: int) -> Sequence[Any]:
