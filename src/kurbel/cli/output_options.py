@@ -32,7 +32,7 @@ class Output:
 
     def write(self, report: Report) -> None:
         """Write the report."""
-        from kurbel.render.output import write_report
+        from kurbel.render.formats import write_report
 
         write_report(report, self.look, self.file_name)
 
