@@ -18,8 +18,9 @@ from kurbel.machine import Cylinder, Machine
 from kurbel.machine.masses import Masses
 from kurbel.mechanisms import Mechanism, every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.report.commands import report_of
 from kurbel.report.forces import forces_report
-from kurbel.report.frame import Frame, report_of
+from kurbel.report.frame import Frame
 from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.bearings.bearing import Bearing

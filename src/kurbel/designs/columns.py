@@ -1,7 +1,6 @@
 """What is asked of every design: key values of any command, each of a cylinder or of the whole machine."""
 
-from collections.abc import Iterable, Iterator, Sequence
-from importlib import import_module
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from kurbel.machine import Machine
 from kurbel.mechanisms import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
+from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
 
 SIDE_BY_SIDE = ("forces", "motion")
@@ -48,11 +48,6 @@ class Answer(NamedTuple):
         return self.command in SIDE_BY_SIDE
 
 
-def subjects(case: Case, command: str) -> Iterable[Any]:
-    """Return whom a command speaks of, with what answers their key values."""
-    return import_module(f"kurbel.report.{command}").subjects(case)  # type: ignore[no-any-return]
-
-
 def asked_answers(machine: Machine, names: Sequence[str], with_angles: bool = False) -> tuple[Answer, ...]:
     """Return the key values that are asked for by id or symbol, of every cylinder that has them; none: the usual ones.
 
@@ -80,7 +75,7 @@ def _stands(value: Any) -> bool:
 def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
     """Yield who answers what a command tells unasked, each with what this machine has there: see `_answer`."""
     command = "forces" if case.machine.cylinders else "flywheel"
-    for subject in subjects(case, command):
+    for subject in subjects_of(case, command):
         for quantity in subject.lists.key_values(command).values():
             value = None if quantity.residual else _answer(subject, quantity, unasked=True)
             if value is not None:
@@ -103,7 +98,7 @@ def _named(case: Case, name: str) -> list[tuple[Answer, Any]]:
     for word in dict.fromkeys(command):
         found = [
             (Answer(quantity, word, subject.name), value)
-            for subject in subjects(case, word)
+            for subject in subjects_of(case, word)
             if (quantity := subject.lists.key_values(word).get(ids[0]))
             and (value := _answer(subject, quantity)) is not None
         ]
@@ -125,7 +120,7 @@ def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
     case = Case(machine)
     known: dict[tuple[str, str], Any] = {}
     for command in dict.fromkeys(one.command for one in answers):
-        known |= {(command, subject.name): subject for subject in subjects(case, command)}
+        known |= {(command, subject.name): subject for subject in subjects_of(case, command)}
     return [_checked(known.get((one.command, one.subject)), one) for one in answers]
 
 

@@ -199,7 +199,7 @@ def holders(case: "Case", name: str) -> list[Holder]:
 
     Where it is not, of each cylinder that has it, else of the machine.
     """
-    from kurbel.report.frame import subjects_of
+    from kurbel.report.commands import subjects_of
 
     scope, id = scoped(name)
     cylinders = [one.name for one in case.machine.cylinders]

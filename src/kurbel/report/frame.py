@@ -2,8 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,9 +17,6 @@ from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_values
 from kurbel.report.tables import Column, Later, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.figures import answered
-
-if TYPE_CHECKING:
-    from kurbel.solver.case import Case
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,22 +190,3 @@ def _with_symbol(one: Quantity) -> str:
 
 def _names(quantities: Iterable[Quantity]) -> tuple[str, ...]:
     return tuple(name for one in quantities for name in (one.id, one.symbol))
-
-
-# what every command has in its own file, by its word
-
-
-def report_of(case: "Case", frame: Frame) -> Report:
-    """Return the report of the command that the frame is of."""
-    report: Report = getattr(_room(frame.command), f"{frame.command}_report")(case, frame)
-    return report
-
-
-def subjects_of(case: "Case", command: str) -> Iterable[Subject]:
-    """Return what a command speaks of, with the key values that it has."""
-    subjects: Iterable[Subject] = _room(command).subjects(case)
-    return subjects
-
-
-def _room(command: str) -> Any:
-    return import_module(f"kurbel.report.{command}")
