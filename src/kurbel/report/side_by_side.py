@@ -17,7 +17,8 @@ from kurbel.report.alike import grouped, together
 from kurbel.report.commands import subjects_of
 from kurbel.report.document import Document, Grid, Pair, Section
 from kurbel.report.frame import Subject
-from kurbel.report.pictures import PICTURES, Wish, pictures_if_any
+from kurbel.report.pictures import PICTURES, pictures_if_any
+from kurbel.report.pictures.source import Wish
 from kurbel.report.provenance import provenance
 from kurbel.report.whole import COMMANDS, Command, Given, Progress
 from kurbel.solver.case import Case
