@@ -16,7 +16,8 @@ from kurbel.declared.quantity import Quantity, ambiguity, by_id, called, placed
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.masses import Masses
-from kurbel.mechanisms import Mechanism, every_quantity
+from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms.kinds import every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.commands import report_of
 from kurbel.report.forces import forces_report

@@ -52,7 +52,7 @@ class EqualCylinders(Described):
             "γ",
             absent="in line",
         ),
-        "each": Key(Record("kurbel.machine:Cylinder", inline_too=True), "The keys of one cylinder", required=True),
+        "each": Key(Record(Cylinder, inline_too=True), "The keys of one cylinder", required=True),
     }
 
     @classmethod

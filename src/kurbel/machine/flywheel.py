@@ -143,7 +143,7 @@ class Flywheel(Described):
             example="1/80",
         ),
         "rim": Key(
-            Record("kurbel.machine.flywheel:Rim"),
+            Record(Rim),
             "A rim that has the whole moment of inertia; its sizes tell it, or else its section is told",
             absent="no section",
         ),

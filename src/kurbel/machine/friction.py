@@ -76,9 +76,9 @@ class Friction(Described):
 
     KEYS: ClassVar[Keys] = {
         "crosshead": Key(Number(least=0), "Coefficient of friction of the crosshead on its guide", "f"),
-        "rings": Key(Record("kurbel.machine.friction:Rings"), "Piston rings"),
+        "rings": Key(Record(Rings), "Piston rings"),
         "constant": not_negative("force", "Force against the motion, the same over the stroke", "F_0"),
-        "guide": Key(Record("kurbel.machine.friction:Guide"), "Shoe of the crosshead", needs="crosshead"),
+        "guide": Key(Record(Guide), "Shoe of the crosshead", needs="crosshead"),
         "crank_pin": Key(Number(least=0), "Coefficient of friction of the connecting rod on the crank pin", "f_Z"),
         "crank_pin_diameter": _diameter("crank_pin", "Diameter of the crank pin", "d_z", "that of `crankshaft`"),
         "crosshead_pin": Key(

@@ -14,8 +14,11 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
-from kurbel.machine.indicator import CLEARANCE, CLEARANCE_OR_NONE
 
+CLEARANCE = Number("the stroke", least=1e-6, most=1e5)
+"""A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
+CLEARANCE_OR_NONE = Number("the stroke", least=1e-6, most=1e5, zero=True)
+"""The same where nothing need be compressed into it: then it may be left out of the theory."""
 _CLEARANCE = Key(CLEARANCE_OR_NONE, "Clearance volume over stroke volume", "c", required=True)
 AIR_EXPONENT = 1.4
 """Exponent of the adiabatic line of air."""

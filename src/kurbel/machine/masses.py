@@ -96,7 +96,7 @@ class Masses(Described):
         "crosshead": _part("Crosshead"),
         "other": _part("Whatever else goes to and fro"),
         "connecting_rod": Key(
-            OneOf(Physical("mass", least=0), Record("kurbel.machine.masses:ConnectingRod")),
+            OneOf(Physical("mass", least=0), Record(ConnectingRod)),
             "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
             instead="reciprocating",
             also=("con_rod", "conrod"),

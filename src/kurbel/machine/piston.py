@@ -2,15 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from kurbel.declared.forms import Record, Text, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, refuse
-
-if TYPE_CHECKING:
-    from kurbel.machine.indicator import Chamber, Indicator
+from kurbel.machine.indicator import Chamber, Indicator
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -20,7 +18,7 @@ class Piston(Described):
     bore: float
     head_end_rod: float = 0.0
     crank_end_rod: float = 0.0
-    indicator: "Indicator | None" = None
+    indicator: Indicator | None = None
     name: str = "piston"
 
     KEYS: ClassVar[Keys] = {
@@ -31,7 +29,7 @@ class Piston(Described):
             "length", "Diameter of the rod through the crank end", absent="0", also=("piston_rod", "rod_diameter")
         ),
         "indicator": Key(
-            Record("kurbel.machine.indicator:Indicator"),
+            Record(Indicator),
             "Pressures on the two sides",
             absent="no gas force",
             also=("pressure", "card", "trace"),

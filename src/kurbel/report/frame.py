@@ -11,7 +11,7 @@ from kurbel.declared.quantity import Quantity, called
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, Nowhere, UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms import every_quantity
+from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_values
