@@ -18,7 +18,7 @@ from kurbel.declared.unit_systems import SI, convert, units_of
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder, written
-from kurbel.designs.columns import Answer, subjects
+from kurbel.designs.columns import Answer
 from kurbel.designs.sampling import latin_hypercube
 from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
@@ -26,6 +26,7 @@ from kurbel.machine.origin import Origin
 from kurbel.machine_file.given import tree_of
 from kurbel.machine_file.overrides import path_of
 from kurbel.machine_file.positions import located
+from kurbel.report.commands import subjects_of
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
 
@@ -277,7 +278,7 @@ def _asked(case: Case, command: str) -> list[Answer]:
     """Return the key values of a command that are numbers which the inputs move."""
     return [
         Answer(quantity, command, subject.name)
-        for subject in subjects(case, command)
+        for subject in subjects_of(case, command)
         for quantity, _ in subject.key_values(command)
         if not (quantity.listed or quantity.residual)
     ]

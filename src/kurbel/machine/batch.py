@@ -13,12 +13,11 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Indices
-from kurbel.frozen import values_of
 from kurbel.machine import Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.trace import Trace
 from kurbel.machine.turning import Effort, Harmonics
-from kurbel.machine.variants import Chambers, Lot, one_of, record_of, varies
+from kurbel.machine.variants import Chambers, Lot, one_of, record_of, values_of, varies
 from kurbel.numerics.varied import Varied
 
 _MECHANISMS = ("slider-crank", "yoke-frame", "scotch-yoke")

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -11,7 +12,6 @@ from kurbel.declared.forms import Number, Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.frozen import frozen
 from kurbel.mechanisms import Mechanism, Offer, fan, on_request
 from kurbel.numerics.arithmetic import arsinh, bearing, every, sqrt, total, ulp, where
 from kurbel.numerics.extreme import Extreme
@@ -54,7 +54,7 @@ ROD_OFFERS = (
 )
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 

@@ -11,8 +11,7 @@ from kurbel.machine import Machine
 from kurbel.report.guide import guide_warnings
 from kurbel.report.notes import LARGEST_PEAK
 from kurbel.solver.case import Case
-from kurbel.solver.forces import Brake
-from kurbel.solver.forces import CylinderForces
+from kurbel.solver.forces import Brake, CylinderForces
 
 if TYPE_CHECKING:
     from kurbel.solver.strength.crankshaft import CrankshaftStrength

@@ -24,8 +24,8 @@ from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
 from kurbel.errors import NoSolutionError
-from kurbel.mechanisms import every_quantity
 from kurbel.mechanisms.coupler import PointMotion, point_motion
+from kurbel.mechanisms.kinds import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.lobatto import rule
 from kurbel.solver.gas import Pressure
