@@ -26,8 +26,6 @@ from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.bearings.bearing import Bearing
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.guide_load import GuideLoad
-from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
@@ -43,7 +41,7 @@ pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parent.parent / "configs"
 RESULTS = {
     "motion": (Motion,),
-    "forces": (CylinderForces, Motion, RodLoad, GuideLoad, Indicated, Brake),
+    "forces": (CylinderForces, Motion, Indicated, Brake),
     "flywheel": (MachineTurning, ElasticCoupling, Brake),
     "stress": (CrankshaftStrength,),
     "balance": (MachineBalance, LocomotiveBalance, BookBalance),

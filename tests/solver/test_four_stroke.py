@@ -95,7 +95,7 @@ def test_energy_over_the_cycle(crank_end: Any, more: dict[str, Any]) -> None:
     """The quadrature of T over 720° is the closed work less friction."""
     forces = engine(CARD, crank_end, **more)
     assert abs(forces.energy_residual or 0.0) < 1e-14
-    assert forces.grid.breaks[-1] == 720
+    assert forces.breaks[-1] == 720
     if crank_end:
         head, crank = forces.drive.gas[0].works
         assert crank == pytest.approx(head * (0.22**2 - 0.06**2) / 0.22**2, rel=1e-14)

@@ -33,7 +33,7 @@ class _Alone(Exception):
 
 
 class Structures:
-    """Tells the structure that machines of a batch must have in common; what several of them share is looked at once."""
+    """Tells the structure that machines of a batch must share; what stands in several of them is looked at once."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Any, Any]] = {}

@@ -149,6 +149,10 @@ class Mechanism(Described):
         # beside a dead centre the rounding of the coordinate leaves 1e-6 degrees open
         return np.where(f_low == 0, low, np.where(f_high == 0, high, found))
 
+    def remaining(self, angle: CrankAngle) -> Any:
+        """Return what is left of the stroke to the outer dead centre, s − (q − start), in m (or rad)."""
+        return self.stroke - (self.coordinate(angle) - self.start)
+
     def landmarks(self) -> tuple[float, ...]:
         """Return the crank angles in degrees, besides the dead centres, at which searches should split."""
         return ()

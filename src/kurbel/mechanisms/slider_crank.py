@@ -248,6 +248,13 @@ class SliderCrank(Mechanism):
         bracket = middle_sin + middle_cos * (sin_psi + sin_start) / (cos_psi + cos_start)
         return self.crank * (2 * half_sin * bracket)
 
+    def remaining(self, angle: CrankAngle) -> Any:
+        """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), exact at the outer dead centre."""
+        if not self._straight:
+            return super().remaining(angle)
+        lead = self.lam * angle.versine / (1 + self.rod_angle(angle)[1])
+        return self.crank * (angle.vercosine * (1 - lead))
+
     def slope(self, angle: CrankAngle) -> Any:
         """Return dx/dφ = R sin(φ+ψ)/cos ψ in m, R 288."""
         if self._straight:

@@ -159,7 +159,7 @@ class SampledCylinder:
         changes = self.pieces.zeros(values)
         if self.drive.count is not None:
             return tuple(tuple(one.tolist()) for one in changes.of_each(self.drive.count))
-        return tuple(_lasting(self.pieces, values, changes.degrees, _SURE * self._noise).tolist())
+        return tuple(lasting(self.pieces, values, changes.degrees, _SURE * self._noise).tolist())
 
     @property
     def reversals_in_noise(self) -> int:
@@ -210,7 +210,7 @@ def where_is(pieces: Pieces, values: Array, value: float) -> Where:
     return Where(tuple(sorted({*passed, *reached})), (low, high))
 
 
-def _lasting(pieces: Pieces, values: Array, changes: Array, noise: float) -> Array:
+def lasting(pieces: Pieces, values: Array, changes: Array, noise: float) -> Array:
     """Return those of the changes of sign (n,) of samples between which they leave a band of noise beside 0.
 
     Of several that follow one another within the band, the middle one stands for a change that lasts beyond it, and
