@@ -15,8 +15,8 @@ from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import by_id
 from kurbel.machine_file import loads
 from kurbel.numerics.pieces import Angles, Pieces
-from kurbel.solver.cycle import lasting
 from kurbel.solver.case import Case
+from kurbel.solver.cycle import lasting
 from kurbel.solver.forces import CylinderForces
 
 pytestmark = pytest.mark.usefixtures("solved_once")

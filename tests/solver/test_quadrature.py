@@ -8,7 +8,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Machine
 from kurbel.machine.friction import Friction
 from kurbel.machine.ideal_cards import Diesel
@@ -19,7 +18,6 @@ from kurbel.machine.trace import Trace
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.state import State
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
 from machines import one_cylinder
 from random_cylinders import cylinders

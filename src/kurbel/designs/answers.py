@@ -78,7 +78,7 @@ class _Answers:
         return list(found.values())
 
     def _together(self, rows: list[int]) -> None:
-        """Answer these rows in a batch; those that fail, or of which a number is none, are left to be answered alone."""
+        """Answer these rows in a batch; those that fail, or whose numbers are none, are left to be answered alone."""
         if len(rows) < _FEWEST:
             return
         try:

@@ -249,7 +249,7 @@ class SliderCrank(Mechanism):
         return self.crank * (2 * half_sin * bracket)
 
     def remaining(self, angle: CrankAngle) -> Any:
-        """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), exact at the outer dead centre."""
+        """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), which keeps its digits."""
         if not self._straight:
             return super().remaining(angle)
         lead = self.lam * angle.versine / (1 + self.rod_angle(angle)[1])

@@ -69,6 +69,7 @@ class SampledCylinder:
             pieces = pieces.split(pieces.zeros(sense))
         if drive.pin_friction is None:
             return pieces
+        self._refuse_locking_on(pieces)
         pieces, (sense, *_) = refined(pieces, lambda some: self._values_on(some, ("guide_sense", *_RUBBING)))
         return pieces.split(pieces.zeros(sense)) if drive.rubs else pieces
 
@@ -108,7 +109,8 @@ class SampledCylinder:
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        return np.append(self._unhalved.low, self.drive.cycle)
+        cut = self.drive.pieces if may_lock(self.drive.cylinder) else self._unhalved
+        return np.append(cut.low, self.drive.cycle)
 
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:

@@ -295,8 +295,8 @@ class CardPressure:
     def at(self, z: Array, degrees: Array, held: Held, remaining: Array | None = None) -> Array:
         """Return the gauge pressure in Pa where z of the stroke is passed, on the segments that are held.
 
-        z, degrees: (n,), or (nodes, n) of pieces, each of which one segment holds; remaining: 1 − z with all its digits,
-        of which steep lines beside the outer dead centre need every one.
+        z, degrees: (n,), or (nodes, n) of pieces, each of which one segment holds; remaining: 1 − z with all its
+        digits, of which steep lines beside the outer dead centre need every one.
         """
         way = self._from_corner(z, degrees, held, remaining)
         straight = (held.p - held.base) + held.rise * way
@@ -308,7 +308,7 @@ class CardPressure:
         return np.where(curved, power - held.lift - held.base, straight)
 
     def _from_corner(self, z: Array, degrees: Array, held: Held, remaining: Array | None) -> Array:
-        """Return the way over the stroke since the corner at which the segment begins; at corners exactly the card's."""
+        """Return the way over the stroke since the corner where the segment begins; at corners exactly the card's."""
         share = z if self.setting.head_end else 1 - z if remaining is None else remaining
         way = share - held.z
         if remaining is not None:
@@ -328,7 +328,10 @@ class CardPressure:
         until = np.where(self._ends > self._begins, self._ends, self._ends + self.setting.cycle)
         level = best[self._machine]
         angles = np.where(p == level, self._begins, np.where(next_p == level, until, np.inf))
-        return Extreme.of(best - self.setting.base, np.minimum.reduceat(angles, self._first))
+        highest, first = best - self.setting.base, np.minimum.reduceat(angles, self._first)
+        if self._count is None:
+            return Extreme(float(highest[0]), float(first[0]))
+        return Extreme(*np.broadcast_arrays(highest, first, np.empty(self._count))[:2])
 
     @cached_property
     def area(self) -> Number:

@@ -156,7 +156,8 @@ class State:
         """Return the gauge pressure in Pa at an end of a piston."""
         held = end.held(self.within, self.drive.index)
         if isinstance(end, CardPressure) and end.steep:
-            return end.at(self.z, self.phi, held, self.drive.mechanism.remaining(self._posed) / self.drive.mechanism.stroke)
+            mechanism = self.drive.mechanism
+            return end.at(self.z, self.phi, held, mechanism.remaining(self._posed) / mechanism.stroke)
         return end.at(self.z, self.phi, held)
 
     def _counted(self, end: Pressure | None) -> Any:

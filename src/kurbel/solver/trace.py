@@ -212,7 +212,8 @@ class TracePressure:
         mechanism, cycle = self.setting.mechanism, self.setting.cycle
         turns = np.add.outer(mechanism.cuts(), np.arange(0.0, cycle, 360.0)).ravel()
         breaks = np.append(self._starts, turns)
-        pieces = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, 16 if len(breaks) < _DENSE else 10)
+        nodes = 16 if len(breaks) < _DENSE else 10
+        pieces = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
         number = np.searchsorted(self._starts, pieces.middle, side="right") - 1
         since = np.mod(pieces.middle - self._starts[number], cycle) + (pieces.degrees - pieces.middle)
         share = since / (self._segments.end - self._segments.start)[number]
