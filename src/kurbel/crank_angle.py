@@ -39,9 +39,9 @@ class CrankAngle(NamedTuple):
         return cls(degrees, *_sin_cos_array(degrees))
 
     @classmethod
-    def at_nodes(cls, pieces: "Pieces") -> "CrankAngle":
+    def at_nodes(cls, pieces: Any) -> "CrankAngle":
         """Return the angles of the nodes of pieces of a cycle, (pieces, nodes)."""
-        offsets = pieces.offset if pieces.offset.ndim > 1 else pieces.offsets
+        offsets: Any = getattr(pieces, "offsets", pieces.offset)  # of the old grid the offsets
         return cls(pieces.degrees, *_turned(pieces.right_angle, offsets))
 
     @property

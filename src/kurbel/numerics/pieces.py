@@ -315,10 +315,10 @@ def _first_summits(
     """Return the angles (q, machines) of the first summits that reach the best values but for the slack."""
     first, level, found = (np.full(best.shape, empty) for empty in (np.inf, -np.inf, np.inf))
     reached = value >= (best - slack)[quantity, machine]
-    quantity, machine, degrees, value = (one[reached] for one in (quantity, machine, degrees, value))
+    quantity, machine, degrees, value = quantity[reached], machine[reached], degrees[reached], value[reached]
     np.minimum.at(first, (quantity, machine), degrees)
     own = degrees <= first[quantity, machine] + _SUMMIT
-    quantity, machine, degrees, value = (one[own] for one in (quantity, machine, degrees, value))
+    quantity, machine, degrees, value = quantity[own], machine[own], degrees[own], value[own]
     np.maximum.at(level, (quantity, machine), value)
     top = value >= (level - slack / 100)[quantity, machine]  # of a plateau the beginning
     np.minimum.at(found, (quantity[top], machine[top]), degrees[top])

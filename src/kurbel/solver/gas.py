@@ -274,12 +274,12 @@ class CardPressure:
             return Angles(self._machine, self._begins)
         return Angles(np.repeat(np.arange(self._count), len(self._begins)), np.tile(self._begins, self._count))
 
-    def _of_machines(self, name: str) -> Number:
+    def _of_machines(self, name: str) -> Any:
         values = [getattr(one, name) for one in self.processes]
         return values[0] if len(set(values)) == 1 else np.array(values)
 
     @cached_property
-    def _clearance(self) -> Number:
+    def _clearance(self) -> Any:
         return self._of_machines("clearance")
 
     def held(self, within: Array, machine: Indices | None) -> Held:
@@ -331,10 +331,11 @@ class CardPressure:
         highest, first = best - self.setting.base, np.minimum.reduceat(angles, self._first)
         if self._count is None:
             return Extreme(float(highest[0]), float(first[0]))
-        return Extreme(*np.broadcast_arrays(highest, first, np.empty(self._count))[:2])
+        pair: Any = np.broadcast_arrays(highest, first, np.empty(self._count))[:2]
+        return Extreme(*pair)
 
     @cached_property
-    def area(self) -> Number:
+    def area(self) -> Any:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
         return self._of_machines("area")
 
@@ -418,7 +419,7 @@ class PistonGas:
     """
 
     def __init__(
-        self, piston: Piston, mechanism: Mechanism, cycle: float, ambient: Number, repeats: int, count: int | None
+        self, piston: Piston, mechanism: Mechanism, cycle: float, ambient: float, repeats: int, count: int | None
     ) -> None:
         indicator = piston.indicator
         assert indicator is not None
@@ -431,7 +432,7 @@ class PistonGas:
         self.crank = _pressure_in(indicator.crank_end, at_crank, count)
 
     @property
-    def ends(self) -> tuple[tuple[Pressure, Number], ...]:
+    def ends(self) -> tuple[tuple[Pressure, float], ...]:
         """The chambers that have pressures, with their areas in m²."""
         both = ((self.head, self.piston.head_area), (self.crank, self.piston.crank_area))
         return tuple((end, area) for end, area in both if end is not None)
@@ -445,7 +446,7 @@ class PistonGas:
         ]
 
     @cached_property
-    def works(self) -> tuple[Number, ...]:
+    def works(self) -> tuple[Any, ...]:
         """Indicated work in J per cycle of the cylinder of head end and crank end: A s ∮ p dz."""
         return tuple(area * self.stroke * self.repeats * end.area for end, area in self.ends)
 

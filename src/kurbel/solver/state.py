@@ -28,7 +28,7 @@ from kurbel.mechanisms.coupler import PointMotion, point_motion
 from kurbel.mechanisms.kinds import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.lobatto import rule
-from kurbel.solver.gas import CardPressure, Pressure
+from kurbel.solver.gas import Pressure
 from kurbel.solver.trace import TracePressure, spread
 
 if TYPE_CHECKING:
@@ -154,11 +154,11 @@ class State:
 
     def pressure(self, end: Pressure) -> Array:
         """Return the gauge pressure in Pa at an end of a piston."""
-        held = end.held(self.within, self.drive.index)
-        if isinstance(end, CardPressure) and end.steep:
-            mechanism = self.drive.mechanism
-            return end.at(self.z, self.phi, held, mechanism.remaining(self._posed) / mechanism.stroke)
-        return end.at(self.z, self.phi, held)
+        if isinstance(end, TracePressure):
+            return end.at(self.phi, end.held(self.within))
+        mechanism = self.drive.mechanism
+        left = mechanism.remaining(self._posed) / mechanism.stroke if end.steep else None
+        return end.at(self.z, self.phi, end.held(self.within, self.drive.index), left)
 
     def _counted(self, end: Pressure | None) -> Any:
         """Return a pressure as the machine file counts it."""
