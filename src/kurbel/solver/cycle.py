@@ -18,7 +18,7 @@ from kurbel.errors import NoSolutionError
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import Pieces, refined
+from kurbel.numerics.pieces import NARROWEST, Pieces, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.motion import Motion
 from kurbel.solver.state import State
@@ -93,6 +93,14 @@ class SampledCylinder:
                 at = pieces.zeros(below).degrees
                 first = float(at[0]) if len(at) else float(pieces.degrees.T[(below <= 0).T][0])
                 raise NoSolutionError(self.drive.locks(first))
+
+    @property
+    def tail(self) -> float:
+        """What is left of the series on a piece that could be halved, over the largest value of its quantity."""
+        values = self._smooth(self.pieces)
+        size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
+        tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
+        return float((tails.max(axis=1) / size).max())
 
     @cached_property
     def samples(self) -> State:
