@@ -59,7 +59,7 @@ def test_every_order_solves_its_equations(count: int, ground: str) -> None:
     torques = draw.normal(size=(count, 2, 2)) + 1j * draw.normal(size=(count, 2, 2))
     found = responding(chain, frequencies, torques).angles
     for place, w in np.ndenumerate(frequencies):
-        springs = chain.stiffnesses * (1 + 1j * chain.loss) + 1j * w * chain.piece_damping
+        springs = chain.stiffnesses * (1 + 1j * chain.loss) + 1j * w * chain.segment_damping
         whole = chain.twists.T @ np.diag(springs) @ chain.twists
         whole = whole + np.diag(1j * w * chain.mass_damping - w * w * chain.inertias)
         with mpmath.workdps(40):

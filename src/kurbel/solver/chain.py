@@ -1,0 +1,390 @@
+"""A shaft line as a chain of masses on segments of shaft: natural vibrations, response to torques, periodic motion.
+
+          k₀, d₀        k₁, d₁                    T_i = k_i (θ_i − θ_{i+1}) + d_i (θ̇_i − θ̇_{i+1})
+    J₀ ═══════════ J₁ ═══════════ J₂              J_i θ̈_i = M_i − c_i θ̇_i + T_{i−1} − T_i
+    │      T₀      │      T₁      │
+    c₀             c₁             c₂              θ: vibration about uniform rotation, all referred to one shaft
+
+A segment carries the torque T from the mass before it to the mass behind it. Where an end is fixed, a segment leads
+from there to the first mass, or from the last mass there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array, ComplexArray, Flags
+from kurbel.machine.shaft_line import ShaftLine
+from kurbel.numerics.cyclic import around
+from kurbel.numerics.lobatto import chebyshev
+from kurbel.numerics.pieces import Angles, Pieces, joined
+from kurbel.numerics.radau import radau
+
+_AT_ONCE = 2048
+"""Systems of equations that are solved together: what the nearest memory holds."""
+_NOTHING = 1e-40
+"""In place of a quotient of Holzer's table that is exactly zero: there a mass stands still."""
+_STILL = 1e-6
+"""A first mass that moves less than this, over the largest motion, is not what the others are referred to."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """n masses and the segments between them, one more where an end is fixed: `ground` is `before`, `after` or empty.
+
+    inertias in kg m² (n,), stiffnesses in N m/rad; segment_damping, mass_damping in N m s/rad, of a twist and against
+    uniform rotation; loss: loss factors η of the segments, with k (1 + iη).
+    """
+
+    inertias: Array
+    stiffnesses: Array
+    segment_damping: Array
+    mass_damping: Array
+    loss: Array
+    ground: str = ""
+
+    @classmethod
+    def of(cls, line: ShaftLine, inertias: Sequence[float]) -> Chain:
+        """Return the chain of a shaft line; inertias: those of its masses in kg m², with all that turns there."""
+        each = np.array([(piece.stiffness, piece.damping, piece.loss_factor) for piece in line.pieces]).T
+        damping = np.array([mass.damping for mass in line.masses])
+        return cls(np.array(inertias), each[0], each[1], damping, each[2], line.ground)
+
+    @cached_property
+    def twists(self) -> Array:
+        """The matrix (segments, n) that turns angles of the masses into twists, that before less that behind."""
+        first, last = self.ground == "before", self.ground == "after"
+        held = np.eye(len(self.inertias) + first + last)
+        return np.asarray((held[:-1] - held[1:])[:, int(first) : len(held) - last])
+
+    @property
+    def damped(self) -> bool:
+        """Whether anything damps it."""
+        return bool(self.segment_damping.any() or self.mass_damping.any() or self.loss.any())
+
+    def reversed(self) -> Chain:
+        """Return the same chain read from its other end."""
+        names = ("inertias", "stiffnesses", "segment_damping", "mass_damping", "loss")
+        turned: dict[str, Any] = {name: vars(self)[name][::-1] for name in names}
+        return replace(self, **turned, ground={"before": "after", "after": "before"}.get(self.ground, ""))
+
+    def springs(self, frequencies: Array) -> ComplexArray:
+        """Return k (1 + iη) + iΩ d of the segments at angular frequencies Ω (…) in rad/s, (segments, …)."""
+        still = (self.stiffnesses * (1 + 1j * self.loss)).reshape(-1, *(1,) * frequencies.ndim)
+        return np.asarray(still + 1j * np.multiply.outer(self.segment_damping, frequencies))
+
+
+# response to torques of one frequency
+
+
+class Response(NamedTuple):
+    """The complex amplitudes of the masses in rad, (n, …), and about how far rounding moves them.
+
+    A θ = M is solved for a chain and torques whose last digits are unsure: A δθ = δM − δA θ, all of it taken in phase
+    with the angles, as it is where they meet a natural vibration.
+    """
+
+    angles: ComplexArray
+    moved: ComplexArray
+
+
+def response(chain: Chain, frequencies: Array, torques: ComplexArray, load_damping: Array | float = 0.0) -> Response:
+    """Return the answer to torques (n, …) in N m at angular frequencies Ω (…) in rad/s.
+
+    (K (1 + iη) + iΩ C − Ω² J) θ = M; load_damping: of the masses in addition to their own, (n, …) in N m s/rad. A
+    resonance that nothing damps has no answer: it is not finite.
+    """
+    flat, damping = frequencies.ravel(), np.broadcast_to(load_damping, torques.shape).reshape(len(torques), -1)
+    sides = torques.reshape(len(torques), -1)
+    parts = [slice(start, start + _AT_ONCE) for start in range(0, max(1, len(flat)), _AT_ONCE)]
+    found = [_response(chain, flat[part], sides[:, part], damping[:, part]) for part in parts]
+    return Response(*(np.concatenate(each, axis=1).reshape(torques.shape) for each in zip(*found)))
+
+
+def _response(chain: Chain, frequencies: Array, torques: ComplexArray, load_damping: Array) -> Response:
+    """Return it at frequencies (m,)."""
+    twists, springs = chain.twists, chain.springs(frequencies)
+    own = 1j * (chain.mass_damping[:, None] + load_damping) * frequencies - np.outer(chain.inertias, frequencies**2)
+    places, twice = np.arange(len(own)), np.abs(twists.T) @ np.abs(springs)
+    matrix = (twists.T * springs.T[:, None]) @ twists.astype(complex)
+    matrix[:, places, places] += own.T + np.finfo(float).tiny * 1j  # a pivot of exactly zero is none: it ends as inf
+    angles = np.linalg.solve(matrix, torques.T[..., None])
+    phases = angles[..., 0].T / np.maximum(np.abs(angles[..., 0].T), np.finfo(float).tiny)
+    unsure = np.finfo(float).eps * ((np.abs(own) + 2 * twice) * angles[..., 0].T + np.abs(torques) * phases)
+    return Response(angles[..., 0].T, np.linalg.solve(matrix, unsure.T[..., None])[..., 0].T)
+
+
+def passing(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
+    """Return the torques (segments, …) in N m in springs and dampers of the segments; angles (n, …): see `response`."""
+    return np.asarray(chain.springs(frequencies) * np.tensordot(chain.twists, angles, 1))
+
+
+# natural vibrations
+
+
+class Holzer(NamedTuple):
+    """Holzer's table of a mode: amplitudes Θ (n,), and torques (segments,) in N m per radian of the first mass.
+
+    residual: what is left of the torque behind the last mass, over the largest one.
+    """
+
+    angles: Array
+    torques: Array
+    residual: float
+
+
+class Modes:
+    """The natural vibrations of a chain, the lowest first; of a free one the first is the rotation of the whole.
+
+    Along the chain at ω, θ_{i+1}/θ_i = s = 1 − r/k and r_{i+1} = r_i/s_i + ω² J_{i+1}, where r θ is the torque behind a
+    mass: Holzer's table as quotients. No step loses digits by cancellation but through the figures of its own mass and
+    segment, so that the sign of s, of which the negative ones count the modes below ω (Sturm), is that of a chain whose
+    J and k differ by rounding. A symmetric eigenproblem would lose the low modes of a chain of very unequal masses.
+    """
+
+    def __init__(self, chain: Chain) -> None:
+        self.chain = chain
+        self._line = chain.reversed() if chain.ground == "before" else chain  # read toward the fixed end
+
+    @cached_property
+    def omegas(self) -> Array:
+        """Natural angular frequencies in rad/s (n,), of a free chain the first exactly 0.
+
+        Those of the elastic modes by bisection of the number of modes below, to the last digit.
+        """
+        wanted = np.arange(len(self.chain.stiffnesses))
+        low, high = self._bounds(len(wanted))
+        while True:
+            # exponents are halved first, then digits
+            middle = np.where(high > 2 * low, np.sqrt(low) * np.sqrt(high), low + (high - low) / 2)
+            inside = (low < middle) & (middle < high)
+            if not inside.any():
+                return high if self.chain.ground else np.append(0.0, high)
+            more = self._below(middle) > wanted
+            high, low = np.where(inside & more, middle, high), np.where(inside & ~more, middle, low)
+
+    def _bounds(self, count: int) -> tuple[Array, Array]:
+        """Return bounds of the elastic modes: eigenvalues with their rounding where that holds, or the bounds of all."""
+        chain, roots = self._line, np.sqrt(self._line.inertias)
+        matrix = (chain.twists.T * chain.stiffnesses) @ chain.twists / roots / roots[:, None]
+        highest = np.full(count, 1.01 * np.sqrt(2 * np.diag(matrix).max()))  # Gershgorin, for the matrix J⁻¹ K
+        lowest = highest * 1e-3
+        while self._below(lowest[:1])[0]:
+            lowest = lowest * 1e-3
+        about = np.sqrt(np.abs(np.linalg.eigvalsh(matrix)))[-count:]
+        share = np.minimum(1e-14 * (1 + (highest / np.maximum(about, 1e-100 * highest)) ** 2), 0.5)
+        low, high = about * (1 - share), about * (1 + share)
+        holds = (self._below(low) <= np.arange(count)) & (self._below(high) > np.arange(count))
+        return np.where(holds, low, lowest), np.where(holds, high, highest)
+
+    def _below(self, omegas: Array) -> Array:
+        """Return how many elastic modes are below each ω (m,)."""
+        stiffnesses, behind = self._line.stiffnesses, _behind(self._line, omegas)
+        negative = (behind[: len(stiffnesses)] > stiffnesses[:, None]).sum(axis=0)
+        return np.asarray(negative if self.chain.ground else negative + (behind[-1] > 0) - 1)
+
+    def holzer(self, mode: int) -> Holzer:
+        """Return the table of a mode, counted from 0.
+
+        From the mass at which the tables from both ends meet best it is computed outward both ways, where no error
+        grows.
+        """
+        omega = self.omegas[mode : mode + 1]
+        inertias, stiffnesses = self._line.inertias, self._line.stiffnesses
+        behind, before = _behind(self._line, omega)[:, 0], _behind(self._line.reversed(), omega)[::-1, 0]
+        own = omega[0] ** 2 * inertias
+        gap = behind + before - own
+        meet, count = int(np.argmin(np.abs(gap) / inertias)), len(inertias)
+        angles = np.ones(count)
+        for i in range(meet - 1, -1, -1):
+            angles[i] = angles[i + 1] / _not_zero(1 - behind[i] / stiffnesses[i])
+        for i in range(meet + 1, count):
+            angles[i] = angles[i - 1] / _not_zero(1 - before[i] / stiffnesses[i - 1])
+        torques = np.concatenate((behind[:meet] * angles[:meet], -(before * angles)[meet + 1 :]))
+        if self.chain.ground:
+            torques = np.append(torques, stiffnesses[-1] * angles[-1])
+        if self.chain.ground == "before":
+            angles, torques = angles[::-1], -torques[::-1]
+        left = abs(float(gap[meet])) / max(float(np.abs(torques).max(initial=0.0)), float(own[meet]), 1e-300)
+        unit = angles[0] if abs(angles[0]) > _STILL * np.abs(angles).max() else angles[np.argmax(np.abs(angles))]
+        return Holzer(angles / unit, torques / unit, left)
+
+    def nodes(self, mode: int) -> tuple[tuple[int, float], ...]:
+        """Return where a mode has no motion: the mass before, and the share of the segment up to there."""
+        neighbours = enumerate(pairwise(self.holzer(mode).angles.tolist()))
+        return tuple((mass, a / (a - b)) for mass, (a, b) in neighbours if a * b < 0 or a == 0 != b)
+
+
+def _behind(chain: Chain, omegas: Array) -> Array:
+    """Return r (n, m): the torque behind a mass over its angle, ω² J of it included, along the chain at ω (m,)."""
+    first, found = int(chain.ground == "before"), np.empty((len(chain.inertias), len(omegas)))
+    carried = np.full(len(omegas), -chain.stiffnesses[0] if first else 0.0)
+    for i, inertia in enumerate(chain.inertias):
+        found[i] = carried + omegas * omegas * inertia
+        if i + 1 < len(found):
+            carried = found[i] / _not_zero(1 - found[i] / chain.stiffnesses[first + i])
+    return found
+
+
+def _not_zero(quotient: Array) -> Array:
+    return np.where(quotient == 0, _NOTHING, quotient)
+
+
+# periodic motion over the angle, with all its orders
+
+_STAGES = 11
+"""Radau nodes of an element."""
+_SWING = 120.0
+"""Degrees of the fastest natural vibration that one element may hold at first, …"""
+_MOST_PARTS = 8000
+"""… though a piece is cut into no more parts than these."""
+_MOST_WORK = 5e7
+"""Multiplications that one solution of all elements may take; with the refinement that is about a second."""
+_FEWEST, _MOST = 40, 20_000
+"""Elements that a cycle is refined to at least, and at most."""
+_MOST_STEPS = 30
+"""Steps of Newton's method."""
+_TAIL = 1e-13
+"""Of the swing of an unknown: an element whose last two coefficients are larger is halved."""
+_NARROWEST = 1e-10
+"""Degrees of an element that is halved no more."""
+
+
+class Unsettled(Exception):
+    """No periodic motion is found, or none that is worth its time."""
+
+
+class Rise(NamedTuple):
+    """How the load on one mass rises with the speed: r = (ω/ω_n)² − 1 → the rise in N m and its slope by r."""
+
+    mass: int
+    law: Callable[[Array], tuple[Array, Array]]
+
+
+class Motion(NamedTuple):
+    """The torques in the segments less their means in N m, (segments, nodes, pieces), on pieces of the cycle."""
+
+    pieces: Pieces
+    torques: Array
+
+
+def motion(chain: Chain, omega: float, pieces: Pieces, driving: Array, rise: Rise | None = None) -> Motion:
+    """Return the periodic vibration of a chain without loss factors about uniform rotation at ω_n = omega in rad/s.
+
+    driving: torques on the masses less their means in N m, (n, nodes, pieces), of one machine.
+    The unknowns y, in N m and of one size: the torque of each spring less its mean, over the largest natural order, and
+    J ω_n (ω − ω_n) of each mass; dy/dφ = A y + driving − rise. Raises Unsettled.
+    """
+    equation = _Equation.of(chain, omega, rise)
+    source, rule = pieces, radau(_STAGES)
+    pieces = _cut(pieces, equation.order)
+    if max(len(pieces.half), _FEWEST) * (_STAGES * len(equation.matrix)) ** 3 > _MOST_WORK:
+        raise Unsettled
+    y = np.zeros((_STAGES + 1, len(pieces.half), len(equation.matrix)))
+    while len(pieces.half) < _MOST:
+        with np.errstate(all="ignore"):  # a step too far may overflow: it does not settle
+            y = equation.solved(pieces, pieces.carried(driving, source), y)
+        tails = np.abs(np.tensordot(rule.series[-2:], y, 1)).sum(axis=0)
+        rough: Flags = (tails > _TAIL * np.ptp(y, axis=(0, 1)) + 4e-15 * np.abs(y).max()).any(axis=1)
+        rough &= pieces.half > _NARROWEST / 2
+        if not rough.any():
+            at_nodes = np.tensordot(rule.at(pieces.rule.nodes), y, 1)
+            return Motion(pieces, np.moveaxis(at_nodes @ equation.passing.T, -1, 0))
+        finer = np.einsum("hij,jkm->ikhm", rule.halves, y[:, rough]).reshape(len(y), -1, y.shape[2])
+        done = np.moveaxis(y[:, ~rough], 1, -1), np.moveaxis(finer, 1, -1)
+        pieces, values = joined([pieces.taken(~rough), pieces.halved(rough)], list(done))
+        y = np.moveaxis(values, -1, 1)
+    raise Unsettled
+
+
+def _cut(pieces: Pieces, order: float) -> Pieces:
+    """Return pieces cut so that each holds little of the fastest natural vibration."""
+    parts = np.ceil(2 * pieces.half * order / _SWING).clip(1, _MOST_PARTS).astype(int)
+    row = np.repeat(np.arange(len(parts)), parts - 1)
+    number = 1 + np.arange(len(row)) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1)
+    return pieces.split(Angles(pieces.machine[row], pieces.low[row] + 2 * pieces.half[row] * number / parts[row]))
+
+
+@dataclass(frozen=True, eq=False)
+class _Equation:
+    """dy/dφ = A y + driving − rise: matrix A (m, m), order: the largest natural one, passing: y to torques (k, m).
+
+    risen: which of the unknowns is that of the mass whose load rises with the speed; height: its J ω_n² in N m.
+    """
+
+    matrix: Array
+    order: float
+    passing: Array
+    law: Callable[[Array], tuple[Array, Array]] | None
+    risen: int
+    height: float
+
+    @classmethod
+    def of(cls, chain: Chain, omega: float, rise: Rise | None) -> _Equation:
+        """Return the equation of a chain at ω_n."""
+        order, speeds = float(Modes(chain).omegas[-1]) / omega, 1 / (chain.inertias * omega)
+        count, twists = len(chain.stiffnesses), chain.twists
+        passing = np.hstack((np.eye(count) * order, chain.segment_damping[:, None] * twists * speeds))
+        stiff = (chain.stiffnesses / (omega * order))[:, None] * twists * speeds
+        whole = np.vstack((np.hstack((np.zeros((count, count)), stiff)), -twists.T @ passing))
+        places = np.arange(count, len(whole))
+        whole[places, places] -= chain.mass_damping * speeds
+        mass = rise.mass if rise else 0
+        return cls(
+            whole, order, passing, rise and rise.law, count + mass, float(chain.inertias[mass]) * omega * omega
+        )
+
+    def solved(self, pieces: Pieces, driving: Array, y: Array) -> Array:
+        """Return y at the starts and the nodes of pieces, (k + 1, pieces, m), by Newton's method from such a y.
+
+        driving: at the Lobatto nodes, (n, nodes, pieces). A linear equation takes one step.
+        """
+        rule, last, size = radau(_STAGES), math.inf, len(self.matrix)
+        torques = np.zeros((_STAGES, len(pieces.half), size))
+        to_radau = chebyshev(rule.nodes, len(pieces.rule.nodes)) @ pieces.rule.series
+        torques[..., size - len(driving) :] = np.moveaxis(to_radau @ driving, 0, -1)
+        for _ in range(_MOST_STEPS):
+            slopes, rates = np.broadcast_to(self.matrix, (*torques.shape, size)), torques
+            if self.law:
+                # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
+                u = y[1:, :, self.risen] / self.height
+                rise, by_square = self.law(u * (2 + u))
+                by_y = by_square * 2 * (1 + u) / self.height
+                slopes, rates = slopes.copy(), torques.copy()
+                slopes[..., self.risen, self.risen] -= by_y
+                rates[..., self.risen] += by_y * y[1:, :, self.risen] - rise
+            new = _collocated(np.radians(pieces.half), slopes, rates)
+            change = float(np.abs(new - y).max())
+            near = max(1e-9 * float(np.ptp(new, axis=(0, 1)).max()), 1e-14 * self.height)
+            y = new
+            if not self.law or change <= 1e-5 * near or (change <= near and change >= last / 2):
+                return y
+            last = change
+        raise Unsettled
+
+
+def _collocated(half: Array, slopes: Array, rates: Array) -> Array:
+    """Return the periodic y (k + 1, pieces, m) of y′ = slopes y + rates at the Radau nodes of all pieces of a cycle.
+
+    half: half their widths in radians; slopes (k, pieces, m, m), rates (k, pieces, m). In a piece y is answer + gain
+    y_start, and y at its last node is the start of the next one.
+    """
+    area, (stages, count, size) = radau(_STAGES).area, rates.shape
+    coupled = np.einsum("ij,jpab,p->piajb", area, slopes, half).reshape(count, stages * size, stages * size)
+    integrals = np.tensordot(area, rates, 1).transpose(1, 0, 2) * half[:, None, None]
+    ones = np.broadcast_to(np.eye(size), (count, stages, size, size))
+    sides = np.concatenate((integrals[..., None], ones), axis=3).reshape(count, stages * size, size + 1)
+    try:
+        found = np.linalg.solve(np.eye(stages * size) - coupled, sides).reshape(count, stages, size, size + 1)
+        answer, gain = found[..., 0], found[..., 1:]
+        start = around(-gain[:, -1], np.broadcast_to(np.eye(size), (count, size, size)), answer[:, -1])
+    except np.linalg.LinAlgError:  # singular, or beyond the range of floats
+        raise Unsettled from None
+    return np.concatenate((start[None], np.moveaxis(answer + (gain @ start[:, None, :, None])[..., 0], 1, 0)))
