@@ -271,11 +271,15 @@ class TurningEffort:
 
     # the masses
 
+    def moves(self, forces: CylinderForces) -> bool:
+        """Return whether masses of a cylinder move at a known speed."""
+        drive = forces.drive
+        return bool(drive.has_inertia and (some(drive.mass != 0) or some(drive.pin_inertia != 0)))
+
     @cached_property
     def _moving(self) -> list[list[CylinderForces]]:
         """The cylinders whose masses move at a known speed, those together that work alike."""
-        moving = [some(one[0].drive.mass != 0) or some(one[0].drive.pin_inertia != 0) for one in self.groups]
-        return [one for one, moves in zip(self.groups, moving) if moves and one[0].drive.has_inertia]
+        return [one for one in self.groups if self.moves(one[0])]
 
     @property
     def inertia_terms(self) -> list[Term]:
