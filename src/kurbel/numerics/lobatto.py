@@ -39,9 +39,11 @@ def chebyshev(places: Array, count: int) -> Array:
 
 def series_at(series: Array, places: Array) -> Array:
     """Return Σ c_k T_k(t) by Clenshaw's recurrence; series (k, …), places (…,)."""
-    ahead, last = np.zeros_like(places), np.zeros_like(places)
-    for coefficient in series[:0:-1]:
-        ahead, last = coefficient + 2 * places * ahead - last, ahead
+    ahead, last, twice = np.zeros_like(places), np.zeros_like(places), 2 * places
+    for coefficient in series[:0:-1]:  # c + 2 t b₁ − b₂, without new arrays
+        np.subtract(coefficient, last, out=last)
+        last += twice * ahead
+        ahead, last = last, ahead
     return np.asarray(series[0] + places * ahead - last)
 
 

@@ -140,10 +140,13 @@ class TurningEffort:
         if first is not None and alone and not some(position(self.cylinders[0]) != 0):
             return first
         breaks = [given.breaks for given in (self.given, self.diagram) if given]
-        for forces in self.cylinders:
-            own, behind = forces.pieces, forces.pieces.of(position(forces))
-            breaks += [Angles(own.machine, own.low + behind + turn) for turn in np.arange(0.0, self.cycle, own.cycle)]
-        nodes = max((len(forces.pieces.rule.nodes) for forces in self.cylinders), default=16)
+        for group in self.groups:
+            own = group[0].pieces
+            turns = np.arange(0.0, self.cycle, own.cycle)
+            breaks += [
+                Angles(own.machine, own.low + own.of(position(one)) + turn) for one in group for turn in turns
+            ]
+        nodes = max((len(group[0].pieces.rule.nodes) for group in self.groups), default=16)
         whole = Angles(*(np.concatenate(parts) for parts in zip(*breaks)))
         return Pieces.between(whole, self.count or 1, self.cycle, nodes)
 

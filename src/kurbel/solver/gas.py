@@ -258,7 +258,7 @@ class CardPressure:
         self.processes = _processes(chamber, setting, count)
         self._machine, self._begins, self._ends, self._table = _over_the_angle(self.processes, setting, count)
         self._keys = self._machine * (2 * setting.cycle) + self._begins
-        self._first = np.searchsorted(self._machine, np.arange(len(self.processes)))
+        self._first = np.searchsorted(self._machine, np.arange(count or 1))
         z, p, next_z, next_p, exponent = self._table
         self._rows = np.stack((z, p, next_z, exponent, (next_p - p) / (next_z - z), self._begins, self._ends))
         self.straight = not exponent.any()
@@ -279,7 +279,7 @@ class CardPressure:
     def held(self, within: Array, machine: Indices | None) -> Held:
         """Return the segments that hold angles (n,) in degrees, of these machines."""
         turned = within_cycle(within, self.setting.cycle)
-        own = np.zeros(1, dtype=np.intp) if machine is None or len(self.processes) == 1 else machine
+        own = np.zeros(1, dtype=np.intp) if machine is None else machine
         row = np.searchsorted(self._keys, own * (2 * self.setting.cycle) + turned, side="right") - 1
         last = np.append(self._first[1:], len(self._keys))[own] - 1
         row = np.where(row < self._first[own], last, row)
