@@ -58,8 +58,9 @@ def inertia_torque(state: State) -> Any:
 
     Of an exact rod it has the couple times −ψ′ besides.
     """
-    rod = state.drive.rod
-    torque = state.slope * state.curvature * (-state.drive.mass * (state.drive.omega or 0.0) ** 2)
+    rod, omega = state.drive.rod, state.drive.omega
+    assert omega is not None
+    torque = state.slope * state.curvature * (-state.drive.mass * omega * omega)
     if rod is None:
         return torque
     return torque - rod.couple(state.rod_angle, state.angle) * rod.swing_slope(state.rod_angle, state.angle)

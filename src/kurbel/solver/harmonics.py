@@ -9,7 +9,7 @@ A crank that follows crank 1 by β has its orders times e^{−iνβ}. Numbers of
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -19,14 +19,14 @@ from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import unit_vector
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces
-from kurbel.solver.effort import TurningEffort, driving_torque, inertia_torque, position
+from kurbel.solver.effort import TurningEffort, inertia_torque, position
 from kurbel.solver.forces import CylinderForces
 
 HIGHEST = 24
 """Highest order unless others are requested."""
-_AT_ONCE = 512
+_AT_ONCE = 256
 """Pieces that are integrated together: what the nearest memory holds."""
-_RENEWED = 16
+_RENEWED = 64
 """Orders after which e^{−iνφ} is computed anew, not from the order before."""
 _ROUNDING = 1e-14
 """Of the torques that a sum has as terms: what is smaller is zero."""
@@ -41,36 +41,35 @@ def every_order(cycle: float, highest: int = HIGHEST) -> Array:
 
 
 def amplitudes(pieces: Pieces, values: Array, orders: Array) -> ComplexArray:
-    """Return the complex amplitudes (k, machines) of orders (k,) of samples (nodes, pieces).
+    """Return the complex amplitudes (q, k, machines) of orders (k,) of samples of quantities (q, nodes, pieces).
 
     The polynomials of the pieces are sampled as finely as the highest order needs.
 
     >>> from kurbel.numerics.pieces import Angles
     >>> pieces = Pieces.between(Angles(np.zeros(0, dtype=int), np.zeros(0)), 1, 360.0)
-    >>> abs(amplitudes(pieces, np.cos(np.radians(3 * pieces.degrees)), np.array([2.0, 3.0]))).round(14).tolist()
-    [[0.0], [1.0]]
+    >>> abs(amplitudes(pieces, np.cos(np.radians(3 * pieces.degrees))[None], np.array([2.0, 3.0]))).round(14).ravel()
+    array([0., 1.])
     """
     # e^{iwx} on −1 … 1 is a polynomial of degree w + 11.4 w^⅓ + 3 (J_n(w) < 1e-16 beyond), that of the samples counts
     # half, since its last coefficients are small; n Lobatto nodes integrate the degree 2n − 3 exactly
     count, fastest = len(pieces.rule.nodes), math.radians(pieces.half.max() * orders.max(initial=1.0))
     fine = rule(math.ceil((count / 2 + fastest + 11.4 * fastest ** (1 / 3) + 6) / 2))
     to_fine = fine.weights[:, None] * (chebyshev(fine.nodes, count) @ pieces.rule.series)
-    found = np.empty((len(orders), len(pieces.half)), dtype=complex)
-    step = 360.0 / pieces.cycle
+    found, step = np.empty((len(values), len(orders), len(pieces.half)), dtype=complex), 360.0 / pieces.cycle
     for start in range(0, len(pieces.half), _AT_ONCE):
         part = slice(start, start + _AT_ONCE)
         half = pieces.half[part]
         degrees = pieces.right_angle[part] + (pieces.offset[part] + half * (1 + fine.nodes[:, None]))
-        shares, turn = to_fine @ (values[:, part] * half), unit_vector(-step * degrees)
-        waves, before = shares * turn, step
+        shares, turn, before = to_fine @ (values[..., part] * half), unit_vector(-step * degrees), 0.0
+        waves = shares.astype(complex)
         for index, order in enumerate(orders.tolist()):
-            if order == before + step and index % _RENEWED:
-                waves = waves * turn
-            elif order != before:
+            if order == before + step and (index + 1) % _RENEWED:
+                waves *= turn
+            else:
                 waves = shares * unit_vector(-order * degrees)
             before = order
-            found[index, part] = waves.sum(axis=0)
-    return np.add.reduceat(found, pieces.first, axis=1) * (2 / pieces.cycle)
+            found[:, index, part] = waves.sum(axis=1)
+    return np.add.reduceat(found, pieces.first, axis=2) * (2 / pieces.cycle)
 
 
 class Spectrum(NamedTuple):
@@ -92,7 +91,8 @@ class Spectrum(NamedTuple):
 
     def earlier(self, degrees: Any) -> Spectrum:
         """Return that of the torque an angle earlier."""
-        return self._replace(amplitudes=self.amplitudes * unit_vector(np.multiply.outer(self.orders, degrees)))
+        orders = self.orders.reshape(-1, *(1,) * (self.amplitudes.ndim - 1))
+        return self._replace(amplitudes=self.amplitudes * unit_vector(orders * degrees))
 
     def cleared(self, size: Any) -> Spectrum:
         """Return it with 0 for what is rounding beside torques of this size in N m: the mean, cosines, and sines."""
@@ -169,42 +169,39 @@ class MachineOrders:
         self.effort = effort
         self.orders = every_order(effort.cycle) if orders is None else orders
 
-    def spectrum(self, pieces: Pieces, torque: Array) -> Spectrum:
-        """Return mean and orders of a torque in N m, (nodes, pieces); of shorter cycles the orders that they have."""
+    def spectra(self, pieces: Pieces, torques: Sequence[Array]) -> list[Spectrum]:
+        """Return mean and orders of torques in N m, (nodes, pieces); of shorter cycles the orders that they have."""
         present = np.flatnonzero((self.orders * round(pieces.cycle / 360.0)) % 1 == 0)
-        found = np.zeros((len(self.orders), pieces.count), dtype=complex)
-        found[present] = amplitudes(pieces, np.broadcast_to(torque, pieces.degrees.shape), self.orders[present])
-        mean = pieces.mean(torque)
+        values = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in torques])
+        found = np.zeros((len(values), len(self.orders), pieces.count), dtype=complex)
+        found[:, present] = amplitudes(pieces, values, self.orders[present])
+        means = pieces.mean(values)
         if self.effort.count is None:
-            return Spectrum(float(mean[0]), self.orders, found[:, 0])
-        return Spectrum(mean, self.orders, found)
+            return [Spectrum(float(mean[0]), self.orders, one[:, 0]) for mean, one in zip(means, found)]
+        return [Spectrum(mean, self.orders, one) for mean, one in zip(means, found)]
 
     @cached_property
     def cylinders(self) -> tuple[CylinderOrders, ...]:
         """Those of every cylinder in which a force acts; one is computed of all that work alike."""
         found: dict[str, CylinderOrders] = {}
         for group in self.effort.groups:
-            own, share = self._own(group[0]), self.effort.share(group[0].drive)
-            lost = [
-                (term.factor, self.spectrum(group[0].pieces, driving_torque(group[0].samples)))
-                for term in self.effort.lost(group)
-            ]
-            found |= {one.drive.name: CylinderOrders(one, own, share, tuple(lost)) for one in group}
+            forces, share, lost = group[0], self.effort.share(group[0].drive), self.effort.lost(group)
+            torques = [forces.samples.M, *(one.torque(forces.samples) for one in lost)]
+            if self.effort.moves(forces):
+                torques.append(inertia_torque(forces.samples))
+                torques[0] = torques[0] - torques[-1]
+            gas, *rest = self.spectra(forces.pieces, torques)
+            own = Orders(gas, rest.pop() if self.effort.moves(forces) else None)
+            own = own.each(lambda one, size=own.size: one.cleared(size))  # type: ignore[misc]
+            factors = tuple((one.factor, spectrum) for one, spectrum in zip(lost, rest))
+            found |= {one.drive.name: CylinderOrders(one, own, share, factors) for one in group}
         return tuple(found[one.drive.name] for one in self.effort.cylinders)
-
-    def _own(self, forces: CylinderForces) -> Orders:
-        """Return the orders of a cylinder over its own crank angle."""
-        pieces, state = forces.pieces, forces.samples
-        inertia = self.spectrum(pieces, inertia_torque(state)) if self.effort.moves(forces) else None
-        gas = self.spectrum(pieces, state.M - inertia_torque(state) if inertia else state.M)
-        found = Orders(gas, inertia)
-        return found.each(lambda one: one.cleared(found.size))
 
     @cached_property
     def machine(self) -> Orders:
         """Those of the turning effort, with the losses of the machine."""
         if self.effort.given:
-            known = self.spectrum(self.effort.pieces, self.effort.M)
+            (known,) = self.spectra(self.effort.pieces, [self.effort.M])
             return Orders(known.cleared(known.size), None)
         each = [one.in_machine for one in self.cylinders]
         inertia = [one.inertia for one in each if one.inertia]
@@ -236,7 +233,8 @@ class MachineOrders:
         """The orders to which all cranks contribute in phase; None with fewer than two cylinders."""
         if len(self.cylinders) < 2:
             return None
-        positions = np.array([np.ravel(position(one.forces)) for one in self.cylinders])
+        ones = np.ones(self.effort.pieces.count)
+        positions = [position(one.forces) * ones for one in self.cylinders]
         together = np.abs(sum(unit_vector(np.multiply.outer(self.orders, one)) for one in positions))
         in_phase = together >= (1 - _IN_PHASE) * len(positions)
         each = tuple(tuple(self.orders[one].tolist()) for one in in_phase.T)
