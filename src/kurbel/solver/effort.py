@@ -157,11 +157,9 @@ class TurningEffort:
         for factor, cylinders, torque in terms:
             own = cylinders[0].pieces
             values = np.broadcast_to(torque(cylinders[0].samples), own.degrees.shape) * own.of(factor)
-            if own is pieces:
-                return values
             size = size + len(cylinders) * own.largest(values)
             for forces in cylinders:
-                whole += pieces.carried(values, own, position(forces))
+                whole += values if own is pieces else pieces.carried(values, own, position(forces))
         return np.where(pieces.of(pieces.largest(whole) > _CANCELLED * size), whole, 0.0)
 
     def sum_at(self, terms: Sequence[Term], degrees: Array, within: Array) -> Array:

@@ -212,7 +212,7 @@ class MachineOrders:
     @property
     def M_mean(self) -> Any:
         """Mean torque in N m."""
-        return self.effort.excess and self.effort.told(self.effort.mean)
+        return self.effort.told(self.effort.mean)
 
     @cached_property
     def swing(self) -> Any:
