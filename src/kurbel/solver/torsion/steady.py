@@ -10,7 +10,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.machine.shaft_line import ShaftLine
-from kurbel.numerics.collocation import Unsettled
+from kurbel.numerics.collocation_old import Unsettled
 from kurbel.numerics.elements import STAGES
 from kurbel.numerics.grid import Cuts, Grid
 from kurbel.numerics.search import Sampled, extremes

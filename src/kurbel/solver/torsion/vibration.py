@@ -12,7 +12,7 @@ from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
-from kurbel.numerics.collocation import Unsettled
+from kurbel.numerics.collocation_old import Unsettled
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Columns, Results
 from kurbel.solver.shaft_line.chain import Chain
