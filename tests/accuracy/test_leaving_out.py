@@ -34,7 +34,7 @@ NOT_OF_A_BARE_MACHINE = (
         "kurbel.solver.cylinder.rod",
         "kurbel.solver.turning.effort",
         "kurbel.solver.turning.excess",
-        "kurbel.numerics.collocation",
+        "kurbel.numerics.collocation_old",
         "kurbel.solver.turning.speed",
     ),
     *("kurbel.solver.turning.flywheel", "kurbel.solver.turning.coupling", "kurbel.solver.strength", "kurbel.accuracy"),

@@ -187,6 +187,8 @@ class Pieces:
 
         later: degrees by which each machine's own angle stands behind these.
         """
+        if source is self and not np.any(later):
+            return values
         behind = self.of(later)
         row = source.holding(self.machine, self.middle - behind)
         # differences of right angles are exact
@@ -201,10 +203,14 @@ class Pieces:
             found[some] = series_at(series[..., row[some[-1]]], own)
         return found
 
-    def at(self, values: Array, machine: Indices, degrees: Array) -> Array:
-        """Return values (n,) at angles (n,) in degrees, just after a jump, of these machines."""
-        row = self.holding(machine, degrees)
-        from_low = np.mod(degrees, self.cycle) - self.right_angle[row] - self.offset[row]
+    def at(self, values: Array, machine: Indices, degrees: Array, within: Array | None = None) -> Array:
+        """Return values (n,) at angles (n,) in degrees of these machines.
+
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        """
+        row = self.holding(machine, degrees if within is None else within)
+        from_low = degrees - self.right_angle[row] - self.offset[row]
+        from_low = from_low - self.cycle * np.rint((from_low - self.half[row]) / self.cycle)
         return series_at((self.rule.series @ values)[:, row], np.clip(from_low / self.half[row] - 1, -1, 1))
 
     def zeros(self, values: Array, size: Array | None = None) -> Angles:

@@ -36,9 +36,9 @@ def _highest(waves: Array, amplitudes: ComplexArray, samples: Array) -> Array:
     step = 2 * np.pi / samples.shape[1]
     # a crest is above the sample next to it by no more than the largest curvature makes over half a step
     above = np.abs(amplitudes) @ waves.astype(float) ** 2 * step**2 / 8
-    high = (samples >= (samples.max(axis=1) - above)[:, None]) & (samples >= np.roll(samples, 1, axis=1))
+    high = (samples >= (samples.max(axis=1) - above)[:, None]) & (samples > np.roll(samples, 1, axis=1))
     row, place = np.nonzero(high & (samples >= np.roll(samples, -1, axis=1)))
-    at, best = place * step, np.full(len(samples), -np.inf)
+    at, best = place * step, samples.max(axis=1)
     for _ in range(_STEPS + 1):
         terms = amplitudes[row] * np.exp(1j * np.multiply.outer(at, waves))
         slope, bend = -(terms.imag @ waves), -(terms.real @ waves**2)

@@ -144,9 +144,7 @@ class TurningEffort:
         for group in self.groups:
             own = group[0].pieces
             turns = np.arange(0.0, self.cycle, own.cycle)
-            breaks += [
-                Angles(own.machine, own.low + own.of(position(one)) + turn) for one in group for turn in turns
-            ]
+            breaks += [Angles(own.machine, own.low + own.of(position(one)) + turn) for one in group for turn in turns]
         nodes = max((len(group[0].pieces.rule.nodes) for group in self.groups), default=16)
         whole = Angles(*(np.concatenate(parts) for parts in zip(*breaks)))
         return Pieces.between(whole, self.count or 1, self.cycle, nodes)
@@ -460,4 +458,6 @@ def position(forces: CylinderForces) -> Any:
     Whole cycles are taken off, which is exact: beside a large position an angle would lose its digits.
     """
     behind = forces.drive.cylinder.crank_position
-    return np.fmod(behind, forces.drive.cycle) if isinstance(behind, np.ndarray) else math.fmod(behind, forces.drive.cycle)
+    return (
+        np.fmod(behind, forces.drive.cycle) if isinstance(behind, np.ndarray) else math.fmod(behind, forces.drive.cycle)
+    )
