@@ -11,7 +11,6 @@ from there to the first mass, or from the last mass there.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -20,12 +19,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray, Flags
+from kurbel.arrays import Array, ComplexArray
 from kurbel.machine.shaft_line import ShaftLine
-from kurbel.numerics.cyclic import around
-from kurbel.numerics.lobatto import chebyshev
-from kurbel.numerics.pieces import Angles, Pieces, joined
-from kurbel.numerics.radau import radau
+from kurbel.numerics.collocation import Unsettled, periodic
+from kurbel.numerics.pieces import Angles, Pieces
 
 _AT_ONCE = 2048
 """Systems of equations that are solved together: what the nearest memory holds."""
@@ -239,33 +236,14 @@ def _not_zero(quotient: Array) -> Array:
 
 # periodic motion over the angle, with all its orders
 
-_STAGES = 11
-"""Radau nodes of an element."""
-_SWING = 120.0
-"""Degrees of the fastest natural vibration that one element may hold at first, …"""
+_SWING = 200.0
+"""Degrees of the fastest natural vibration that a piece may hold at first, …"""
 _MOST_PARTS = 8000
-"""… though a piece is cut into no more parts than these."""
-_MOST_WORK = 5e7
-"""Multiplications that one solution of all elements may take; with the refinement that is about a second."""
-_FEWEST, _MOST = 40, 20_000
-"""Elements that a cycle is refined to at least, and at most."""
-_MOST_STEPS = 30
-"""Steps of Newton's method."""
-_TAIL = 1e-13
-"""Of the swing of an unknown: an element whose last two coefficients are larger is halved."""
-_NARROWEST = 1e-10
-"""Degrees of an element that is halved no more."""
-
-
-class Unsettled(Exception):
-    """No periodic motion is found, or none that is worth its time."""
-
-
-class Rise(NamedTuple):
-    """How the load on one mass rises with the speed: r = (ω/ω_n)² − 1 → the rise in N m and its slope by r."""
-
-    mass: int
-    law: Callable[[Array], tuple[Array, Array]]
+"""… though one is cut into no more parts than these."""
+_MOST_WORK = 3.75e4
+"""Pieces, or _FEWEST, times the cube of the unknowns: what a solution of about a second takes."""
+_FEWEST = 40
+"""Pieces that a cycle is refined to at least."""
 
 
 class Motion(NamedTuple):
@@ -278,113 +256,71 @@ class Motion(NamedTuple):
 def motion(chain: Chain, omega: float, pieces: Pieces, driving: Array, rise: Rise | None = None) -> Motion:
     """Return the periodic vibration of a chain without loss factors about uniform rotation at ω_n = omega in rad/s.
 
-    driving: torques on the masses less their means in N m, (n, nodes, pieces), of one machine.
-    The unknowns y, in N m and of one size: the torque of each spring less its mean, over the largest natural order, and
-    J ω_n (ω − ω_n) of each mass; dy/dφ = A y + driving − rise. Raises Unsettled.
+    driving: torques on the masses less their means in N m, (n, nodes, pieces), of one machine. Raises Unsettled where
+    no motion is found, or none that is worth its time.
     """
-    equation = _Equation.of(chain, omega, rise)
-    source, rule = pieces, radau(_STAGES)
-    pieces = _cut(pieces, equation.order)
-    if max(len(pieces.half), _FEWEST) * (_STAGES * len(equation.matrix)) ** 3 > _MOST_WORK:
+    equation = ChainEquation(chain, omega, pieces, driving, rise)
+    parts = np.ceil(2 * pieces.half * equation.order / _SWING).clip(1, _MOST_PARTS).astype(int)
+    if max(parts.sum(), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
         raise Unsettled
-    y = np.zeros((_STAGES + 1, len(pieces.half), len(equation.matrix)))
-    while len(pieces.half) < _MOST:
-        with np.errstate(all="ignore"):  # a step too far may overflow: it does not settle
-            y = equation.solved(pieces, pieces.carried(driving, source), y)
-        tails = np.abs(np.tensordot(rule.series[-2:], y, 1)).sum(axis=0)
-        rough: Flags = (tails > _TAIL * np.ptp(y, axis=(0, 1)) + 4e-15 * np.abs(y).max()).any(axis=1)
-        rough &= pieces.half > _NARROWEST / 2
-        if not rough.any():
-            at_nodes = np.tensordot(rule.at(pieces.rule.nodes), y, 1)
-            return Motion(pieces, np.moveaxis(at_nodes @ equation.passing.T, -1, 0))
-        finer = np.einsum("hij,jkm->ikhm", rule.halves, y[:, rough]).reshape(len(y), -1, y.shape[2])
-        done = np.moveaxis(y[:, ~rough], 1, -1), np.moveaxis(finer, 1, -1)
-        pieces, values = joined([pieces.taken(~rough), pieces.halved(rough)], list(done))
-        y = np.moveaxis(values, -1, 1)
-    raise Unsettled
+    row = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[row]
+    found = periodic(equation, pieces.split(Angles(pieces.machine[row], pieces.low[row] + 2 * share * pieces.half[row])))
+    found.refuse()
+    return Motion(found.pieces, np.tensordot(equation.passing, found.samples, 1))
 
 
-def _cut(pieces: Pieces, order: float) -> Pieces:
-    """Return pieces cut so that each holds little of the fastest natural vibration."""
-    parts = np.ceil(2 * pieces.half * order / _SWING).clip(1, _MOST_PARTS).astype(int)
-    row = np.repeat(np.arange(len(parts)), parts - 1)
-    number = 1 + np.arange(len(row)) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1)
-    return pieces.split(Angles(pieces.machine[row], pieces.low[row] + 2 * pieces.half[row] * number / parts[row]))
+class Rise(NamedTuple):
+    """How the load on one mass rises with the speed: r = (ω/ω_n)² − 1 → the rise in N m and its slope by r."""
+
+    mass: int
+    law: Callable[[Array, Pieces], tuple[Array, Array]]
 
 
-@dataclass(frozen=True, eq=False)
-class _Equation:
-    """dy/dφ = A y + driving − rise: matrix A (m, m), order: the largest natural one, passing: y to torques (k, m).
+class ChainEquation:
+    """y′ = A y + driving − rise, an equation of `kurbel.numerics.collocation`, of one machine.
 
-    risen: which of the unknowns is that of the mass whose load rises with the speed; height: its J ω_n² in N m.
+    The unknowns are, in N m and of one size: for each segment the torque of its spring less its mean, over the largest
+    natural order, and for each mass J ω_n (ω − ω_n). matrix: A; passing: turns y into torques in the segments.
     """
 
-    matrix: Array
-    order: float
-    passing: Array
-    law: Callable[[Array], tuple[Array, Array]] | None
-    risen: int
-    height: float
+    def __init__(self, chain: Chain, omega: float, pieces: Pieces, driving: Array, rise: Rise | None) -> None:
+        self._pieces, self._driving, self._rise = pieces, driving, rise
+        self.order, speeds = float(Modes(chain).omegas[-1]) / omega, 1 / (chain.inertias * omega)
+        segments, twists, self.noise = len(chain.stiffnesses), chain.twists, np.zeros(1)
+        self.passing = np.hstack((np.eye(segments) * self.order, chain.segment_damping[:, None] * twists * speeds))
+        springs = (chain.stiffnesses / (omega * self.order))[:, None] * twists * speeds
+        masses = -twists.T @ self.passing
+        masses[:, segments:] -= np.diag(chain.mass_damping * speeds)
+        self.matrix = np.vstack((np.hstack((np.zeros((segments, segments)), springs)), masses))
+        self.unknowns = len(self.matrix)
+        self._risen = segments + (rise.mass if rise else 0)
+        self._height = float(chain.inertias[rise.mass if rise else 0]) * omega * omega
 
-    @classmethod
-    def of(cls, chain: Chain, omega: float, rise: Rise | None) -> _Equation:
-        """Return the equation of a chain at ω_n."""
-        order, speeds = float(Modes(chain).omegas[-1]) / omega, 1 / (chain.inertias * omega)
-        count, twists = len(chain.stiffnesses), chain.twists
-        passing = np.hstack((np.eye(count) * order, chain.segment_damping[:, None] * twists * speeds))
-        stiff = (chain.stiffnesses / (omega * order))[:, None] * twists * speeds
-        whole = np.vstack((np.hstack((np.zeros((count, count)), stiff)), -twists.T @ passing))
-        places = np.arange(count, len(whole))
-        whole[places, places] -= chain.mass_damping * speeds
-        mass = rise.mass if rise else 0
-        return cls(
-            whole, order, passing, rise and rise.law, count + mass, float(chain.inertias[mass]) * omega * omega
-        )
+    def known(self, pieces: Pieces) -> Array:
+        """Return the torques on the masses."""
+        return pieces.carried(self._driving, self._pieces)
 
-    def solved(self, pieces: Pieces, driving: Array, y: Array) -> Array:
-        """Return y at the starts and the nodes of pieces, (k + 1, pieces, m), by Newton's method from such a y.
+    def rate(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> tuple[Array, Array]:
+        """Return y′ and its derivative by y; eased: J ω_n² in N m that the mass under the load has in addition."""
+        rate = np.tensordot(self.matrix, y, 1)
+        rate[-len(known) :] += known
+        slope = np.broadcast_to(self.matrix[..., None, None], (*self.matrix.shape, *y.shape[1:]))
+        if self._rise:
+            # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
+            height, slope = self._height + eased[0], slope.copy()
+            u = y[self._risen] / height
+            more, by_square = self._rise.law(u * (2 + u), pieces)
+            rate[self._risen] -= more
+            slope[self._risen, self._risen] -= by_square * 2 * (1 + u) / height
+        return rate, slope
 
-        driving: at the Lobatto nodes, (n, nodes, pieces). A linear equation takes one step.
-        """
-        rule, last, size = radau(_STAGES), math.inf, len(self.matrix)
-        torques = np.zeros((_STAGES, len(pieces.half), size))
-        to_radau = chebyshev(rule.nodes, len(pieces.rule.nodes)) @ pieces.rule.series
-        torques[..., size - len(driving) :] = np.moveaxis(to_radau @ driving, 0, -1)
-        for _ in range(_MOST_STEPS):
-            slopes, rates = np.broadcast_to(self.matrix, (*torques.shape, size)), torques
-            if self.law:
-                # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
-                u = y[1:, :, self.risen] / self.height
-                rise, by_square = self.law(u * (2 + u))
-                by_y = by_square * 2 * (1 + u) / self.height
-                slopes, rates = slopes.copy(), torques.copy()
-                slopes[..., self.risen, self.risen] -= by_y
-                rates[..., self.risen] += by_y * y[1:, :, self.risen] - rise
-            new = _collocated(np.radians(pieces.half), slopes, rates)
-            change = float(np.abs(new - y).max())
-            near = max(1e-9 * float(np.ptp(new, axis=(0, 1)).max()), 1e-14 * self.height)
-            y = new
-            if not self.law or change <= 1e-5 * near or (change <= near and change >= last / 2):
-                return y
-            last = change
-        raise Unsettled
+    def floor(self, known: Array, pieces: Pieces, eased: Array) -> Array:
+        """Return the y at which the mass under the load stands still."""
+        floor = np.full((self.unknowns, *known.shape[1:]), -np.inf)
+        floor[self._risen] = -(self._height + eased[0]) if self._rise else -np.inf
+        return floor
 
-
-def _collocated(half: Array, slopes: Array, rates: Array) -> Array:
-    """Return the periodic y (k + 1, pieces, m) of y′ = slopes y + rates at the Radau nodes of all pieces of a cycle.
-
-    half: half their widths in radians; slopes (k, pieces, m, m), rates (k, pieces, m). In a piece y is answer + gain
-    y_start, and y at its last node is the start of the next one.
-    """
-    area, (stages, count, size) = radau(_STAGES).area, rates.shape
-    coupled = np.einsum("ij,jpab,p->piajb", area, slopes, half).reshape(count, stages * size, stages * size)
-    integrals = np.tensordot(area, rates, 1).transpose(1, 0, 2) * half[:, None, None]
-    ones = np.broadcast_to(np.eye(size), (count, stages, size, size))
-    sides = np.concatenate((integrals[..., None], ones), axis=3).reshape(count, stages * size, size + 1)
-    try:
-        found = np.linalg.solve(np.eye(stages * size) - coupled, sides).reshape(count, stages, size, size + 1)
-        answer, gain = found[..., 0], found[..., 1:]
-        start = around(-gain[:, -1], np.broadcast_to(np.eye(size), (count, size, size)), answer[:, -1])
-    except np.linalg.LinAlgError:  # singular, or beyond the range of floats
-        raise Unsettled from None
-    return np.concatenate((start[None], np.moveaxis(answer + (gain @ start[:, None, :, None])[..., 0], 1, 0)))
+    def also(self, known: Array, y: Array, pieces: Pieces) -> Array:
+        """Return nothing: the torques are sums of the unknowns."""
+        return y[:0]

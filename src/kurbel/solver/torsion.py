@@ -25,12 +25,14 @@ from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
+from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.waves import crests
-from kurbel.solver.chain import Chain, Holzer, Modes, Motion, Response, Rise, Unsettled, motion, passing, response
+from kurbel.solver.chain import Chain, Holzer, Modes, Motion, Response, Rise, motion, passing, response
 from kurbel.solver.effort import Term, TurningEffort, inertia_torque, reduced_inertia, shaft_torque
 from kurbel.solver.figures import Columns, Results
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.harmonics import HIGHEST, MachineOrders, Spectrum, every_order
+from kurbel.solver.speed import SpeedLaw
 
 NEAR = 0.1
 """A critical speed so near the working speed, relatively, is worth a note."""
@@ -108,11 +110,11 @@ def excitation(found: MachineOrders, line: ShaftLine) -> Excitation:
         gas[0], means[0] = found.machine.gas.amplitudes, found.M_mean
     if effort.diagram:
         gas[line.load] -= found.spectra(effort.pieces, [effort.load])[0].amplitudes
-    omega, law, slopes = effort.omega or 0.0, load_law(effort), np.zeros(len(line.masses))
+    omega, law, slopes = effort.omega or 0.0, SpeedLaw.of(effort), np.zeros(len(line.masses))
     if not line.ground:
         means[line.load] -= means.sum()
     if law:
-        slopes[line.load] = 2 * float(law(np.zeros(1))[1][0]) / omega
+        slopes[line.load] = 2 * float(law.rise(np.zeros(1), effort.pieces)[1][0]) / omega
     return Excitation(omega, found.orders, gas, inertia, means, slopes)
 
 
@@ -132,27 +134,6 @@ def driving(effort: TurningEffort, line: ShaftLine) -> Array:
     if effort.diagram:
         found[line.load] -= effort.load
     return np.asarray(found - effort.pieces.mean(found)[:, None])
-
-
-def load_law(effort: TurningEffort) -> Callable[[Array], tuple[Array, Array]] | None:
-    """Return how the load rises with r = (ω/ω_n)² − 1: its rise in N m and the slope by r; None where it does not.
-
-    M_m ((ω/ω_n)^k − 1) of a power law, |M_m| (ω/ω_n − 1)/s of a slip.
-    """
-    load = effort.machine.load
-    slip, power = (load.slip, load.power) if load else (None, None)
-    mean = float(effort.mean[0]) if effort.excess and (slip or power) else 0.0
-    if not mean:
-        return None
-
-    def law(ratio: Array) -> tuple[Array, Array]:
-        if slip:
-            root, steepness = np.sqrt(1 + ratio), abs(mean) / slip
-            return steepness * ratio / (1 + root), steepness / (2 * root)
-        half, logarithm = (power or 0.0) / 2, np.log1p(ratio)
-        return mean * np.expm1(half * logarithm), mean * half * np.exp((half - 1) * logarithm)
-
-    return law
 
 
 # forced vibration
@@ -433,8 +414,8 @@ class ShaftVibration(Results):
         """
         if self.vibration is None or not self._every or self.chain.loss.any():
             return None
-        effort, law = self._effort, load_law(self._effort)
-        rise = Rise(self.line.load % len(self.line.masses), law) if law else None
+        effort, law = self._effort, SpeedLaw.of(self._effort)
+        rise = Rise(self.line.load % len(self.line.masses), law.rise) if law else None
         try:
             return motion(self.chain, self.acting.omega, effort.pieces, driving(effort, self.line), rise)
         except Unsettled:
