@@ -44,4 +44,4 @@ def _highest(waves: Array, amplitudes: ComplexArray, samples: Array) -> Array:
         slope, bend = -(terms.imag @ waves), -(terms.real @ waves**2)
         np.maximum.at(best, row, terms.real.sum(axis=1))
         at = at + np.clip(slope / np.where(bend < 0, -bend, np.inf), -step / 2, step / 2)
-    return best
+    return np.asarray(best)

@@ -109,7 +109,8 @@ class Case(Shown):
         from kurbel.solver.effort import TurningEffort
 
         found = TurningEffort(self.machine, self.cylinders, self.count)
-        return found.excess and found
+        _ = found.excess  # refuses a machine that cannot run
+        return found
 
     def harmonics(self, orders: Array | None = None) -> MachineOrders:
         """Return the orders (n,) of the turning effort, or the usual ones. Raises UsageError where nothing turns it."""

@@ -109,13 +109,16 @@ def _response(chain: Chain, frequencies: Array, torques: ComplexArray, load_damp
     """Return it at frequencies (m,)."""
     twists, springs = chain.twists, chain.springs(frequencies)
     own = 1j * (chain.mass_damping[:, None] + load_damping) * frequencies - np.outer(chain.inertias, frequencies**2)
-    places, twice = np.arange(len(own)), np.abs(twists.T) @ np.abs(springs)
-    matrix = (twists.T * springs.T[:, None]) @ twists.astype(complex)
+    matrix, places = (twists.T * springs.T[:, None]) @ twists.astype(complex), np.arange(len(own))
     matrix[:, places, places] += own.T + np.finfo(float).tiny * 1j  # a pivot of exactly zero is none: it ends as inf
-    angles = np.linalg.solve(matrix, torques.T[..., None])
-    phases = angles[..., 0].T / np.maximum(np.abs(angles[..., 0].T), np.finfo(float).tiny)
-    unsure = np.finfo(float).eps * ((np.abs(own) + 2 * twice) * angles[..., 0].T + np.abs(torques) * phases)
-    return Response(angles[..., 0].T, np.linalg.solve(matrix, unsure.T[..., None])[..., 0].T)
+    angles = np.linalg.solve(matrix, torques.T[..., None])[..., 0].T
+    # of soft masses on stiff springs the matrix has lost digits, what is left over by the masses and the twists has not
+    left = torques - own * angles - twists.T @ (springs * (twists @ angles))
+    phases = angles / np.maximum(np.abs(angles), np.finfo(float).tiny)
+    sizes = np.abs(own) + 2 * np.abs(twists.T) @ np.abs(springs)
+    unsure = np.finfo(float).eps * (sizes * angles + np.abs(torques) * phases)
+    more, moved = np.linalg.solve(matrix, np.stack((left.T, unsure.T), axis=2)).T
+    return Response(angles + more, moved)
 
 
 def passing(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
@@ -168,7 +171,7 @@ class Modes:
             high, low = np.where(inside & more, middle, high), np.where(inside & ~more, middle, low)
 
     def _bounds(self, count: int) -> tuple[Array, Array]:
-        """Return bounds of the elastic modes: eigenvalues with their rounding where that holds, or the bounds of all."""
+        """Return bounds of the elastic modes: eigenvalues with their rounding where that holds, else those of all."""
         chain, roots = self._line, np.sqrt(self._line.inertias)
         matrix = (chain.twists.T * chain.stiffnesses) @ chain.twists / roots / roots[:, None]
         highest = np.full(count, 1.01 * np.sqrt(2 * np.diag(matrix).max()))  # Gershgorin, for the matrix J⁻¹ K
@@ -265,7 +268,9 @@ def motion(chain: Chain, omega: float, pieces: Pieces, driving: Array, rise: Ris
         raise Unsettled
     row = np.repeat(np.arange(len(parts)), parts)
     share = (np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[row]
-    found = periodic(equation, pieces.split(Angles(pieces.machine[row], pieces.low[row] + 2 * share * pieces.half[row])))
+    found = periodic(
+        equation, pieces.split(Angles(pieces.machine[row], pieces.low[row] + 2 * share * pieces.half[row]))
+    )
     found.refuse()
     return Motion(found.pieces, np.tensordot(equation.passing, found.samples, 1))
 

@@ -436,7 +436,7 @@ class ShaftVibration(Results):
 
     @property
     def remainder(self) -> float | None:
-        """About what orders beyond those summed add to any torque in N m; None where all are in it, or some requested."""
+        """About what orders beyond those summed add to any torque in N m; None where all are in it, or some were chosen."""
         return float(self._summed.remainder[0]) if self._every and self._summed else None
 
     @cached_property
@@ -454,13 +454,13 @@ class ShaftVibration(Results):
     def _over_the_angle(self) -> tuple[list[Callable[[Array], Array]], tuple[Array, Array]]:
         """Return the torques of the segments by the crank angle, and the largest and smallest less their means."""
         assert self.vibration
-        means, ratios = self.vibration.means, _ratios(self.line)
+        means = self.vibration.means
         if self._summed:
-            orders, torques = self._summed.acting.orders, self._summed.torques[:, 0]
-            high, low = self._summed.crests
-            return [Spectrum(mean, orders, one).at for mean, one in zip(means, torques)], (high[:, 0], low[:, 0])
+            orders, (high, low) = self._summed.acting.orders, self._summed.crests
+            summed = zip(means.tolist(), self._summed.torques[:, 0])
+            return [Spectrum(mean, orders, one).at for mean, one in summed], (high[:, 0], low[:, 0])
         assert self.steady
-        pieces, torques = self.steady.pieces, self.steady.torques / ratios[:, None, None]
+        pieces, torques = self.steady.pieces, self.steady.torques / _ratios(self.line)[:, None, None]
 
         def wave(mean: float, torque: Array) -> Callable[[Array], Array]:
             return lambda degrees: mean + pieces.at(torque, np.zeros(len(degrees), dtype=np.intp), degrees)
