@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from kurbel.arrays import Array
 from kurbel.numerics.arithmetic import where
 
@@ -21,7 +23,8 @@ class Extreme(NamedTuple):
     @classmethod
     def of(cls, values: Array, degrees: Array) -> Extreme:
         """Return what was found of every machine (machines,); of one machine two floats."""
-        pair: Any = (values, degrees) if len(values) > 1 else (float(values[0]), float(degrees[0]))
+        several = len(values) > 1
+        pair: Any = np.broadcast_arrays(values, degrees) if several else (float(values[0]), float(degrees[0]))
         return cls(*pair)
 
 

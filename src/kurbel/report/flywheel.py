@@ -1,9 +1,9 @@
 """The report of `kurbel flywheel`: turning effort, excess work, flywheel and speed line of the whole machine."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from kurbel.declared.unit_systems import show
-from kurbel.frozen import frozen
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.frame import Frame, Subject
@@ -11,7 +11,7 @@ from kurbel.report.left_out import flywheel_left_out
 from kurbel.report.notes import of_machine
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from kurbel.solver.turning.flywheel import MachineTurning
 from kurbel.solver.turning.machine_effort import dead_centre_force
 
@@ -27,7 +27,7 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
     return frame.report(case.machine, "Drehkraftlinie und Schwungrad", having, whole, notes)
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class _DeadCentre:
     """What is to be said of a cylinder alone: the force that its parts before a pump must stand."""
 

@@ -24,11 +24,11 @@ from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
 from kurbel.errors import NoSolutionError
-from kurbel.mechanisms import every_quantity
 from kurbel.mechanisms.coupler import PointMotion, point_motion
+from kurbel.mechanisms.kinds import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.lobatto import rule
-from kurbel.solver.gas import Pressure
+from kurbel.solver.gas import CardPressure, Pressure
 from kurbel.solver.trace import TracePressure, spread
 
 if TYPE_CHECKING:
@@ -154,7 +154,10 @@ class State:
 
     def pressure(self, end: Pressure) -> Array:
         """Return the gauge pressure in Pa at an end of a piston."""
-        return end.at(self.z, self.phi, end.held(self.within, self.drive.index))
+        held = end.held(self.within, self.drive.index)
+        if isinstance(end, CardPressure) and end.steep:
+            return end.at(self.z, self.phi, held, self.drive.mechanism.remaining(self._posed) / self.drive.mechanism.stroke)
+        return end.at(self.z, self.phi, held)
 
     def _counted(self, end: Pressure | None) -> Any:
         """Return a pressure as the machine file counts it."""

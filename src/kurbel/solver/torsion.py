@@ -436,7 +436,7 @@ class ShaftVibration(Results):
 
     @property
     def remainder(self) -> float | None:
-        """About what orders beyond those summed add to any torque in N m; None where all are in it, or some were chosen."""
+        """About what orders beyond those summed add to any torque in N m; None without a remainder."""
         return float(self._summed.remainder[0]) if self._every and self._summed else None
 
     @cached_property

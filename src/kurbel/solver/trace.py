@@ -52,6 +52,8 @@ _OF_MEDIAN = 1.4826
 """Standard deviation over the median of the magnitude, of what is normally distributed."""
 _CHORD = 1.0
 """Degrees over which a rise of pressure is told: between two samples it would be their noise."""
+_DENSE = 600
+"""Breaks of a cycle from which on its pieces are short enough for few nodes."""
 _ENOUGH = 72
 """Samples in a cycle below which differences show its shape instead of the noise."""
 
@@ -210,7 +212,7 @@ class TracePressure:
         mechanism, cycle = self.setting.mechanism, self.setting.cycle
         turns = np.add.outer(mechanism.cuts(), np.arange(0.0, cycle, 360.0)).ravel()
         breaks = np.append(self._starts, turns)
-        pieces = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, 10)
+        pieces = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, 16 if len(breaks) < _DENSE else 10)
         number = np.searchsorted(self._starts, pieces.middle, side="right") - 1
         since = np.mod(pieces.middle - self._starts[number], cycle) + (pieces.degrees - pieces.middle)
         share = since / (self._segments.end - self._segments.start)[number]
