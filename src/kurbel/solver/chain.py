@@ -159,8 +159,11 @@ class Modes:
 
         Those of the elastic modes by bisection of the number of modes below, to the last digit.
         """
-        wanted = np.arange(len(self.chain.stiffnesses))
-        low, high = self._bounds(len(wanted))
+        wanted, springs = np.arange(len(self.chain.stiffnesses)), np.abs(self.chain.twists.T) @ self.chain.stiffnesses
+        high = np.full(len(wanted), 1.01 * np.sqrt(2 * (springs / self.chain.inertias).max()))  # Gershgorin, J⁻¹ K
+        low = high * 1e-3
+        while self._below(low[:1])[0]:
+            low = low * 1e-3
         while True:
             # exponents are halved first, then digits
             middle = np.where(high > 2 * low, np.sqrt(low) * np.sqrt(high), low + (high - low) / 2)
@@ -169,20 +172,6 @@ class Modes:
                 return high if self.chain.ground else np.append(0.0, high)
             more = self._below(middle) > wanted
             high, low = np.where(inside & more, middle, high), np.where(inside & ~more, middle, low)
-
-    def _bounds(self, count: int) -> tuple[Array, Array]:
-        """Return bounds of the elastic modes: eigenvalues with their rounding where that holds, else those of all."""
-        chain, roots = self._line, np.sqrt(self._line.inertias)
-        matrix = (chain.twists.T * chain.stiffnesses) @ chain.twists / roots / roots[:, None]
-        highest = np.full(count, 1.01 * np.sqrt(2 * np.diag(matrix).max()))  # Gershgorin, for the matrix J⁻¹ K
-        lowest = highest * 1e-3
-        while self._below(lowest[:1])[0]:
-            lowest = lowest * 1e-3
-        about = np.sqrt(np.abs(np.linalg.eigvalsh(matrix)))[-count:]
-        share = np.minimum(1e-14 * (1 + (highest / np.maximum(about, 1e-100 * highest)) ** 2), 0.5)
-        low, high = about * (1 - share), about * (1 + share)
-        holds = (self._below(low) <= np.arange(count)) & (self._below(high) > np.arange(count))
-        return np.where(holds, low, lowest), np.where(holds, high, highest)
 
     def _below(self, omegas: Array) -> Array:
         """Return how many elastic modes are below each ω (m,)."""

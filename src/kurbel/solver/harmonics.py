@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -204,9 +204,10 @@ class MachineOrders:
             (known,) = self.spectra(self.effort.pieces, [self.effort.M])
             return Orders(known.cleared(known.size), None)
         each = [one.in_machine for one in self.cylinders]
-        inertia = [one.inertia for one in each if one.inertia]
-        summed = Orders(_sum([one.gas for one in each]), _sum(inertia) if inertia else None)
-        size = sum(one.size for one in each)
+        inertia, size = [one.inertia for one in each if one.inertia], sum(one.size for one in each)
+        summed = Orders(
+            reduce(Spectrum.plus, (one.gas for one in each)), reduce(Spectrum.plus, inertia) if inertia else None
+        )
         return summed.each(lambda one: one.cleared(size))
 
     @property
@@ -239,10 +240,3 @@ class MachineOrders:
         in_phase = together >= (1 - _IN_PHASE) * len(positions)
         each = tuple(tuple(self.orders[one].tolist()) for one in in_phase.T)
         return each[0] if self.effort.count is None else each
-
-
-def _sum(parts: list[Spectrum]) -> Spectrum:
-    whole = parts[0]
-    for one in parts[1:]:
-        whole = whole.plus(one)
-    return whole

@@ -26,8 +26,10 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
 from kurbel.numerics.collocation import Unsettled
+from kurbel.numerics.pieces import refined
 from kurbel.numerics.waves import crests
 from kurbel.solver.chain import Chain, Holzer, Modes, Motion, Response, Rise, motion, passing, response
+from kurbel.solver.drive import Drive
 from kurbel.solver.effort import Term, TurningEffort, inertia_torque, reduced_inertia, shaft_torque
 from kurbel.solver.figures import Columns, Results
 from kurbel.solver.forces import CylinderForces
@@ -223,6 +225,12 @@ def _ratios(line: ShaftLine) -> Array:
     return np.array([piece.ratio for piece in line.pieces])
 
 
+def _mean_inertia(drive: Drive) -> float:
+    """Return the mean over the turn of the reduced moment of inertia of a cylinder in kg m², whatever forces act."""
+    pieces, inertia = refined(drive.pieces, lambda some: reduced_inertia(drive.on(some))[None])
+    return float(pieces.mean(inertia[0])[0])
+
+
 class SegmentTorque(NamedTuple):
     """The torque in one segment of the shaft line at the working speed, and the stress where its section is known.
 
@@ -297,9 +305,9 @@ class ShaftVibration(Results):
     def _inertia(self, mass: ShaftMass) -> float:
         """Return J in kg m²: what is given, the flywheel, and the mean of what the parts of the cylinders reduce to."""
         wheel = self.machine.flywheel.inertia if self.machine.flywheel else None
-        moving = [one for one in self._cylinders if one.drive.name in mass.cylinders and one.drive.cylinder.masses]
-        reduced = (float(one.pieces.mean(reduced_inertia(one.samples))[0]) for one in moving)
-        inertia = math.fsum((mass.inertia, mass.flywheel * (wheel or 0.0), *reduced))
+        drives = (one.drive for one in self._cylinders if one.drive.name in mass.cylinders)
+        moving = [_mean_inertia(drive) for drive in drives if drive.cylinder.masses]
+        inertia = math.fsum((mass.inertia, mass.flywheel * (wheel or 0.0), *moving))
         if not inertia > 0:
             raise UsageError(f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'")
         return inertia
