@@ -8,8 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from kurbel.solver.shaft_line.chain import Chain
-from kurbel.solver.shaft_line.modes import Modes
+from kurbel.solver.chain import Chain, Modes
 from representative import few
 
 

@@ -40,6 +40,9 @@ _INSIDE = 1 - 1e-10
 _NO_WIDTH = 1e-11
 """Degrees of a piece that is none."""
 
+_AT_ONCE = 512
+"""Pieces whose polynomials are summed together: what the nearest memory holds."""
+
 Sample = Callable[["Pieces"], Array]
 """Gives quantities at the nodes of pieces, (quantities, nodes, pieces)."""
 
@@ -188,21 +191,30 @@ class Pieces:
 
         later: degrees by which each machine's own angle stands behind these.
         """
+        if source is self and not np.any(later):
+            return values
         behind = self.of(later)
         row = source.holding(self.machine, self.middle - behind)
         # differences of right angles are exact
         from_low = (self.right_angle - source.right_angle[row] - behind) + (self.offset - source.offset[row])
         from_low = from_low - source.cycle * np.rint((from_low + self.half - source.half[row]) / source.cycle)
-        places = (from_low + self.half * (1 + self.rule.nodes[:, None])) / source.half[row] - 1
-        series = np.moveaxis(source.rule.series @ values, -2, 0)
-        return series_at(
-            series[..., None, row], np.broadcast_to(np.clip(places, -1, 1), values.shape[:-2] + places.shape)
-        )
+        places = np.clip((from_low + self.half * (1 + self.rule.nodes[:, None])) / source.half[row] - 1, -1, 1)
+        series = np.moveaxis(source.rule.series @ values, -2, 0)[..., None, :]
+        found = np.empty(values.shape[:-2] + places.shape)
+        for start in range(0, len(row), _AT_ONCE):
+            some = np.s_[..., start : start + _AT_ONCE]
+            own = np.broadcast_to(places[some], found[some].shape)
+            found[some] = series_at(series[..., row[some[-1]]], own)
+        return found
 
-    def at(self, values: Array, machine: Indices, degrees: Array) -> Array:
-        """Return values (n,) at angles (n,) in degrees, just after a jump, of these machines."""
-        row = self.holding(machine, degrees)
-        from_low = np.mod(degrees, self.cycle) - self.right_angle[row] - self.offset[row]
+    def at(self, values: Array, machine: Indices, degrees: Array, within: Array | None = None) -> Array:
+        """Return values (n,) at angles (n,) in degrees of these machines.
+
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        """
+        row = self.holding(machine, degrees if within is None else within)
+        from_low = degrees - self.right_angle[row] - self.offset[row]
+        from_low = from_low - self.cycle * np.rint((from_low - self.half[row]) / self.cycle)
         return series_at((self.rule.series @ values)[:, row], np.clip(from_low / self.half[row] - 1, -1, 1))
 
     def zeros(self, values: Array, size: Array | None = None) -> Angles:
