@@ -22,7 +22,6 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
-from kurbel.declared.units import GRAVITY
 from kurbel.solver.cycle import SampledCylinder
 from kurbel.solver.drive import Drive
 from kurbel.solver.pins import on_crosshead_pin, on_pin
@@ -114,7 +113,9 @@ def _rod(drive: Drive, state: State) -> list[Array]:
     # of a rod by its share the weight of what turns is left out
     weight, weighed_at = (mass * gravity, share) if rod and rod.exact else (mass * (1 - share) * gravity, 0.0)
     pull = mass * (motion.crosshead * (1 - share) + motion.pin * share)
-    moment = _cross(arm, -K) + _cross(arm * weighed_at, weight + 0 * K) - _cross(arm * share, pull) + inertia * motion.rod
+    moment = (
+        _cross(arm, -K) + _cross(arm * weighed_at, weight + 0 * K) - _cross(arm * share, pull) + inertia * motion.rod
+    )
     if state.rubbing is not None:
         moment = moment + state.rubbing.couple
     lower = mass * (1 - share)  # of the two masses at its ends that of the crosshead pin

@@ -13,7 +13,6 @@ speed over time the nominal one. Under a load that depends on it z is the period
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 from typing import Any, NamedTuple
 
