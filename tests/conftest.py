@@ -25,6 +25,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 # what pytest rewrites of the tests is kept for the next run, too: it takes most of the collection
 sys.dont_write_bytecode = False
 
+# as on the command line, where a thread for each core would only get in the way of the others
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # a width in the environment (pytest-xdist sets one) is asked of every output, by contract
 os.environ.pop("COLUMNS", None)
 
