@@ -155,7 +155,7 @@ def test_mean_pressures_of_random_bearings() -> None:
 
 @pytest.mark.slow
 def test_friction_and_bearings_of_many_cylinders() -> None:
-    for forces in cylinders(5, 30, friction=True):
+    for forces in cylinders(5, 8, friction=True):
         assert error_of_friction(forces) <= 1e-12
         assert max(errors_of_bearings(forces)) <= 1e-12
         assert forces.energy_residual is not None
