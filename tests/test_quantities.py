@@ -32,8 +32,8 @@ from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.cylinder.state import State
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
-from kurbel.solver.turning.coupling import ElasticCoupling
-from kurbel.solver.turning.flywheel import MachineTurning
+from kurbel.solver.coupling import ElasticCoupling
+from kurbel.solver.flywheel import MachineTurning
 from representative import case_of
 from toy_mechanism import HarmonicCam
 

@@ -25,7 +25,7 @@ from kurbel.machine.piston import Piston
 from kurbel.machine.resistance import RamForce
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.turning.flywheel import MachineTurning
+from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.turning.harmonics import spectrum
 from machines import AT, STEAM_CARD, constant_pressure
 from turning_machines import of_points

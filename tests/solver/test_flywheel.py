@@ -18,7 +18,7 @@ from kurbel.errors import MachineFileError
 from kurbel.machine_file import load, loads
 from kurbel.report.check import checked
 from kurbel.solver.case import Case
-from kurbel.solver.turning.machine_effort import dead_centre_force
+from kurbel.report.flywheel import dead_centre_force
 from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")

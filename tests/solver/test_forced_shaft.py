@@ -26,7 +26,7 @@ from kurbel.solver.shaft_line.periodic import ChainEquation
 from kurbel.solver.torsion.forced import Excitation, Vibration
 from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.torsion.vibration import ShaftVibration
-from kurbel.solver.turning.flywheel import MachineTurning
+from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.turning.harmonics import spectrum
 from turning_machines import of_points
 

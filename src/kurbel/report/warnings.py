@@ -16,7 +16,7 @@ from kurbel.solver.cylinder.forces import CylinderForces
 
 if TYPE_CHECKING:
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
-    from kurbel.solver.turning.flywheel import MachineTurning
+    from kurbel.solver.flywheel import MachineTurning
 
 
 def as_far_as_solved(found: Iterable[str], command: str) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from kurbel.solver.bearings.shaft_bearings import ShaftBearings
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
     from kurbel.solver.torsion.vibration import ShaftVibration
-    from kurbel.solver.turning.flywheel import MachineTurning
+    from kurbel.solver.flywheel import MachineTurning
     from kurbel.solver.turning.harmonics import MachineOrders
 
 
@@ -95,15 +95,16 @@ class Case(Shown):
     @cached_property
     def flywheel(self) -> MachineTurning:
         """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
-        from kurbel.solver.turning.flywheel import MachineTurning
+        from kurbel.solver.flywheel import MachineTurning
 
-        return MachineTurning(self.machine, self.old_cylinders)
+        return MachineTurning(self.machine, self.cylinders, self.count)
 
     def harmonics(self, orders: Array | None = None) -> MachineOrders:
         """Return the orders (n,) of the turning effort, or the usual ones. Raises UsageError where nothing turns it."""
         from kurbel.solver.turning.harmonics import MachineOrders
+        from kurbel.solver.turning.machine_effort import MachineEffort
 
-        return MachineOrders(self.flywheel.turned, orders)
+        return MachineOrders(MachineEffort(self.machine, self.old_cylinders), orders)
 
     @cached_property
     def torsion(self) -> ShaftVibration:

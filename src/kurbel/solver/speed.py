@@ -116,9 +116,9 @@ class SpeedEquation:
         """Return the z of a machine that stands still."""
         return np.asarray(-(known[1] + pieces.of(eased)))[None]
 
-    def also(self, known: Array, z: Array, pieces: Pieces) -> Array:
+    def also(self, known: Array, z: Array, pieces: Pieces, eased: Array) -> Array:
         """Return r, and ω_n/ω, of which the mean over time is made."""
-        ratio = z[0] / known[1]
+        ratio = z[0] / (known[1] + pieces.of(eased))
         return np.stack((ratio, 1 / np.sqrt(np.maximum(1 + ratio, 1e-12))))
 
 
