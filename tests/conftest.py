@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import sys
 from collections.abc import Callable
@@ -36,11 +35,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="write what the program prints now into tests/golden, the expected messages of bad machine files, the "
         "README and docs; read the diff. Not with -n.",
     )
-
-
-def pytest_collection_finish() -> None:
-    # what was collected stays; the collector need not look through it again and again
-    gc.freeze()
 
 
 @pytest.fixture

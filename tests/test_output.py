@@ -21,7 +21,8 @@ from imported import modules_after
 from kurbel import loads
 from kurbel.cli import COMMANDS, kurbel
 from kurbel.errors import UsageError
-from kurbel.render import FORMATS, Look, json_text, pieces, render
+from kurbel.render import FORMATS, Look, json_text
+from kurbel.render.formats import pieces, render
 from kurbel.render.output import write_file
 from kurbel.report import shown
 from kurbel.report.angles import MOST_ROWS, check_rows, stepped

@@ -14,9 +14,10 @@ from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.report.pictures import FILE, PICTURES, TERMINAL, Wish, pictures, pictures_of
+from kurbel.report.pictures import PICTURES, pictures, pictures_of
 from kurbel.report.pictures.picture import Panel, Picture
 from kurbel.report.pictures.sampling import sampled
+from kurbel.report.pictures.source import FILE, TERMINAL, Wish
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 

@@ -25,7 +25,8 @@ from kurbel.render.pictures.layout import scene
 from kurbel.render.pictures.scene import Text, thinned
 from kurbel.render.pictures.style import FAINT, GAIN, INK, LOOKS, LOSS, PAPER, css
 from kurbel.render.pictures.svg import svg_file
-from kurbel.report.pictures import Wish, pictures
+from kurbel.report.pictures import pictures
+from kurbel.report.pictures.source import Wish
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 

@@ -16,7 +16,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.machine import CYCLES, Machine
 from kurbel.numerics.gauss import LOBATTO_9
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 OWN = "kurbel"
 _FULL = (36, 360, 3600, 100_000)

@@ -1,11 +1,11 @@
 """The report of `kurbel flywheel`: turning effort, excess work, flywheel and speed line of the whole machine."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 
 from kurbel.declared.unit_systems import show
-from kurbel.frozen import frozen
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.frame import Frame, Subject
@@ -28,7 +28,7 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
     return frame.report(case.machine, "Drehkraftlinie und Schwungrad", having, whole, notes)
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class _DeadCentre:
     """What is to be said of a cylinder alone: the force that its parts before a pump must stand."""
 

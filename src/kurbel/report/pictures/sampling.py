@@ -1,12 +1,12 @@
 """Points of a curve: as many as it takes to look like the curve itself, each computed by the solver, none between."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.frozen import frozen
 from kurbel.numerics.grid import cut_equally
 from kurbel.report.pictures.picture import Piece
 
@@ -19,7 +19,7 @@ Values = Callable[["Array", "Array"], "Array"]
 """Several quantities (k, n) in SI at crank angles (n,) in degrees, on the sides of jumps that hold `within` (n,)."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Samples:
     """Quantities (k, n) at crank angles (n,), the pieces between jumps and bends one after the other."""
 
