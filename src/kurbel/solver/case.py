@@ -18,9 +18,9 @@ from kurbel.solver.forces import CylinderForces
 if TYPE_CHECKING:
     from kurbel.solver.balance.machine_balance import MachineBalance
     from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+    from kurbel.solver.flywheel import MachineTurning
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
     from kurbel.solver.torsion.vibration import ShaftVibration
-    from kurbel.solver.flywheel import MachineTurning
     from kurbel.solver.turning.harmonics import MachineOrders
 
 

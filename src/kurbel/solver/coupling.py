@@ -18,9 +18,9 @@ import numpy as np
 from kurbel.arrays import Array, Flags
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
-from kurbel.numerics.collocation import Unsettled, growth, periodic
+from kurbel.numerics.collocation import growth, periodic
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import Angles, Pieces
+from kurbel.numerics.pieces import Pieces
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.speed import SpeedLaw
 
@@ -67,7 +67,7 @@ class ElasticCoupling:
             np.broadcast_to(one, own.shape)
             for one in (coupling.stiffness, coupling.damping, coupling.inertia, effort.omega)
         )
-        self.natural_order = natural_order(coupling, own, effort.omega)
+        self._order = natural_order(coupling, own, effort.omega)
         self.noise = np.zeros(own.shape)
         self.failed: Flags = np.zeros(own.shape, dtype=bool) if law is None else law.mean == 0
         self._torques = np.stack((effort.true_excess.torque + effort.load, effort.load)) - effort.pieces.of(effort.mean)
@@ -84,15 +84,15 @@ class ElasticCoupling:
         """Return ω₁ − ω₂ over ω_n, and the torque in the coupling less its mean in N m."""
         of = pieces.of
         apart = y[1] / of(self.own * self.omega**2) - y[2] / of(self.driven * self.omega**2)
-        return apart, of(self.natural_order) * y[0] + of(self.damping * self.omega) * apart
+        return apart, of(self._order) * y[0] + of(self.damping * self.omega) * apart
 
     def rate(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> tuple[Array, Array]:
-        """Return y′ and its derivative; eased: the load depends on the speed as if J₂ ω_n² were so much more, in N m."""
+        """Return y′ and its derivative; eased: so much more J₂ ω_n² in N m, as the load sees it."""
         of = pieces.of
         spring, apart_1, apart_2 = (
             of(one)
             for one in (
-                self.stiffness / self.natural_order,
+                self.stiffness / self._order,
                 1 / (self.own * self.omega**2),
                 -1 / (self.driven * self.omega**2),
             )
@@ -103,7 +103,7 @@ class ElasticCoupling:
         slope = np.zeros((3, *y.shape))
         for column, by in ((1, apart_1), (2, apart_2)):
             slope[0, column], slope[1, column], slope[2, column] = spring * by, -damping * by, damping * by
-        slope[1, 0], slope[2, 0] = -of(self.natural_order), of(self.natural_order)
+        slope[1, 0], slope[2, 0] = -of(self._order), of(self._order)
         if self.law:
             # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
             height = of(self.driven * self.omega**2 + eased)
@@ -126,7 +126,7 @@ class ElasticCoupling:
 
     def _solve(self) -> None:
         """Solve it; a load that does not depend on the speed leaves the mean speed open: it is the nominal one."""
-        found = periodic(self, _cut(self.effort.pieces, self.natural_order))
+        found = periodic(self, _cut(self.effort.pieces, self._order))
         self.failed = self.failed | found.failed
         if self.effort.count is None and found.failed[0]:
             if self.law is None:
@@ -167,6 +167,11 @@ class ElasticCoupling:
     def _end(self, which: int, smallest: bool, base: Array) -> Extreme:
         value, degrees = (one[which] for one in self._extremes[2 * smallest : 2 * smallest + 2])
         return Extreme(self.told(base + value), self.told(np.mod(degrees, self.pieces.cycle)))
+
+    @property
+    def natural_order(self) -> Any:
+        """Natural frequency of both masses on the coupling over ω_n."""
+        return self.told(self._order)
 
     @property
     def M_coupling_max(self) -> Extreme:
@@ -231,7 +236,7 @@ class ElasticCoupling:
         They are those of the effort, of the load, and of the torque in the coupling; damping: of the driven mass in
         N m s/rad.
         """
-        step, natural = 360 / self.effort.cycle, float(self.natural_order[machine])
+        step, natural = 360 / self.effort.cycle, float(self._order[machine])
         low, high = (natural * (1 + side * _NEAR) / step for side in (-1, 1))
         orders = step * np.arange(max(np.ceil(low), 1), np.floor(high) + 1)
         effort, load = self._amplitudes(machine, orders)
@@ -277,8 +282,8 @@ class ElasticCoupling:
             stuck = ~(passed < _ENDLESS * size) & (np.maximum(effort, load) > _PRESENT * size)
             if stuck.any() and self.effort.count is None:
                 raise NoSolutionError(
-                    f"the coupling is in resonance with harmonic {orders[np.argmax(stuck)]:g} of the torque and nothing "
-                    "damps it: give 'coupling.damping', or change its stiffness or the speed"
+                    f"the coupling is in resonance with harmonic {orders[np.argmax(stuck)]:g} of the torque and "
+                    "nothing damps it: give 'coupling.damping', or change its stiffness or the speed"
                 )
             self.failed[machine] |= stuck.any()
 
@@ -286,7 +291,7 @@ class ElasticCoupling:
     def resonances(self) -> tuple[Harmonic, ...]:
         """Harmonics of the only machine that are present in the torque and near the natural order."""
         orders, effort, load, passed = self._harmonics(0, float(self._load_slope[0]))
-        amplitudes, distance = effort + load, orders / self.natural_order[0] - 1
+        amplitudes, distance = effort + load, orders / self._order[0] - 1
         rigid = (effort * self.driven + load * self.own) / (self.own + self.driven)
         gain = passed / np.where(rigid > 0, rigid, np.inf)
         near = (amplitudes > _WORTH * self._size[0]) & (gain >= _AMPLIFIED)

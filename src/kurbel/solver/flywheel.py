@@ -25,9 +25,10 @@ from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces
 from kurbel.numerics.roots import rising_root
 from kurbel.solver.coupling import ElasticCoupling, natural_order
+from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import Columns, Results, passed_on
-from kurbel.solver.forces import Brake, CylinderForces, Where, where_is
+from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.speed import Course, SpeedLaw, SpeedLine, speed_line
 
 RIGID_ABOVE = 100.0

@@ -13,7 +13,6 @@ speed over time the nominal one. Under a load that depends on it z is the period
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -234,7 +233,7 @@ def _slowness(ratio: Array) -> Array:
 def speed_line(course: Course, law: SpeedLaw | None, flywheel: Array) -> SpeedLine:
     """Return the speed line of machines with flywheels (n,) in kg m².
 
-    Raises Standstill or Unsettled where the only machine stands still or has none, UsageError where nothing has inertia.
+    Raises Standstill or Unsettled where the only machine has none, UsageError where nothing that turns has inertia.
     """
     effort, moving, first = course.effort, course.samples[1], course.pieces.first
     least, most = (one.reduceat(moving, first, axis=1) for one in (np.minimum, np.maximum))
