@@ -25,8 +25,8 @@ from kurbel.machine.piston import Piston
 from kurbel.machine.resistance import RamForce
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
+from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.harmonics import amplitudes
-from kurbel.solver.turning.flywheel import MachineTurning
 from machines import AT, STEAM_CARD, constant_pressure
 from turning_machines import of_points
 

@@ -17,8 +17,8 @@ from kurbel.declared.units import parse_quantity
 from kurbel.errors import MachineFileError
 from kurbel.machine_file import load, loads
 from kurbel.report.check import checked
+from kurbel.report.flywheel import dead_centre_force
 from kurbel.solver.case import Case
-from kurbel.solver.turning.machine_effort import dead_centre_force
 from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -108,6 +108,11 @@ class Pieces:
         columns = (self.right_angle, self.offset, self.half, self.machine)
         return Pieces(*(one[rows] for one in columns), self.count, self.cycle, self.rule)
 
+    def with_nodes(self, nodes: int) -> Pieces:
+        """Return these pieces with so many nodes each."""
+        columns = (self.right_angle, self.offset, self.half, self.machine)
+        return Pieces(*columns, self.count, self.cycle, rule(nodes))
+
     def halved(self, rows: Indices | Flags) -> Pieces:
         """Return the halves of these pieces, in order."""
         right_angle, half, machine = (

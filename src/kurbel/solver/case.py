@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from kurbel.solver.balance.machine_balance import MachineBalance
     from kurbel.solver.bearings.shaft_bearings import ShaftBearings
     from kurbel.solver.effort import TurningEffort
+    from kurbel.solver.flywheel import MachineTurning
     from kurbel.solver.harmonics import MachineOrders
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
     from kurbel.solver.torsion import ShaftVibration
-    from kurbel.solver.turning.flywheel import MachineTurning
 
 
 _WHOLE = ("stress", "flywheel", "balance", "torsion")
@@ -96,9 +96,9 @@ class Case(Shown):
     @cached_property
     def flywheel(self) -> MachineTurning:
         """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
-        from kurbel.solver.turning.flywheel import MachineTurning
+        from kurbel.solver.flywheel import MachineTurning
 
-        return MachineTurning(self.machine, self.old_cylinders)
+        return MachineTurning(self.machine, self.cylinders, self.count)
 
     @cached_property
     def effort(self) -> TurningEffort:
