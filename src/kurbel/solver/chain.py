@@ -315,6 +315,6 @@ class ChainEquation:
         floor[self._risen] = -(self._height + eased[0]) if self._rise else -np.inf
         return floor
 
-    def also(self, known: Array, y: Array, pieces: Pieces) -> Array:
+    def also(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> Array:
         """Return nothing: the torques are sums of the unknowns."""
         return y[:0]
