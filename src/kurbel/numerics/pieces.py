@@ -7,7 +7,7 @@ polynomial yet, by the tail of its Chebyshev coefficients, is halved: no other k
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -265,15 +265,55 @@ class Pieces:
         return low, high
 
 
-def refined(pieces: Pieces, sample: Sample) -> tuple[Pieces, Array]:
-    """Return pieces halved until the samples are polynomials on them, and the samples there, (q, nodes, pieces)."""
+def common(parts: Sequence[tuple[Pieces, Number]], cycle: float) -> Pieces:
+    """Return the pieces of a cycle in degrees, as long as those of the parts or several times, within all of theirs.
+
+    parts: each with the degrees, (machines,), by which its own angle is behind that of the common pieces.
+    """
+    first = parts[0][0]
+    if len(parts) == 1 and not np.any(parts[0][1]) and first.cycle == cycle:
+        return first
+    machine, degrees = [], []
+    for one, later in parts:
+        starts = np.mod(one.low + one.of(later), one.cycle)
+        degrees += [starts + turn for turn in np.arange(0.0, cycle, one.cycle)]
+        machine += [one.machine] * (len(degrees) - len(machine))
+    nodes = min(len(one.rule.nodes) for one, _ in parts)
+    return Pieces.between(Angles(np.concatenate(machine), np.concatenate(degrees)), first.count, cycle, nodes)
+
+
+def resolved(
+    pieces: Pieces, parts: Array, kinks: Array, size: Array, function: Callable[[Pieces, Array], Array]
+) -> tuple[Pieces, Array, Array]:
+    """Return pieces cut where kinks vanish, and halved until functions of the parts are polynomials: magnitudes.
+
+    Returns with them the values of the functions (q, nodes, pieces) and the parts (p, nodes, pieces) there. parts: have
+    polynomials on the pieces; kinks: (k, nodes, pieces); size: (k, machines), beside which a kink is zero.
+    """
+    cuts = [pieces.zeros(one, beside) for one, beside in zip(kinks, size)]
+    cut = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*cuts))))
+
+    def sample(some: Pieces) -> Array:
+        found = parts if some is pieces else some.carried(parts, pieces)
+        return np.concatenate((function(some, found), found))
+
+    fine, values = refined(cut, sample, smooth=len(parts))
+    return fine, values[: -len(parts)], values[-len(parts) :]
+
+
+def refined(pieces: Pieces, sample: Sample, smooth: int = 0) -> tuple[Pieces, Array]:
+    """Return pieces halved until the samples are polynomials on them, and the samples there, (q, nodes, pieces).
+
+    smooth: how many quantities at the end need no look, since they have polynomials there.
+    """
     todo, size, done, found = pieces, np.zeros(()), [], []
     while True:
         values = sample(todo)
-        top = np.zeros((len(values), pieces.count))
-        np.maximum.at(top, (slice(None), todo.machine), np.abs(values).max(axis=1))
+        judged = values[: len(values) - smooth]
+        top = np.zeros((len(judged), pieces.count))
+        np.maximum.at(top, (slice(None), todo.machine), np.abs(judged).max(axis=1))
         size = np.maximum(size, top)
-        rough = _rough(todo, values, size)
+        rough = _rough(todo, judged, size)
         done.append(todo.taken(~rough))
         found.append(values[..., ~rough])
         if not rough.any():

@@ -8,8 +8,8 @@ from kurbel.report.frame import Frame, Subject
 from kurbel.report.notes import of_machine
 from kurbel.report.tables import LeftOut, Report
 from kurbel.report.warnings import as_far_as_solved
-from kurbel.solver.bearings.bearing import Bearing
-from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+from kurbel.solver.bearings import Bearing
+from kurbel.solver.bearings import ShaftBearings
 from kurbel.solver.case import Case
 
 

@@ -15,7 +15,7 @@ from kurbel.report.shown import place_table
 from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import shell_verdict
 from kurbel.solver.case import Case
-from kurbel.solver.strength.crankshaft import CrankshaftStrength, Strained
+from kurbel.solver.stress import CrankshaftStrength, Strained
 
 _TITLES = {
     "dead_centre": "Dead centre, full piston force without inertia",

@@ -15,7 +15,7 @@ from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces
 
 if TYPE_CHECKING:
-    from kurbel.solver.strength.crankshaft import CrankshaftStrength
+    from kurbel.solver.stress import CrankshaftStrength
     from kurbel.solver.turning.flywheel import MachineTurning
 
 
