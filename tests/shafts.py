@@ -12,8 +12,8 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.shaft.statics import FreeBody, Vector
-from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from kurbel.solver.shaft import FreeBody, Vector
+from kurbel.solver.stress import CrankshaftStrength
 from kurbel.solver.strength.places import Place, places
 from machines import constant_pressure
 

@@ -31,7 +31,7 @@ from kurbel.solver.cylinder.indicated import Indicated
 from kurbel.solver.cylinder.motion import Motion
 from kurbel.solver.cylinder.rod_load import RodLoad
 from kurbel.solver.cylinder.state import State
-from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from kurbel.solver.stress import CrankshaftStrength
 from kurbel.solver.turning.coupling import ElasticCoupling
 from kurbel.solver.turning.flywheel import MachineTurning
 from representative import case_of

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from kurbel.solver.shaft.statics import FreeBody, Vector
+from kurbel.solver.shaft import FreeBody, Vector
 from kurbel.solver.strength.places import places
 from kurbel.solver.strength.sections import bach_factor, round_bending, round_torsion
 from machines import constant_pressure

@@ -20,7 +20,7 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.cylinder.state import State
-from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from kurbel.solver.stress import CrankshaftStrength
 from machines import one_cylinder
 from random_cylinders import cylinders
 from shafts import shaft

@@ -20,7 +20,7 @@ from kurbel.machine.piston import Piston
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.shaft.statics import FreeBody, weight_in_throw
+from kurbel.solver.shaft import FreeBody, weight_in_throw
 from kurbel.solver.strength.places import PARTS, places
 from machines import STEAM_CARD, constant_pressure
 from representative import few

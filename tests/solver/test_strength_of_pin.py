@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from kurbel.errors import RuleError
 from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from kurbel.solver.stress import CrankshaftStrength
 from kurbel.solver.strength.places import PARTS, places
 from machines import constant_pressure
 from shafts import body, shaft, strength

@@ -42,6 +42,9 @@ HALF_CONTACT = 60.0
 """Degrees to either side of a load over which pin and shell are taken to touch."""
 _NO_LOAD = 1e-12
 """Of the largest load: what is smaller is rounding and has no direction."""
+_TINIEST = 1e-300
+_SURE = 100.0
+"""By so much of its share of the largest load a smaller one counts where its direction is to be a polynomial."""
 _ALONG = 1e-13
 """Of the largest load: what rounding leaves across the axis of a frame."""
 _ON_AXIS = 1e-12
@@ -394,14 +397,42 @@ def _carried(pieces: Pieces, own: Follower, *columns: Any) -> list[Any]:
 
 
 def _with_magnitude(pieces: Pieces, load: ComplexArray, others: Sequence[Array] = ()) -> tuple[Pieces, Array, Array]:
-    """Return pieces on which the magnitude of a load (nodes, pieces) is a polynomial, the magnitude, and the parts.
+    """Return pieces on which magnitude and direction of a load are polynomials, the magnitude in N, and the parts.
 
-    The parts are those of the load and the others. Each piece then lies within a quarter of a turn of the load.
+    load: (nodes, pieces). The parts are those of the load and the others. On each piece the load lies within a quarter
+    of a turn. The smaller a load, the less of its direction is left by rounding.
     """
-    parts = np.stack((load.real, load.imag, *others))
-    size = np.broadcast_to(pieces.largest(np.abs(load)), (2, pieces.count))
-    fine, (size_there,), parts = resolved(pieces, parts, parts[:2], size, lambda _, found: np.hypot(*found[:2])[None])
-    return fine, size_there, parts
+    parts, largest = np.stack((load.real, load.imag, *others)), pieces.largest(np.abs(load))
+
+    def both(some: Pieces, found: Array) -> Array:
+        size, beside = np.hypot(*found[:2]), some.of(largest)
+        towards = _directed(found[0] + 1j * found[1], beside)
+        weakest = np.min(size, axis=0, where=size > _NO_LOAD * beside, initial=math.inf)
+        weight = np.minimum(1.0, _SURE * weakest / np.maximum(beside, _TINIEST))
+        return np.stack((size, towards.real * weight, towards.imag * weight))
+
+    fine, values, parts = resolved(pieces, parts, parts[:2], np.stack((largest, largest)), both)
+    return fine, values[0], parts
+
+
+def _directed(load: ComplexArray, largest: Array) -> ComplexArray:
+    """Return the directions of a load as unit vectors; where it vanishes at an end, that to which the inner nodes lead.
+
+    load: in N, complex, (nodes, pieces); largest: of the machine of each piece.
+    """
+    size = np.abs(load)
+    directions = load / np.maximum(size, _TINIEST)
+    vanishing = size[[0, -1]] <= _NO_LOAD * largest
+    if vanishing.any():
+        directions[[0, -1]] = np.where(vanishing, _outward(len(load)) @ directions[1:-1], directions[[0, -1]])
+    return directions
+
+
+@lru_cache
+def _outward(count: int) -> Array:
+    """Return what extrapolates values at the inner nodes of so many to both ends, (2, count − 2)."""
+    inner = rule(count).nodes[1:-1]
+    return chebyshev(np.array([-1.0, 1.0]), count - 2) @ np.linalg.inv(chebyshev(inner, count - 2))  # type: ignore[no-any-return]
 
 
 # what of a surface no load reaches
@@ -419,21 +450,11 @@ def unloaded(pieces: Pieces, load: ComplexArray, contact: float) -> tuple[Array,
     pressed = size.max(axis=0) > _NO_LOAD * largest
     pieces, load, size, largest = pieces.taken(pressed), load[:, pressed], size[:, pressed], largest[pressed]
     along, across = (np.where(np.abs(x).max(axis=0) > _ALONG * largest, x, 0.0) for x in (load.real, load.imag))
-    load = along + 1j * across
-    strongest = np.take_along_axis(load, size.argmax(axis=0)[None], axis=0)
-    direction = np.degrees(np.angle(load * np.conj(strongest / np.abs(strongest)))) + np.degrees(np.angle(strongest))
-    # a load that vanishes at an end has there the direction to which the inner nodes lead
-    vanishing = size[[0, -1]] <= _NO_LOAD * largest
-    direction[[0, -1]] = np.where(vanishing, _outward(len(direction)) @ direction[1:-1], direction[[0, -1]])
+    towards = _directed(along + 1j * across, largest)
+    strongest = np.take_along_axis(towards, size.argmax(axis=0)[None], axis=0)
+    direction = np.degrees(np.angle(towards * np.conj(strongest))) + np.degrees(np.angle(strongest))
     low, high = pieces.ranges(direction)
     return unreached(pieces.machine, low + contact - HALF_CONTACT, high + contact + HALF_CONTACT, pieces.count)
-
-
-@lru_cache
-def _outward(count: int) -> Array:
-    """Return what extrapolates values at the inner nodes of so many to both ends, (2, count − 2)."""
-    inner = rule(count).nodes[1:-1]
-    return chebyshev(np.array([-1.0, 1.0]), count - 2) @ np.linalg.inv(chebyshev(inner, count - 2))  # type: ignore[no-any-return]
 
 
 def unreached(machine: Indices, start: Array, end: Array, count: int) -> tuple[Array, Array]:

@@ -21,12 +21,13 @@ from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
-from kurbel.numerics.pieces import Pieces, refined
+from kurbel.numerics.pieces import Angles, Pieces, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, crank_angles
 from kurbel.solver.friction import redtenbacher_loss
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
+from kurbel.solver.pins import on_crosshead_pin, on_pin
 from kurbel.solver.state import State
 
 _SURE = 4.0
@@ -110,6 +111,10 @@ class CylinderForces(Results):
             self._refuse_locking_on(free)
         if drive.pin_friction is None:
             return free
+        # where the load of a pin passes through zero, its magnitude has a kink
+        unrubbed = drive.on(free).unrubbed
+        passed = [free.zeros(load) for load in (on_pin(unrubbed).T, on_crosshead_pin(unrubbed).D)]
+        free = free.split(Angles(*(np.concatenate(columns) for columns in zip(*passed))))
         loaded = refined(free, lambda some: self._values_on(some, ("guide_sense", *_RUBBING)))[0]
         return loaded.split(loaded.zeros(drive.on(loaded).guide_sense)) if drive.rubs else loaded
 

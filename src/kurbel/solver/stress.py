@@ -232,8 +232,8 @@ class CrankshaftStrength(Results):
 
     def _body(self, pin: Vector, angle: CrankAngle, pieces: Pieces | None = None) -> FreeBody:
         """Return the throw under a force on its pin at crank angles, those of the nodes of pieces or one of each machine."""
-        spread = self.count is not None and pieces is not None
-        machine = taken(self.machine, pieces.machine) if spread and pieces is not None else self.machine
+        spread = pieces if self.count is not None else None
+        machine = self.machine if spread is None else taken(self.machine, spread.machine)
         (cylinder,) = machine.cylinders
         weight = flywheel_weight(machine, cylinder, angle)
         return FreeBody(machine.crankshaft, cylinder.mechanism.crank, pin, weight)
@@ -285,3 +285,171 @@ class CrankshaftStrength(Results):
             alike = (self.shaft.flywheel_position >= 0) == _flywheel_beyond(self.shaft)
             values = np.where(fine.of(np.broadcast_to(alike, self.count)), values, math.nan)
         return _Cycle(fine, tuple(names), values)
+
+    def _refuse_overflow(self, body: FreeBody) -> None:
+        """Raise UsageError where the stresses of the only machine are no finite numbers."""
+        if self.count is None and not all(
+            np.isfinite(stress).all() for place in places(body) for stress in (place.combined, place.von_mises)
+        ):
+            raise UsageError(
+                f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
+                "check the numbers and units of the machine file"
+            )
+
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees of the only machine between which every quantity is smooth."""
+        return np.append(self._cycle.pieces.low, self._cycle.pieces.cycle)
+
+    @cached_property
+    def _largest(self) -> list[Extreme]:
+        """The largest of Bach's stresses, then of von Mises', of every place, and of the loads on pin, A and B."""
+        found = self._cycle.pieces.extremes(self._cycle.values[:-1])
+        return [Extreme(*map(self.forces.told, pair)) for pair in zip(found.largest, found.largest_at)]
+
+    # the two positions of the book, and the worst of the cycle
+
+    @cached_property
+    def full_force(self) -> Extreme:
+        """The largest piston force without inertia in N, and the dead centre in degrees in which the throw takes it.
+
+        Starting and slow running (R p. 608): the inner dead centre, or the outer one where pulling is stronger.
+        """
+        found, motion = self._force_extremes("P_start"), self.forces.motion
+        assert motion.phi_idc is not None
+        assert motion.phi_odc is not None
+        pushes = found.largest.value >= -found.smallest.value
+        return chosen(
+            pushes, Extreme(found.largest.value, motion.phi_idc), Extreme(found.smallest.value, motion.phi_odc)
+        )
+
+    @cached_property
+    def largest_torque(self) -> Extreme:
+        """The largest T in N, or the smallest where the machine is driven harder than it drives, and its angle."""
+        found = self._force_extremes("T")
+        return chosen(found.peak.degrees == found.largest.degrees, found.largest, found.smallest)
+
+    def _force_extremes(self, column: str) -> Extremes:
+        _ = self._cycle  # forces that are too large are refused before they are searched
+        found = self.forces.extremes_of(column)
+        assert found is not None
+        return found
+
+    @cached_property
+    def at_dead_centre(self) -> tuple[Place, ...]:
+        """Every place in the firing dead centre under the full force of the pressure: T = 0, D = P cos(φ+ψ)/cos ψ."""
+        force, degrees = self.full_force
+        angle = CrankAngle.of(degrees)
+        body = self._body(Vector(force * self.forces.drive.mechanism.radial(angle), 0.0), angle)
+        return tuple(_at(place, degrees) for place in places(body))
+
+    @cached_property
+    def at_largest_torque(self) -> tuple[Place, ...]:
+        """Every place in the position of the largest torque, of the only machine."""
+        torque, degrees = self.largest_torque
+        body, side = self._beside([degrees])
+        nearest = np.abs(body.pin.T - torque).argmin()
+        return tuple(_at(place, degrees, nearest) for place in places(body))
+
+    @cached_property
+    def at_worst(self) -> tuple[Place, ...]:
+        """Every place at the crank angle of the running machine at which its own combined stress is largest."""
+        worst = self._largest[: len(self._cycle.places)]
+        body, side = self._beside([one.degrees for one in worst])
+        found = []
+        for number, (place, one) in enumerate(zip(places(body), worst)):
+            nearest = np.where(side == number, np.abs(place.combined - one.value), math.inf).argmin()
+            found.append(_at(place, one.degrees, nearest))
+        return tuple(found)
+
+    def _beside(self, degrees: Sequence[float]) -> tuple[FreeBody, Array]:
+        """Return the throw on both sides of angles in degrees of the only machine, and to which angle each belongs."""
+        pieces, each = self._cycle.pieces, np.repeat(np.asarray(degrees), 2)
+        rows = pieces.holding(np.zeros(len(each), dtype=np.intp), each + np.tile((-1e-9, 1e-9), len(degrees)))
+        state = State(self.forces.drive, CrankAngle.of(each), pieces.middle[rows])
+        return self._running(state), np.repeat(np.arange(len(degrees)), 2)
+
+    def sigma_dc(self, part: str) -> Extreme | None:
+        """Return the largest combined stress of a part in Pa in the dead centre; None for one that is not examined."""
+        return _highest(Extreme(one.combined, one.degrees) for one in self.at_dead_centre if one.part == part)
+
+    def sigma_max(self, part: str) -> Extreme | None:
+        """Return the largest combined stress of a part in Pa over the cycle, and its crank angle."""
+        return _highest(one for one, (own, _) in zip(self._largest, self._cycle.places) if own == part)
+
+    def mises_max(self, part: str) -> Extreme | None:
+        """Return the largest stress of a part after von Mises in Pa over the cycle, and its crank angle."""
+        stresses = self._largest[len(self._cycle.places) :]
+        return _highest(one for one, (own, _) in zip(stresses, self._cycle.places) if own == part)
+
+    def safety(self, part: str) -> Extreme | None:
+        """Return k_b over the largest combined stress of a part, dead centre and cycle; None without k_b or stress."""
+        allowable = self.shaft.allowable_bending
+        worst = _highest(one for one in (self.sigma_dc(part), self.sigma_max(part)) if one)
+        if allowable is None or worst is None or every(worst.value == 0):
+            return None
+        return Extreme(allowable / where(worst.value == 0, math.nan, worst.value), worst.degrees)
+
+    # bearings
+
+    def load_max(self, bearing: str) -> Extreme:
+        """Return the largest force in N on `pin`, `A` or `B` over the cycle."""
+        return self._largest[2 * len(self._cycle.places) + ("pin", "A", "B").index(bearing)]
+
+    def pressure_max(self, bearing: str) -> Extreme | None:
+        """Return the largest force over the projected area d l in Pa; None where diameter or length is not given."""
+        size, load = self._size(bearing), self.load_max(bearing)
+        return Extreme(load.value / size[0] / size[1], load.degrees) if size else None
+
+    def pressure_mean(self, bearing: str) -> Any:
+        """Return p_m in Pa: the mean over time, at uniform rotation, of the force over the projected area.
+
+        On the pin that of the rod force alone, as G has it for its bounds on p_m v.
+        """
+        size = self._size(bearing)
+        return self._mean_loads[bearing] / size[0] / size[1] if size else None
+
+    @cached_property
+    def _mean_loads(self) -> dict[str, Any]:
+        """Means over time in N of the forces on both bearings, and of the force of the rod on the pin."""
+        means = self._cycle.pieces.mean(self._cycle.values[-3:])
+        return dict(zip(("A", "B", "pin"), map(self.forces.told, means)))
+
+    def pressure_velocity(self, bearing: str) -> Any:
+        """Return k = p_m v in W/m² with the surface speed v = π d n (G); None without a speed of rotation."""
+        pressure, speed, size = self.pressure_mean(bearing), self.machine.speed, self._size(bearing)
+        return None if pressure is None or speed is None or size is None else pressure * math.pi * size[0] * speed
+
+    def _size(self, bearing: str) -> tuple[Any, Any] | None:
+        shaft = self.shaft
+        if bearing == "pin":
+            return shaft.pin_diameter, shaft.pin_length
+        given = shaft.journal_diameter is not None and shaft.journal_length is not None
+        return (shaft.journal_diameter, shaft.journal_length) if given else None
+
+    @property
+    def pin_pressure_dc(self) -> Any:
+        """Full force over the projected area of the pin in Pa (G: P_max/(d_z l_z))."""
+        return abs(self.full_force.value) / self.shaft.pin_diameter / self.shaft.pin_length
+
+    @cached_property
+    def equilibrium_residual(self) -> Any:
+        """What is left of the sums of forces and moments on the shaft, over the sizes of their terms, at its worst."""
+        pieces, state = self.forces.pieces, self.forces.samples
+        body = self._body(on_pin(state), state.angle, pieces)
+        return self.forces.told(pieces.largest(equilibrium_residual(body, np.asarray(state.torque))))
+
+
+def _at(place: Place, degrees: Any, number: Any = None) -> Place:
+    """Return a place at a crank angle; with the stresses in one of several states, where one is meant."""
+    if number is None:
+        return place._replace(degrees=degrees)
+    stresses = (place.compression, place.bending_in_plane, place.bending_out_of_plane, place.torsion, place.normal)
+    own = (one if one is None or not np.ndim(one) else float(one[number]) for one in stresses)
+    return Place(place.part, place.name, place.alpha, *own, degrees)
+
+
+def _highest(found: Iterable[Extreme]) -> Extreme | None:
+    """Return the one with the largest value, the first of equal ones; None of none."""
+    every_one = list(found)
+    return largest(*every_one) if every_one else None
