@@ -408,7 +408,8 @@ def _with_magnitude(pieces: Pieces, load: ComplexArray, others: Sequence[Array] 
         size, beside = np.hypot(*found[:2]), some.of(largest)
         towards = _directed(found[0] + 1j * found[1], beside)
         weakest = np.min(size, axis=0, where=size > _NO_LOAD * beside, initial=math.inf)
-        weight = np.minimum(1.0, _SURE * weakest / np.maximum(beside, _TINIEST))
+        share = np.where(np.isfinite(weakest), weakest / np.maximum(beside, _TINIEST), 0.0)
+        weight = np.minimum(1.0, _SURE * share)
         return np.stack((size, towards.real * weight, towards.imag * weight))
 
     fine, values, parts = resolved(pieces, parts, parts[:2], np.stack((largest, largest)), both)
@@ -471,8 +472,8 @@ def unreached(machine: Indices, start: Array, end: Array, count: int) -> tuple[A
     order = np.argsort(begins, axis=1)
     begins, ends = (np.take_along_axis(one, order, axis=1) for one in (begins, ends))
     begins, ends = (np.concatenate([one + turn for turn in (-360.0, 0.0, 360.0)], axis=1) for one in (begins, ends))
-    with np.errstate(invalid="ignore"):
-        gaps = np.nan_to_num(begins[:, 1:] - np.maximum.accumulate(ends, axis=1)[:, :-1], posinf=0.0)
+    begins = np.where(np.isfinite(begins), begins, 0.0)  # beyond the last arc, which no longer count
+    gaps = begins[:, 1:] - np.maximum.accumulate(ends, axis=1)[:, :-1]
     gaps[(begins[:, 1:] <= 0) | (begins[:, 1:] > 360.0) | (gaps < 0)] = 0.0
     widest = np.argmax((gaps > 0) & (gaps > gaps.max(axis=1, keepdims=True) - _EQUAL), axis=1)
     row = np.arange(count)

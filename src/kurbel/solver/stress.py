@@ -168,7 +168,7 @@ def places(body: FreeBody) -> Iterator[Place]:
 
 def _flywheel_beyond(shaft: Crankshaft) -> bool:
     """Return whether the flywheel is in bearing B or beyond, by the first of the machines."""
-    return bool(np.ravel(shaft.flywheel_position)[0] >= 0)
+    return bool(np.ravel(shaft.b + shaft.flywheel_position >= shaft.b)[0])
 
 
 def _round(part: str, name: str, moments: Vector, torque: Any, diameter: Any) -> Place:
@@ -282,7 +282,7 @@ class CrankshaftStrength(Results):
 
         fine, values, _ = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
         if self.count is not None:
-            alike = (self.shaft.flywheel_position >= 0) == _flywheel_beyond(self.shaft)
+            alike = (self.shaft.b + self.shaft.flywheel_position >= self.shaft.b) == _flywheel_beyond(self.shaft)
             values = np.where(fine.of(np.broadcast_to(alike, self.count)), values, math.nan)
         return _Cycle(fine, tuple(names), values)
 
