@@ -273,4 +273,4 @@ def test_what_a_machine_does_not_need_is_not_imported(tmp_path: Path, monkeypatc
     assert "kurbel.report.rows" in modules_after(["forces", str(plain), "-f", "csv", "--over", "x"])
     plain.write_text("{speed: 60 rpm, crank: 400 mm, rod: 2 m}", encoding="utf-8")
     monkeypatch.setitem(sys.modules, "numpy", None)  # whoever imports it fails
-    assert modules_after(["check", str(plain)]).isdisjoint({"kurbel.solver.turning", "kurbel.solver.strength"})
+    assert modules_after(["check", str(plain)]).isdisjoint({"kurbel.solver.turning", "kurbel.solver.stress"})

@@ -22,7 +22,7 @@ from kurbel.report.forces import forces_report
 from kurbel.report.frame import Frame, report_of
 from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
-from kurbel.solver.bearings.bearing import Bearing
+from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.brake import Brake
 from kurbel.solver.cylinder.forces import CylinderForces

@@ -49,7 +49,7 @@ NEEDLESS = (
             "solver.pressure.trace",
         ),
     ),
-    (["flywheel", BOTH_CRANKS], ("machine.turning", "solver.turning.coupling", "solver.strength", "solver.balance")),
+    (["flywheel", BOTH_CRANKS], ("machine.turning", "solver.turning.coupling", "solver.stress", "solver.balance")),
 )
 
 

@@ -37,7 +37,7 @@ NOT_OF_A_BARE_MACHINE = (
         "kurbel.numerics.collocation",
         "kurbel.solver.turning.speed",
     ),
-    *("kurbel.solver.turning.flywheel", "kurbel.solver.turning.coupling", "kurbel.solver.strength", "kurbel.accuracy"),
+    *("kurbel.solver.turning.flywheel", "kurbel.solver.turning.coupling", "kurbel.solver.stress", "kurbel.accuracy"),
     *(
         "kurbel.machine.indicator",
         "kurbel.machine.masses",

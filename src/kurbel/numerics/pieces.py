@@ -189,11 +189,16 @@ class Pieces:
         # differences of right angles are exact
         from_low = (self.right_angle - source.right_angle[row] - behind) + (self.offset - source.offset[row])
         from_low = from_low - source.cycle * np.rint((from_low + self.half - source.half[row]) / source.cycle)
-        places = (from_low + self.half * (1 + self.rule.nodes[:, None])) / source.half[row] - 1
-        series = np.moveaxis(source.rule.series @ values, -2, 0)
-        return series_at(
-            series[..., None, row], np.broadcast_to(np.clip(places, -1, 1), values.shape[:-2] + places.shape)
-        )
+        width = source.half[row]
+        whole = (np.abs(from_low) < _NO_WIDTH) & (np.abs(self.half - width) < _NO_WIDTH) & (self.rule is source.rule)
+        found = np.empty((*values.shape[:-2], *self.degrees.shape))
+        if whole.any():
+            found[..., whole] = values[..., row[whole]]
+        part, of = ~whole, row[~whole]
+        places = (from_low[part] + self.half[part] * (1 + self.rule.nodes[:, None])) / width[part] - 1
+        series = np.moveaxis(source.rule.series @ values[..., of], -2, 0)[..., None, :]
+        found[..., part] = series_at(series, np.broadcast_to(np.clip(places, -1, 1), found[..., part].shape))
+        return found
 
     def at(self, values: Array, machine: Indices, degrees: Array) -> Array:
         """Return values (n,) at angles (n,) in degrees, just after a jump, of these machines."""
@@ -226,13 +231,16 @@ class Pieces:
         """
         largest = self.largest(values)
         size = largest if size is None else np.maximum(size, largest)
-        (high, high_at), (low, low_at) = (self._highest(sign * values, size) for sign in (1, -1))
+        (high, high_at), (low, low_at) = (self.highest(sign * values, size) for sign in (1, -1))
         # beside the values of the other sign this is the rounding of a dead centre, which is no float
         high, low = (np.where(np.abs(one) > ROUNDING * size, one, 0.0) for one in (high, low))
         return Extremes(high + 0.0, high_at, 0.0 - low, low_at)
 
-    def _highest(self, values: Array, size: Array) -> tuple[Array, Array]:
-        """Return the largest values, and the angles of the first summits that reach them, each (q, machines)."""
+    def highest(self, values: Array, size: Array) -> tuple[Array, Array]:
+        """Return the largest values, and the angles of the first summits that reach them, each (q, machines).
+
+        values: (q, nodes, pieces); size: (q, machines), of the terms of which they are sums.
+        """
         tops, bottoms = values.max(axis=1), values.min(axis=1)
         best = np.maximum.reduceat(tops, self.first, axis=-1)
         # a piece exceeds its samples by less than they differ
@@ -273,7 +281,8 @@ def common(parts: Sequence[tuple[Pieces, Number]], cycle: float) -> Pieces:
     first = parts[0][0]
     if len(parts) == 1 and not np.any(parts[0][1]) and first.cycle == cycle:
         return first
-    machine, degrees = [], []
+    machine: list[Indices] = []
+    degrees: list[Array] = []
     for one, later in parts:
         starts = np.mod(one.low + one.of(later), one.cycle)
         degrees += [starts + turn for turn in np.arange(0.0, cycle, one.cycle)]
@@ -292,34 +301,55 @@ def resolved(
     """
     cuts = [pieces.zeros(one, beside) for one, beside in zip(kinks, size)]
     cut = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*cuts))))
-
-    def sample(some: Pieces) -> Array:
-        found = parts if some is pieces else some.carried(parts, pieces)
-        return np.concatenate((function(some, found), found))
-
-    fine, values = refined(cut, sample, smooth=len(parts))
-    return fine, values[: -len(parts)], values[-len(parts) :]
+    return _halved_until_smooth(cut, function, cut.carried(parts, pieces))
 
 
-def refined(pieces: Pieces, sample: Sample, smooth: int = 0) -> tuple[Pieces, Array]:
-    """Return pieces halved until the samples are polynomials on them, and the samples there, (q, nodes, pieces).
+def refined(pieces: Pieces, sample: Sample) -> tuple[Pieces, Array]:
+    """Return pieces halved until the samples are polynomials on them, and the samples there, (q, nodes, pieces)."""
+    nothing = np.zeros((0, *pieces.degrees.shape))
+    return _halved_until_smooth(pieces, lambda some, _: sample(some), nothing)[:2]
 
-    smooth: how many quantities at the end need no look, since they have polynomials there.
+
+def highest(pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Array]) -> tuple[Array, Array]:
+    """Return the largest values of functions ≥ 0 of the parts, and the first angles in degrees, each (q, machines).
+
+    parts: (p, nodes, pieces), with polynomials on the pieces. Only pieces that may hold the largest value are halved.
     """
-    todo, size, done, found = pieces, np.zeros(()), [], []
+    fine, values, _ = _halved_until_smooth(pieces, function, parts, only_highest=True)
+    return fine.highest(values, fine.largest(values))
+
+
+def _halved_until_smooth(
+    pieces: Pieces, function: Callable[[Pieces, Array], Array], parts: Array, only_highest: bool = False
+) -> tuple[Pieces, Array, Array]:
+    """Return pieces halved until the functions of parts are polynomials on them, the functions, and the parts there.
+
+    only_highest: where they may have their largest values; the other pieces are left out.
+    """
+    todo, size, done, found, carried = pieces, np.zeros(()), [], [], []
     while True:
-        values = sample(todo)
-        judged = values[: len(values) - smooth]
-        top = np.zeros((len(judged), pieces.count))
-        np.maximum.at(top, (slice(None), todo.machine), np.abs(judged).max(axis=1))
+        values = function(todo, parts)
+        top = np.zeros((len(values), pieces.count))
+        np.maximum.at(top, (slice(None), todo.machine), np.abs(values).max(axis=1))
         size = np.maximum(size, top)
+        judged = values
+        if only_highest:
+            may = ~(2 * values.max(axis=1) - values.min(axis=1) < (1 - _REPEATED) * size[:, todo.machine])
+            some = may.any(axis=0)
+            todo, values, parts = todo.taken(some), values[..., some], parts[..., some]
+            judged = values * may[:, None, some]
         rough = _rough(todo, judged, size)
         done.append(todo.taken(~rough))
         found.append(values[..., ~rough])
+        carried.append(parts[..., ~rough])
         if not rough.any():
             break
+        nodes, halved = len(pieces.rule.nodes), 2 * np.count_nonzero(rough)
+        halves = (pieces.rule.halving @ parts[..., rough]).reshape(len(parts), 2, nodes, halved // 2)
+        parts = halves.transpose(0, 2, 3, 1).reshape(len(parts), nodes, halved)
         todo = todo.halved(rough)
-    return joined(done, found)
+    order, whole = joined(done)
+    return whole, np.concatenate(found, axis=-1)[..., order], np.concatenate(carried, axis=-1)[..., order]
 
 
 def _rough(pieces: Pieces, values: Array, size: Array) -> Flags:
@@ -332,17 +362,16 @@ def _rough(pieces: Pieces, values: Array, size: Array) -> Flags:
     return rough & ((share > _NOISE) | ~crowd[pieces.machine])
 
 
-def joined(parts: list[Pieces], values: list[Array]) -> tuple[Pieces, Array]:
-    """Return pieces that together fill the cycles as one row, in order, and their samples (…, pieces)."""
+def joined(parts: list[Pieces]) -> tuple[Indices | slice, Pieces]:
+    """Return pieces that together fill the cycles as one row, and the order in which they are there."""
     one = parts[0]
     if len(parts) == 1:
-        return one, values[0]
+        return slice(None), one
     columns = [(part.right_angle, part.offset, part.half, part.machine) for part in parts]
     right_angle, offset, half, machine = (np.concatenate(column) for column in zip(*columns))
     order = np.lexsort((offset, right_angle, machine))
     ordered = right_angle[order], offset[order], half[order], machine[order]
-    whole = Pieces(*ordered, one.count, one.cycle, one.rule)
-    return whole, np.concatenate(values, axis=-1)[..., order]
+    return order, Pieces(*ordered, one.count, one.cycle, one.rule)
 
 
 def _first_summits(

@@ -81,13 +81,12 @@ class Size(NamedTuple):
 
 
 class _Cycle(NamedTuple):
-    """The cycle of a load in N on pieces: its magnitude, the load as its two surfaces see it, and how fast they rub."""
+    """The cycle of a load in N on pieces: its magnitude, and the load as its two surfaces see it."""
 
     pieces: Pieces
     load: Array
     on_journal: ComplexArray
     on_shell: ComplexArray
-    rate: Array
 
 
 class Bearing(Results):
@@ -113,8 +112,13 @@ class Bearing(Results):
         """Return the load in N of the only machine in each of its frames at angles (n,) in degrees."""
 
     @abstractmethod
-    def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray, Array]:
-        """Return pieces of the cycle, the load in the frames of journal and shell, and their rate over that of the crank."""
+    def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray]:
+        """Return pieces of the cycle, and the load in the frames of journal and shell."""
+
+    @property
+    @abstractmethod
+    def _rate(self) -> tuple[Extreme, Any]:
+        """By how much its surfaces turn on one another, over that of the crank: the largest, and the mean over time."""
 
     @property
     @abstractmethod
@@ -135,10 +139,9 @@ class Bearing(Results):
 
     @cached_property
     def _cycle(self) -> _Cycle:
-        pieces, journal, shell, rate = self._sampled()
-        fine, load, parts = _with_magnitude(pieces, journal, (shell.real, shell.imag, rate))
-        x, y, shell_x, shell_y, rate = parts
-        return _Cycle(fine, load, x + 1j * y, shell_x + 1j * shell_y, rate)
+        pieces, journal, shell = self._sampled()
+        fine, load, (x, y, shell_x, shell_y) = _with_magnitude(pieces, journal, (shell.real, shell.imag))
+        return _Cycle(fine, load, x + 1j * y, shell_x + 1j * shell_y)
 
     def _told(self, values: Array) -> Any:
         """Return what was found of every machine (machines,), or of the only one as a number."""
@@ -149,23 +152,24 @@ class Bearing(Results):
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
         return np.append(self._cycle.pieces.low, self._cycle.pieces.cycle)
 
+    def _extremes_of(self, pieces: Pieces, values: Array) -> Extremes:
+        """Return the extremes of samples (nodes, pieces)."""
+        high, high_at, low, low_at = (self._told(part[0]) for part in pieces.extremes(values[None]))
+        return Extremes(Extreme(high, high_at), Extreme(low, low_at))
+
     @cached_property
-    def _extremes(self) -> tuple[Extremes, Extremes]:
-        """Those of the load in N, and of the rate."""
-        found = self._cycle.pieces.extremes(np.stack((self._cycle.load, self._cycle.rate)))
-        high, high_at, low, low_at = (list(map(self._told, part)) for part in found)
-        load, rate = map(Extremes, map(Extreme, high, high_at), map(Extreme, low, low_at))
-        return load, rate
+    def _load(self) -> Extremes:
+        return self._extremes_of(self._cycle.pieces, self._cycle.load)
 
     @property
     def load_max(self) -> Extreme:
         """Largest load in N."""
-        return self._extremes[0].largest
+        return self._load.largest
 
     @property
     def load_min(self) -> Extreme:
         """Smallest load in N."""
-        return self._extremes[0].smallest
+        return self._load.smallest
 
     @cached_property
     def load_mean(self) -> Any:
@@ -245,15 +249,13 @@ class Bearing(Results):
         """Largest speed in m/s of one surface on the other."""
         if self._surface_speed is None:
             return None
-        rate = self._extremes[1].peak
+        rate = self._rate[0]
         return Extreme(rate.value * self._surface_speed, rate.degrees)
 
-    @cached_property
+    @property
     def rubbing_speed_mean(self) -> Any:
         """Mean speed in m/s of one surface on the other."""
-        if self._surface_speed is None:
-            return None
-        return self._told(self._cycle.pieces.mean(np.abs(self._cycle.rate))) * self._surface_speed
+        return None if self._surface_speed is None else self._rate[1] * self._surface_speed
 
     @property
     def pressure_velocity(self) -> Any:
@@ -276,7 +278,7 @@ class RodPin(Bearing):
         self._pin = pin
         self.journal = "throw" if pin == "crank_pin" else "engine"
 
-    def _of(self, state: State, bank: Any) -> dict[str, ComplexArray]:
+    def _in_frames(self, state: State, bank: Any) -> dict[str, ComplexArray]:
         """Return the load in N in each of its frames; bank: e^{iγ} of its stroke line. N > 0 presses toward −i."""
         sin_psi, cos_psi = state.rod_angle or (0.0, 1.0)
         if self._pin == "crank_pin":
@@ -290,17 +292,28 @@ class RodPin(Bearing):
 
     def _frames(self, degrees: Array, within: Array) -> dict[str, ComplexArray]:
         (own,) = self.followed
-        return self._of(own.at(degrees, within), unit_vector(own.cylinder.bank_angle))
+        return self._in_frames(own.at(degrees, within), unit_vector(own.cylinder.bank_angle))
 
-    def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray, Array]:
+    @cached_property
+    def _pieces(self) -> Pieces:
         (own,) = self.followed
-        source, state = own.forces.pieces, own.forces.samples
-        frames = self._of(state, source.of(unit_vector(own.cylinder.bank_angle)))
+        return common([(own.forces.pieces, own.position)], _cycle_of(own.drive.machine))
+
+    def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray]:
+        (own,) = self.followed
+        frames = self._in_frames(own.forces.samples, own.forces.pieces.of(unit_vector(own.cylinder.bank_angle)))
+        journal, shell = _carried(self._pieces, own, frames[self.journal], frames[self.shell])
+        return self._pieces, journal, shell
+
+    @cached_property
+    def _rate(self) -> tuple[Extreme, Any]:
+        """Of the crank pin 1 + dψ/dφ, of the crosshead pin dψ/dφ; see `Bearing`."""
+        (own,) = self.followed
+        state = own.forces.samples
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
-        rate = 1 + slope if self._pin == "crank_pin" else slope
-        pieces = common([(source, own.position)], _cycle_of(own.drive.machine))
-        return pieces, *_carried(pieces, own, frames[self.journal], frames[self.shell], rate)
+        (rate,) = _carried(self._pieces, own, 1 + slope if self._pin == "crank_pin" else slope)
+        return self._extremes_of(self._pieces, rate).peak, self._told(self._pieces.mean(np.abs(rate)))
 
     @property
     def work_rubbing(self) -> Any:
@@ -361,10 +374,15 @@ class MainBearing(Bearing):
         force = self._force(ShaftLine(machine, machine.crankshaft), pins, pieces.degrees)
         return pieces, np.broadcast_to(force, pieces.degrees.shape)
 
-    def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray, Array]:
+    def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray]:
         pieces, force = self._on_pieces(rubbed=True)
         angle = CrankAngle.at_nodes(pieces)
-        return pieces, force, force * (angle.cos + 1j * angle.sin), np.ones(pieces.degrees.shape)
+        return pieces, force, force * (angle.cos + 1j * angle.sin)
+
+    @property
+    def _rate(self) -> tuple[Extreme, Any]:
+        nowhere: Any = np.zeros(self.count or 1)
+        return Extreme(1.0, self._told(nowhere)), 1.0
 
     @cached_property
     def work_rubbing(self) -> Any:
@@ -416,7 +434,7 @@ def _with_magnitude(pieces: Pieces, load: ComplexArray, others: Sequence[Array] 
     return fine, values[0], parts
 
 
-def _directed(load: ComplexArray, largest: Array) -> ComplexArray:
+def _directed(load: ComplexArray, largest: Any) -> ComplexArray:
     """Return the directions of a load as unit vectors; where it vanishes at an end, that to which the inner nodes lead.
 
     load: in N, complex, (nodes, pieces); largest: of the machine of each piece.
@@ -433,7 +451,7 @@ def _directed(load: ComplexArray, largest: Array) -> ComplexArray:
 def _outward(count: int) -> Array:
     """Return what extrapolates values at the inner nodes of so many to both ends, (2, count − 2)."""
     inner = rule(count).nodes[1:-1]
-    return chebyshev(np.array([-1.0, 1.0]), count - 2) @ np.linalg.inv(chebyshev(inner, count - 2))  # type: ignore[no-any-return]
+    return chebyshev(np.array([-1.0, 1.0]), count - 2) @ np.linalg.inv(chebyshev(inner, count - 2))
 
 
 # what of a surface no load reaches

@@ -28,6 +28,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -176,8 +177,12 @@ def equilibrium_residual(body: FreeBody, torque: Array) -> Array:
     above is used.
     """
     shaft, r = body.shaft, body.crank
-    acting = ((body.pin, 1.0, 0.0, 0.0), (body.A, -1.0, -r, shaft.place_A), (body.B, -1.0, -r, shaft.b))
-    acting = (*acting, (body.weight, 1.0, -r, shaft.b + shaft.flywheel_position))
+    acting: tuple[tuple[Vector, float, Any, Any], ...] = (
+        (body.pin, 1.0, 0.0, 0.0),
+        (body.A, -1.0, -r, shaft.place_A),
+        (body.B, -1.0, -r, shaft.b),
+        (body.weight, 1.0, -r, shaft.b + shaft.flywheel_position),
+    )
     # along T, toward the pin and along z; the shaft turns about −z: from the pin toward T
     forces = np.stack([_in_space(sign * force.T, -sign * force.D, 0.0, torque) for force, sign, *_ in acting])
     points = np.stack([_in_space(0.0, toward_pin, z, torque) for *_, toward_pin, z in acting])
@@ -192,7 +197,7 @@ def _in_space(x: Any, y: Any, z: Any, like: Array) -> Array:
 def _left_over(terms: Array) -> Array:
     """Return |sum| over the sum of the sizes, for terms (m, …, 3); 0 where there are none."""
     size, rest = np.linalg.norm(terms, axis=-1).sum(axis=0), np.linalg.norm(terms.sum(axis=0), axis=-1)
-    return np.divide(rest, size, out=np.zeros_like(rest), where=size > 0)
+    return np.asarray(np.divide(rest, size, out=np.zeros_like(rest), where=size > 0))
 
 
 # the throws along a shaft
@@ -232,14 +237,14 @@ class ShaftLine:
         self._like_first: Any = True
         throws = throws_of(machine.cylinders, self._decided)
         found = sorted(throws, key=lambda throw: float(_of_first(throw.place)))
-        for one, following in zip(found, found[1:]):
+        for one, following in pairwise(found):
             self._decided(one.place <= following.place)
         self.bearings = 2 if shaft.overhung else len(found) + 1
         weights = tuple(self._turning(found))
         self.throws = tuple(self._supported(number, found, weights) for number in range(len(found)))
 
     def _decided(self, condition: Any) -> Any:
-        """Return what holds for the first of the machines; the others of which something else does have other throws."""
+        """Return what holds for the first of the machines; others for which something else does have other throws."""
         self._like_first = self._like_first & (condition == _of_first(condition))
         return _of_first(condition)
 

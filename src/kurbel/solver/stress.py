@@ -40,7 +40,7 @@ from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.variants import taken
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.extreme import Extreme, Extremes, chosen, largest
-from kurbel.numerics.pieces import Pieces, resolved
+from kurbel.numerics.pieces import Pieces, highest, resolved
 from kurbel.solver.figures import Columns, Results
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.pins import on_pin
@@ -191,11 +191,15 @@ def _web(part: str, shaft: Crankshaft, loads: WebLoads) -> Iterator[Place]:
 
 
 class _Cycle(NamedTuple):
-    """The cycle on pieces: Bach's and von Mises' stress of every place, and the loads, (q, nodes, pieces)."""
+    """The cycle on pieces on which the loads are polynomials, and no stress has a kink.
+
+    pin: D and T of the whole force on the pin in N, and what the rod itself adds to D; loads: magnitudes in N of the
+    forces on the pin, A and B, and of the rod force. Each (…, nodes, pieces).
+    """
 
     pieces: Pieces
-    places: tuple[tuple[str, str], ...]
-    values: Array
+    pin: Array
+    loads: Array
 
 
 class CrankshaftStrength(Results):
@@ -231,12 +235,13 @@ class CrankshaftStrength(Results):
         return self.forces.drive.rod_pull if some(self.forces.drive.rod_pull != 0) else None
 
     def _body(self, pin: Vector, angle: CrankAngle, pieces: Pieces | None = None) -> FreeBody:
-        """Return the throw under a force on its pin at crank angles, those of the nodes of pieces or one of each machine."""
+        """Return the throw under a force on its pin at crank angles: of the nodes of pieces, or one of each machine."""
         spread = pieces if self.count is not None else None
         machine = self.machine if spread is None else taken(self.machine, spread.machine)
-        (cylinder,) = machine.cylinders
+        (cylinder,), shaft = machine.cylinders, machine.crankshaft
+        assert shaft is not None
         weight = flywheel_weight(machine, cylinder, angle)
-        return FreeBody(machine.crankshaft, cylinder.mechanism.crank, pin, weight)
+        return FreeBody(shaft, cylinder.mechanism.crank, pin, weight)
 
     def _running(self, state: State) -> FreeBody:
         return self._body(on_pin(state), state.angle)
@@ -267,24 +272,38 @@ class CrankshaftStrength(Results):
         ends = (body.before_pin.T - body.pin.T, body.before_pin.T + body.pin.T)
         kinked = (*body.pin, *body.A, body.force_beyond_pin, in_plane, twist, *ends, state.D)
         kinks = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in kinked])
-        names: list[tuple[str, str]] = []
 
         def magnitudes(some: Pieces, found: Array) -> Array:
             body = self._body(Vector(*found[:2]), CrankAngle.at_nodes(some), some)
-            every_place = tuple(places(body))
-            names[:] = [(one.part, one.name) for one in every_place]
             loads = (found[:2], body.A, body.B, (found[0] + found[2], found[1]))
-            return np.stack(
-                [one.combined for one in every_place]
-                + [one.von_mises for one in every_place]
-                + [np.hypot(*load) for load in loads]
-            )
+            return np.stack([np.hypot(*load) for load in loads])
 
-        fine, values, _ = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
+        fine, loads, found = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
+        return _Cycle(fine, found, loads)
+
+    @cached_property
+    def _parts(self) -> tuple[str, ...]:
+        """The part of every place."""
+        return tuple(place.part for place in self.at_dead_centre)
+
+    @cached_property
+    def _largest(self) -> list[Extreme]:
+        """The largest of Bach's stresses over the cycle, then of von Mises', of every place."""
+
+        def stresses(some: Pieces, pin: Array) -> Array:
+            found = tuple(places(self._body(Vector(*pin[:2]), CrankAngle.at_nodes(some), some)))
+            return np.stack([*(one.combined for one in found), *(one.von_mises for one in found)])
+
+        found, degrees = highest(self._cycle.pieces, self._cycle.pin, stresses)
         if self.count is not None:
             alike = (self.shaft.b + self.shaft.flywheel_position >= self.shaft.b) == _flywheel_beyond(self.shaft)
-            values = np.where(fine.of(np.broadcast_to(alike, self.count)), values, math.nan)
-        return _Cycle(fine, tuple(names), values)
+            found = np.where(np.broadcast_to(alike, self.count), found, math.nan)
+        return [Extreme(*map(self.forces.told, pair)) for pair in zip(found, degrees)]
+
+    @cached_property
+    def _largest_loads(self) -> list[Extreme]:
+        found = self._cycle.pieces.extremes(self._cycle.loads[:3])
+        return [Extreme(*map(self.forces.told, pair)) for pair in zip(found.largest, found.largest_at)]
 
     def _refuse_overflow(self, body: FreeBody) -> None:
         """Raise UsageError where the stresses of the only machine are no finite numbers."""
@@ -300,12 +319,6 @@ class CrankshaftStrength(Results):
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
         return np.append(self._cycle.pieces.low, self._cycle.pieces.cycle)
-
-    @cached_property
-    def _largest(self) -> list[Extreme]:
-        """The largest of Bach's stresses, then of von Mises', of every place, and of the loads on pin, A and B."""
-        found = self._cycle.pieces.extremes(self._cycle.values[:-1])
-        return [Extreme(*map(self.forces.told, pair)) for pair in zip(found.largest, found.largest_at)]
 
     # the two positions of the book, and the worst of the cycle
 
@@ -340,21 +353,22 @@ class CrankshaftStrength(Results):
         """Every place in the firing dead centre under the full force of the pressure: T = 0, D = P cos(φ+ψ)/cos ψ."""
         force, degrees = self.full_force
         angle = CrankAngle.of(degrees)
-        body = self._body(Vector(force * self.forces.drive.mechanism.radial(angle), 0.0), angle)
+        radial: Any = self.forces.drive.mechanism.radial(angle)
+        body = self._body(Vector(force * radial, 0.0), angle)
         return tuple(_at(place, degrees) for place in places(body))
 
     @cached_property
     def at_largest_torque(self) -> tuple[Place, ...]:
         """Every place in the position of the largest torque, of the only machine."""
         torque, degrees = self.largest_torque
-        body, side = self._beside([degrees])
+        body, _ = self._beside([degrees])
         nearest = np.abs(body.pin.T - torque).argmin()
         return tuple(_at(place, degrees, nearest) for place in places(body))
 
     @cached_property
     def at_worst(self) -> tuple[Place, ...]:
         """Every place at the crank angle of the running machine at which its own combined stress is largest."""
-        worst = self._largest[: len(self._cycle.places)]
+        worst = self._largest[: len(self._parts)]
         body, side = self._beside([one.degrees for one in worst])
         found = []
         for number, (place, one) in enumerate(zip(places(body), worst)):
@@ -375,12 +389,11 @@ class CrankshaftStrength(Results):
 
     def sigma_max(self, part: str) -> Extreme | None:
         """Return the largest combined stress of a part in Pa over the cycle, and its crank angle."""
-        return _highest(one for one, (own, _) in zip(self._largest, self._cycle.places) if own == part)
+        return _highest(one for one, own in zip(self._largest, self._parts) if own == part)
 
     def mises_max(self, part: str) -> Extreme | None:
         """Return the largest stress of a part after von Mises in Pa over the cycle, and its crank angle."""
-        stresses = self._largest[len(self._cycle.places) :]
-        return _highest(one for one, (own, _) in zip(stresses, self._cycle.places) if own == part)
+        return _highest(one for one, own in zip(self._largest[len(self._parts) :], self._parts) if own == part)
 
     def safety(self, part: str) -> Extreme | None:
         """Return k_b over the largest combined stress of a part, dead centre and cycle; None without k_b or stress."""
@@ -394,7 +407,7 @@ class CrankshaftStrength(Results):
 
     def load_max(self, bearing: str) -> Extreme:
         """Return the largest force in N on `pin`, `A` or `B` over the cycle."""
-        return self._largest[2 * len(self._cycle.places) + ("pin", "A", "B").index(bearing)]
+        return self._largest_loads[("pin", "A", "B").index(bearing)]
 
     def pressure_max(self, bearing: str) -> Extreme | None:
         """Return the largest force over the projected area d l in Pa; None where diameter or length is not given."""
@@ -412,7 +425,7 @@ class CrankshaftStrength(Results):
     @cached_property
     def _mean_loads(self) -> dict[str, Any]:
         """Means over time in N of the forces on both bearings, and of the force of the rod on the pin."""
-        means = self._cycle.pieces.mean(self._cycle.values[-3:])
+        means = self._cycle.pieces.mean(self._cycle.loads[1:])
         return dict(zip(("A", "B", "pin"), map(self.forces.told, means)))
 
     def pressure_velocity(self, bearing: str) -> Any:
@@ -444,9 +457,8 @@ def _at(place: Place, degrees: Any, number: Any = None) -> Place:
     """Return a place at a crank angle; with the stresses in one of several states, where one is meant."""
     if number is None:
         return place._replace(degrees=degrees)
-    stresses = (place.compression, place.bending_in_plane, place.bending_out_of_plane, place.torsion, place.normal)
-    own = (one if one is None or not np.ndim(one) else float(one[number]) for one in stresses)
-    return Place(place.part, place.name, place.alpha, *own, degrees)
+    own = {name: float(each[number]) for name, each in place._asdict().items() if np.ndim(each)}
+    return place._replace(**own, degrees=degrees)
 
 
 def _highest(found: Iterable[Extreme]) -> Extreme | None:
