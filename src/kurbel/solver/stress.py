@@ -90,7 +90,7 @@ def bach(sigma: Any, tau: Any, alpha: Any) -> Any:
     sigma: normal stress in Pa, its magnitude counts; tau: shear stress in Pa; alpha: α₀ = k_b/(1.3 k_d), see
     `bach_factor`. Source: G, "Resultierende Beanspruchung nach Bach".
 
-    >>> round(bach(100.0, 0.0, 1.0), 9), round(bach(0.0, 100.0, 1.0), 9)
+    >>> float(bach(100.0, 0.0, 1.0)), float(bach(0.0, 100.0, 1.0))
     (100.0, 130.0)
     """
     return 0.35 * abs(sigma) + 0.65 * np.hypot(sigma, 2 * alpha * tau)
@@ -457,7 +457,7 @@ def _at(place: Place, degrees: Any, number: Any = None) -> Place:
     """Return a place at a crank angle; with the stresses in one of several states, where one is meant."""
     if number is None:
         return place._replace(degrees=degrees)
-    own = {name: float(each[number]) for name, each in place._asdict().items() if np.ndim(each)}
+    own: dict[str, Any] = {name: float(each[number]) for name, each in place._asdict().items() if np.ndim(each)}
     return place._replace(**own, degrees=degrees)
 
 
