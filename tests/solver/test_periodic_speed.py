@@ -21,10 +21,10 @@ from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.machine.turning import Load
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.numerics.collocation import Unsettled, periodic
+from kurbel.numerics.collocation_old import Unsettled, periodic
 from kurbel.numerics.elements import rule
 from kurbel.solver.case import Case
-from kurbel.solver.turning.flywheel import MachineTurning
+from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedEquation
 from machines import STEAM_CARD
 from representative import few

@@ -20,7 +20,7 @@ class Rule:
         self.nodes, self.weights = _nodes_and_weights(count)
         self.series = np.linalg.inv(chebyshev(self.nodes, count))
         self.slope = slope_of_series(count)
-        self.area = chebyshev(self.nodes, count + 1) @ _integral_of_series(count) @ self.series
+        self.area = chebyshev(self.nodes, count + 1) @ integral_of_series(count) @ self.series
         self.halving = chebyshev(np.concatenate((self.nodes - 1, self.nodes + 1)) / 2, count) @ self.series
         self.places = np.sin(np.pi / 2 * np.linspace(-1, 1, 2 * count + 1))
         self.scan = chebyshev(self.places, count) @ self.series
@@ -41,9 +41,11 @@ def chebyshev(places: Array, count: int) -> Array:
 
 def series_at(series: Array, places: Array) -> Array:
     """Return Σ c_k T_k(t) by Clenshaw's recurrence; series (k, …), places (…,)."""
-    ahead, last = np.zeros_like(places), np.zeros_like(places)
-    for coefficient in series[:0:-1]:
-        ahead, last = coefficient + 2 * places * ahead - last, ahead
+    ahead, last, twice = np.zeros_like(places), np.zeros_like(places), 2 * places
+    for coefficient in series[:0:-1]:  # c + 2 t b₁ − b₂, without new arrays
+        np.subtract(coefficient, last, out=last)
+        last += twice * ahead
+        ahead, last = last, ahead
     return np.asarray(series[0] + places * ahead - last)
 
 
@@ -68,7 +70,7 @@ def slope_of_series(count: int) -> Array:
     return matrix
 
 
-def _integral_of_series(count: int) -> Array:
+def integral_of_series(count: int) -> Array:
     """Return what turns Chebyshev coefficients into those of the integral from −1 on."""
     matrix = np.zeros((count + 1, count))
     for k in range(count):

@@ -1,11 +1,11 @@
 """Weights that take away what is unbalanced: counterweights in one plane and in two, and balance shafts."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
-from kurbel.frozen import frozen
 from kurbel.numerics.enclosing import Circle, PlaneCurve, carried, smallest_circle
 from kurbel.solver.balance.circles import Circles
 from kurbel.solver.weights import Weight
@@ -16,7 +16,7 @@ _ROUNDS = 100
 _REAL = 1e-12  # what a lever in m may miss the plane of its force by, by rounding
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Least:
     """The counterweight that leaves the least largest product: it, complex in kg m, and what is left."""
 

@@ -1,13 +1,14 @@
 """Free force and free moment of a machine over ω², order by order: what every throw and every weight gives to them."""
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
-from kurbel.frozen import frozen, values_of
+from kurbel.machine.variants import values_of
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.fourier import coefficients
@@ -20,7 +21,7 @@ _MOST = 24
 """Orders that are told one by one; a rod hardly longer than the crank has thousands, which die away ever so slowly."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Products:
     """Terms of a free force over ω² in kg m, by order: forward, backward, complex (terms, K); places in m or None."""
 
@@ -47,7 +48,7 @@ def _sum(terms: ComplexArray) -> ComplexArray:
     return np.asarray(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0)))
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Free:
     """The force over ω² in kg m and the moment over ω² in kg m², None where a place along the shaft is not known.
 

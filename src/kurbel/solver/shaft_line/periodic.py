@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.numerics.collocation import Periodic, periodic
+from kurbel.numerics.collocation_old import Periodic, periodic
 from kurbel.numerics.elements import Elements
 from kurbel.numerics.grid import cut_equally
 from kurbel.solver.shaft_line.chain import Chain

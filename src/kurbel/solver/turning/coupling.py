@@ -12,7 +12,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
-from kurbel.numerics.collocation import Periodic, Unsettled
+from kurbel.numerics.collocation_old import Periodic, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
 from kurbel.numerics.search import Extremes, Sampled, extremes

@@ -9,7 +9,7 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError
 from kurbel.machine import Machine
-from kurbel.numerics.collocation import Standstill, Unsettled
+from kurbel.numerics.collocation_old import Standstill, Unsettled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import rising_root
 from kurbel.numerics.search import Extremes

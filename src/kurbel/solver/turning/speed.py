@@ -14,7 +14,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.errors import UsageError
-from kurbel.numerics.collocation import Periodic, Standstill, periodic
+from kurbel.numerics.collocation_old import Periodic, Standstill, periodic
 from kurbel.numerics.elements import Elements
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.numerics.collocation import Standstill, Unsettled
+from kurbel.numerics.collocation_old import Standstill, Unsettled
 from kurbel.solver.turning.machine_effort import MachineEffort
 from kurbel.solver.turning.speed import (
     ConstantLoad,
