@@ -345,7 +345,7 @@ def _halved_until_smooth(
 
     only_highest: where they may have their largest values; the other pieces are left out.
     """
-    todo, size, done, found, carried = pieces, np.zeros(()), [], [], []
+    todo, size, done, found = pieces, np.zeros(()), [], []
     while True:
         values = function(todo, parts)
         top = np.zeros((len(values), pieces.count))
@@ -361,16 +361,15 @@ def _halved_until_smooth(
         if not (done or rough.any()):
             return todo, values, parts
         done.append(todo.taken(~rough))
-        found.append(values[..., ~rough])
-        carried.append(parts[..., ~rough])
+        found.append(np.concatenate((values[..., ~rough], parts[..., ~rough])))
         if not rough.any():
             break
         nodes, halved = len(pieces.rule.nodes), 2 * np.count_nonzero(rough)
         halves = (pieces.rule.halving @ parts[..., rough]).reshape(len(parts), 2, nodes, halved // 2)
         parts = halves.transpose(0, 2, 3, 1).reshape(len(parts), nodes, halved)
         todo = todo.halved(rough)
-    order, whole = joined(done)
-    return whole, np.concatenate(found, axis=-1)[..., order], np.concatenate(carried, axis=-1)[..., order]
+    whole, both = joined(done, found)
+    return whole, both[: len(values)], both[len(values) :]
 
 
 def _rough(pieces: Pieces, values: Array, size: Array) -> Flags:
@@ -383,16 +382,17 @@ def _rough(pieces: Pieces, values: Array, size: Array) -> Flags:
     return rough & ((share > _NOISE) | ~crowd[pieces.machine])
 
 
-def joined(parts: list[Pieces]) -> tuple[Indices | slice, Pieces]:
-    """Return pieces that together fill the cycles as one row, and the order in which they are there."""
+def joined(parts: list[Pieces], values: list[Array]) -> tuple[Pieces, Array]:
+    """Return pieces that together fill the cycles as one row, in order, and their samples (…, pieces)."""
     one = parts[0]
     if len(parts) == 1:
-        return slice(None), one
+        return one, values[0]
     columns = [(part.right_angle, part.offset, part.half, part.machine) for part in parts]
     right_angle, offset, half, machine = (np.concatenate(column) for column in zip(*columns))
     order = np.lexsort((offset, right_angle, machine))
     ordered = right_angle[order], offset[order], half[order], machine[order]
-    return order, Pieces(*ordered, one.count, one.cycle, one.rule)
+    whole = Pieces(*ordered, one.count, one.cycle, one.rule)
+    return whole, np.concatenate(values, axis=-1)[..., order]
 
 
 def _first_summits(
