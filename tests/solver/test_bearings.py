@@ -13,6 +13,8 @@ from scipy.integrate import fixed_quad
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.machine.batch import batch
+from kurbel.machine.variants import Lot
 from kurbel.machine_file import loads
 from kurbel.solver.bearings import Bearing, unreached
 from kurbel.solver.case import Case
@@ -290,6 +292,21 @@ def test_work_of_friction_is_that_of_the_energy_balance() -> None:
     assert pin.work_rubbing == work_of("crank_pin")
     assert crosshead.work_rubbing == work_of("crosshead_pin")
     assert A.work_rubbing + B.work_rubbing == pytest.approx(work_of("journals"), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["one, a share", "four in line, planes", "vee", "two overhung"])
+def test_many_machines_have_what_each_has_alone(name: str) -> None:
+    texts = [MACHINES[name].replace("1800 rpm", f"{speed} rpm") for speed in (1500, 1800, 2400)]
+    alone = [loads(text.replace("a: 60 mm", f"a: {a} mm")) for text, a in zip(texts, (60, 58, 64))]
+    together = Case(batch([(Lot(machine, (0,)), np.array([0])) for machine in alone]), len(alone))
+    for number, machine in enumerate(alone):
+        for part, one in zip(together.bearings.parts, Case(machine).bearings.parts, strict=True):
+            found = part.key_values()
+            for id, figure in one.key_values().items():
+                value = np.broadcast_to(found[id].value, len(alone))[number]
+                assert value == pytest.approx(figure.value, rel=1e-12, abs=1e-9), (part.name, id)
+                if figure.degrees is not None:
+                    assert found[id].degrees[number] == pytest.approx(figure.degrees, abs=1e-6)
 
 
 def test_every_bearing_has_its_own_key_values() -> None:

@@ -14,9 +14,11 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.batch import batch
 from kurbel.machine.indicator import Card, Indicator
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
+from kurbel.machine.variants import Lot
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
@@ -271,6 +273,19 @@ def test_allowable_ratio_weighs_torsion_of_the_webs() -> None:
         assert other._replace(alpha=one.alpha) == one
         twisted_web = one.part.startswith("web") and one.torsion is not None
         assert (other.combined > one.combined) if twisted_web else (other.combined == one.combined)
+
+
+def test_many_shafts_have_what_each_has_alone() -> None:
+    alone = [
+        strength(**ENGINES["lying"] | {"crankshaft": shaft(**HEAVY | {"a": a, "allowable_bending": 60e6}), "rpm": rpm})
+        for a, rpm in ((0.4, 200), (0.45, 120), (0.38, 300))
+    ]
+    lots = [(Lot(one.machine, (0,)), np.array([0])) for one in alone]
+    together = Case(batch(lots), len(alone)).stress.key_values()
+    for number, one in enumerate(alone):
+        for id, figure in one.key_values().items():
+            value = np.broadcast_to(together[id].value, len(alone))[number]
+            assert value == pytest.approx(figure.value, rel=1e-12, abs=1e-14), id
 
 
 def test_four_stroke_cycle_is_scanned_whole() -> None:
