@@ -345,7 +345,9 @@ def _halved_until_smooth(
 
     only_highest: where they may have their largest values; the other pieces are left out.
     """
-    todo, size, done, found = pieces, np.zeros(()), [], []
+    todo, size = pieces, np.zeros(())
+    done: list[Pieces] = []
+    found: list[Array] = []
     while True:
         values = function(todo, parts)
         top = np.zeros((len(values), pieces.count))
