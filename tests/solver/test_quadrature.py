@@ -18,7 +18,7 @@ from kurbel.machine.trace import Trace
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from kurbel.solver.stress import CrankshaftStrength
 from machines import one_cylinder
 from random_cylinders import cylinders
 from shafts import shaft

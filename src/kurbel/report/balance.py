@@ -17,7 +17,7 @@ from kurbel.solver.balance.circles import Circles
 from kurbel.solver.balance.free import Free
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.case import Case
-from kurbel.solver.shaft.weights import Weight
+from kurbel.solver.weights import Weight
 
 _Entry = tuple[Quantity, "list[float | None]"]
 _DIGITS = 4

@@ -17,11 +17,11 @@ from kurbel.solver.forces import CylinderForces
 
 if TYPE_CHECKING:
     from kurbel.solver.balance.machine_balance import MachineBalance
-    from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+    from kurbel.solver.bearings import ShaftBearings
     from kurbel.solver.effort import TurningEffort
     from kurbel.solver.flywheel import MachineTurning
     from kurbel.solver.harmonics import MachineOrders
-    from kurbel.solver.strength.crankshaft import CrankshaftStrength
+    from kurbel.solver.stress import CrankshaftStrength
     from kurbel.solver.torsion import ShaftVibration
 
 
@@ -75,16 +75,16 @@ class Case(Shown):
     @cached_property
     def stress(self) -> CrankshaftStrength:
         """Strength of the crankshaft. Raises UsageError where the machine has none that can be examined."""
-        from kurbel.solver.strength.crankshaft import CrankshaftStrength
+        from kurbel.solver.stress import CrankshaftStrength
 
-        return CrankshaftStrength(self.machine, self.old_cylinders)
+        return CrankshaftStrength(self.machine, self.cylinders)
 
     @cached_property
     def bearings(self) -> ShaftBearings:
         """Loads on pins and main bearings. Raises UsageError where nothing loads them."""
-        from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+        from kurbel.solver.bearings import ShaftBearings
 
-        return ShaftBearings(self.machine, self.old_cylinders)
+        return ShaftBearings(self.machine, self.cylinders)
 
     @cached_property
     def balance(self) -> MachineBalance:

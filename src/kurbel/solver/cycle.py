@@ -18,9 +18,10 @@ from kurbel.errors import NoSolutionError
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import NARROWEST, Pieces, refined
+from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.motion import Motion
+from kurbel.solver.pins import on_crosshead_pin, on_pin
 from kurbel.solver.state import State
 
 _SURE = 4.0
@@ -70,6 +71,10 @@ class SampledCylinder:
         if drive.pin_friction is None:
             return pieces
         self._refuse_locking_on(pieces)
+        # where the load of a pin passes through zero, its magnitude has a kink
+        unrubbed = drive.on(pieces).unrubbed
+        passed = [pieces.zeros(load) for load in (on_pin(unrubbed).T, on_crosshead_pin(unrubbed).D)]
+        pieces = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*passed))))
         pieces, (sense, *_) = refined(pieces, lambda some: self._values_on(some, ("guide_sense", *_RUBBING)))
         return pieces.split(pieces.zeros(sense)) if drive.rubs else pieces
 

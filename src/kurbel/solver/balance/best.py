@@ -8,7 +8,7 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.numerics.enclosing import Circle, PlaneCurve, carried, smallest_circle
 from kurbel.solver.balance.circles import Circles
-from kurbel.solver.shaft.weights import Weight
+from kurbel.solver.weights import Weight
 
 _SETTLED = 1e-13  # the radius, relatively
 _AT_ONCE = 6  # summits; of a curve that is a circle all points are

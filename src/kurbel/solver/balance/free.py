@@ -13,7 +13,7 @@ from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.fourier import coefficients
 from kurbel.solver.balance.circles import Circles
-from kurbel.solver.shaft.weights import OwnThrow, Weight
+from kurbel.solver.weights import OwnThrow, Weight
 
 _SHOWN = 1e-9
 """Orders that are smaller in every throw and weight, beside the largest one, are not told."""

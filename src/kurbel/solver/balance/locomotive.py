@@ -7,7 +7,7 @@ from functools import cached_property
 from kurbel.machine.balance import Locomotive
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.balance.machine_balance import MachineBalance
-from kurbel.solver.shaft.weights import Weight, levered
+from kurbel.solver.weights import Weight, levered
 
 
 class LocomotiveBalance:

@@ -19,8 +19,8 @@ from kurbel.solver.balance.free import Free, Products, of_book, of_throws
 from kurbel.solver.balance.rolling import rolling_moment, swirls
 from kurbel.solver.cylinder.forces import CylinderForces
 from kurbel.solver.figures import Columns, Results, passed_on
-from kurbel.solver.shaft.weights import OwnThrow, Weight, counterweights_of, middle_of, shafts_of, wheels_of
 from kurbel.solver.turning.torques import Sum
+from kurbel.solver.weights import OwnThrow, Weight, counterweights_of, middle_of, shafts_of, wheels_of
 
 if TYPE_CHECKING:
     from kurbel.solver.balance.locomotive import LocomotiveBalance

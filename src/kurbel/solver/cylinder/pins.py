@@ -16,9 +16,9 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
 from kurbel.mechanisms import fan
 from kurbel.numerics.grid import Grid
+from kurbel.numerics.jet import Jet
 from kurbel.numerics.search import Sampled, curves
-from kurbel.solver.shaft.line import ShaftLine, shaft_obstacle
-from kurbel.solver.shaft.statics import Vector, norm
+from kurbel.solver.shaft import ShaftLine, Vector, shaft_obstacle
 
 if TYPE_CHECKING:
     from kurbel.solver.cylinder.drive import Drive
@@ -143,6 +143,16 @@ def bends_of_size(grid: Grid, forces: Callable[[Array, Array], list[tuple[Sample
         for one in np.flatnonzero(beside < _NEAR).tolist():
             found += (float(degrees[one]), *fan(float(degrees[one]), math.degrees(beside[one])))
     return np.asarray(np.mod(found, grid.breaks[-1]))
+
+
+def norm(first: Any, second: Any) -> Any:
+    """Return √(x² + y²); a jet that vanishes gets the slope 0, where the root has a kink and no slope."""
+    square = first * first + second * second
+    if not isinstance(square, Jet):
+        return np.sqrt(square) if isinstance(square, np.ndarray) else math.sqrt(square)
+    root = np.sqrt(square.value)
+    slope = np.divide(square.slope, 2 * root, out=np.zeros_like(root), where=root > 0)
+    return Jet(root, slope)
 
 
 def on_pin(state: "State") -> Vector:
