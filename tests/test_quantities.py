@@ -20,8 +20,7 @@ from kurbel.mechanisms import Mechanism, every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.forces import forces_report
 from kurbel.report.frame import Frame, report_of
-from kurbel.solver.balance.locomotive import LocomotiveBalance
-from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
+from kurbel.solver.balance import BookBalance, LocomotiveBalance, MachineBalance
 from kurbel.solver.bearings.bearing import Bearing
 from kurbel.solver.case import Case
 from kurbel.solver.cylinder.brake import Brake

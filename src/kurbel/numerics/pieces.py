@@ -238,13 +238,16 @@ class Pieces:
         """
         largest = self.largest(values)
         size = largest if size is None else np.maximum(size, largest)
-        (high, high_at), (low, low_at) = (self._highest(sign * values, size) for sign in (1, -1))
+        (high, high_at), (low, low_at) = (self.highest(sign * values, size) for sign in (1, -1))
         # beside the values of the other sign this is the rounding of a dead centre, which is no float
         high, low = (np.where(np.abs(one) > ROUNDING * size, one, 0.0) for one in (high, low))
         return Extremes(high + 0.0, high_at, 0.0 - low, low_at)
 
-    def _highest(self, values: Array, size: Array) -> tuple[Array, Array]:
-        """Return the largest values, and the angles of the first summits that reach them, each (q, machines)."""
+    def highest(self, values: Array, size: Array) -> tuple[Array, Array]:
+        """Return the largest values, and the angles of the first summits that reach them, each (q, machines).
+
+        size: (q, machines), of the quantities; see `extremes`.
+        """
         tops, bottoms = values.max(axis=1), values.min(axis=1)
         best = np.maximum.reduceat(tops, self.first, axis=-1)
         # a piece exceeds its samples by less than they differ

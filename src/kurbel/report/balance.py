@@ -13,9 +13,7 @@ from kurbel.report.frame import Frame, Subject
 from kurbel.report.pin_notes import pin_notes
 from kurbel.report.shown import place_table, shown_column
 from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
-from kurbel.solver.balance.circles import Circles
-from kurbel.solver.balance.free import Free
-from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
+from kurbel.solver.balance import BookBalance, Circles, Free, MachineBalance
 from kurbel.solver.case import Case
 from kurbel.solver.shaft.weights import Weight
 
@@ -79,7 +77,7 @@ def _notes(balance: MachineBalance) -> Iterable[str]:
         yield _higher(balance.free, balance.omega * balance.omega)
     if balance.counterweights or balance.machine.balance_shafts:
         yield "Counterweights and shafts of the file count in all that is free; the best weights stand in their place."
-    if balance.roll:
+    if balance.rolls:
         yield "M_roll is −M of kurbel flywheel, less what turns the masses themselves about the shaft."
 
 
@@ -140,7 +138,7 @@ def _pair(vector: Circles, order: int) -> tuple[complex, complex]:
 
 def _shares(vector: Circles, orders: Iterable[int]) -> list[float | None]:
     squares = abs(vector.forward) ** 2 + abs(vector.backward) ** 2
-    whole = float(squares.sum())
+    whole = vector.power
     return [float(squares[order - 1]) / whole if whole else None for order in orders]
 
 

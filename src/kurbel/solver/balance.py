@@ -1,0 +1,982 @@
+"""Balancing: what the moving masses do to the frame, order by order, and the weights that take it away.
+
+The unbalanced (shaking) force is minus the sum of mass times acceleration of all moving parts (d'Alembert), at uniform
+rotation. It is a complex number in the plane square to the shaft, everywhere over ω², so that it is in kg m:
+
+      F_y ↑   ∕ stroke line of a cylinder, at its bank angle γ      β    angle by which its crank follows crank 1
+          │ ∕                                                       m, m_rot  mass to and fro, mass at the crank pin
+    shaft O────→ F_x  stroke line of cylinder 1, outward            z, z_0    place along the shaft, of the moments
+
+    F = Σ (m x″(φ − β) + m_rot R e^{i(φ − β)}) e^{iγ}     all angles in the sense of rotation, x″ = d²x/dφ²
+    M = Σ (z − z_0) F                                     the vector turned back by 90°, so that it points as forces do
+    F = Σ f_n e^{inφ} + g_n e^{−inφ}                      circles of order n with the rotation and against it
+    u n² e^{±inφ}                                         pull of a weight u, mass times radius, that turns n times
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, cached_property, lru_cache, partial
+from itertools import combinations
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array, ComplexArray, Flags, Indices
+from kurbel.crank_angle import CrankAngle, unit_vector
+from kurbel.errors import UsageError
+from kurbel.frozen import values_of
+from kurbel.machine import Machine
+from kurbel.machine.balance import Locomotive
+from kurbel.machine.variants import taken
+from kurbel.mechanisms import Mechanism
+from kurbel.numerics.arithmetic import some, sqrt, unless_cancelled, where
+from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.lobatto import chebyshev, slope_of_series
+from kurbel.numerics.pieces import Angles, Pieces, refined
+from kurbel.solver.effort import Term, TurningEffort
+from kurbel.solver.figures import Columns, Results
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.shaft.weights import (
+    OwnThrow,
+    Weight,
+    counterweights_of,
+    levered,
+    middle_of,
+    shafts_of,
+    wheels_of,
+)
+from kurbel.solver.state import State
+
+_ORDERS = 64
+"""Orders that are circles; a rod with L/R < 1.17 has more, which are sampled together."""
+_SHOWN = 1e-9
+"""Of the largest order: smaller ones are not listed."""
+_MOST = 24
+"""Orders that are listed; a rod hardly longer than the crank has thousands, which die away slowly."""
+_LONGEST = 2**20
+"""Samples of a turn from which such orders are counted at most."""
+_ROUNDING = 1e-14
+"""Of a squared length: by what it changes by rounding."""
+_EPS = float(np.finfo(float).eps)
+_REAL = 1e-12
+"""By what a direction, or a lever in m, may miss another by rounding."""
+
+Curvature = Callable[[Mechanism, CrankAngle], Any]
+"""x″ = d²x/dφ² in m of a mechanism."""
+
+
+# the waves of one mechanism
+
+
+@dataclass(frozen=True, eq=False)
+class Waves:
+    """x″ = 2 Re Σ c_n e^{inφ} + rest of a mechanism; orders: c_n in m, n = 1 to 64, (64,) or (64, machines).
+
+    short: whether the rod is so short that there is a rest, or of which machines (machines,).
+    """
+
+    mechanism: Mechanism
+    curvature: Curvature
+    orders: ComplexArray
+    short: Any
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, curvature: Curvature, count: int | None) -> Waves:
+        """Return the waves by 256 equal angles of the turn, of short rods by their means over refined pieces."""
+        samples = 4 * _ORDERS
+        angle = CrankAngle.of(np.arange(samples)[:, None] * (360.0 / samples))
+        values = np.broadcast_to(curvature(mechanism, angle), (samples, count or 1))
+        found = _told_apart(np.fft.rfft(values, axis=0) / samples, np.abs(values).max(axis=0))
+        short = found[_ORDERS + 1 :].any(axis=0)
+        orders = found[1 : _ORDERS + 1]
+        if short.any():
+            rows = np.flatnonzero(short)
+            orders[:, rows] = _means(mechanism if count is None else taken(mechanism, rows), curvature, len(rows))
+        return cls(mechanism, curvature, *((orders[:, 0], bool(short[0])) if count is None else (orders, short)))
+
+    def rest(self, angle: CrankAngle, machine: Indices | None) -> Array:
+        """Return what is left of x″ in m at crank angles (…, n) of the only machine, or of these machines (n,)."""
+        if machine is None:
+            mechanism, orders, short = self.mechanism, self.orders, self.short
+        else:
+            mechanism, orders, short = taken(self.mechanism, machine), self.orders[:, machine], self.short[machine]
+        waves = _turned(orders, orders.conj(), angle.cos + 1j * angle.sin)
+        return np.where(short, self.curvature(mechanism, angle) - waves.real, 0.0)
+
+
+def _told_apart(orders: ComplexArray, size: Any) -> ComplexArray:
+    """Return orders (…, n) without what is rounding of a size (n,), cosines and sines each: even is without sines."""
+    keep = [np.where(np.abs(part) > _EPS * size, part, 0.0) for part in (orders.real, orders.imag)]
+    return np.asarray(keep[0] + 1j * keep[1])
+
+
+def _means(mechanism: Mechanism, curvature: Curvature, count: int) -> ComplexArray:
+    """Return c_n = mean of x″ e^{−inφ}, (64, count), by pieces narrow enough for the waves, halved where x″ bends."""
+
+    def sample(pieces: Pieces) -> Array:
+        values = curvature(taken(mechanism, pieces.machine), CrankAngle.at_nodes(pieces))
+        return np.broadcast_to(values, (1, *pieces.degrees.shape))
+
+    pieces, (values,) = refined(_equal_pieces(_ORDERS, count), sample)
+    angle = CrankAngle.at_nodes(pieces)
+    back, wave, found = angle.cos - 1j * angle.sin, values.astype(complex), []
+    for _ in range(_ORDERS):
+        wave = wave * back
+        found.append(pieces.mean(wave))
+    return _told_apart(np.array(found), 16 * pieces.mean(np.abs(values)))
+
+
+def _equal_pieces(parts: int, count: int) -> Pieces:
+    """Return a turn of every machine in so many equal pieces, a multiple of 8."""
+    breaks = np.arange(parts) * (360.0 / parts)
+    return Pieces.between(Angles(np.repeat(np.arange(count), parts), np.tile(breaks, count)), count, 360.0)
+
+
+def _turned(forward: ComplexArray, backward: ComplexArray, turn: ComplexArray) -> ComplexArray:
+    """Return Σ f_n e^{inφ} + g_n e^{−inφ} (…, n); forward, backward: (64,) or (64, n); turn: e^{iφ} (…, n)."""
+    whole, power, reached = np.zeros_like(turn), turn, 1
+    twice = turn * turn
+    for order in (_used(forward) | _used(backward)).nonzero()[0] + 1:
+        power = power if order == reached else power * (twice if order == reached + 2 else turn ** (order - reached))
+        reached = order
+        whole = whole + forward[order - 1] * power + backward[order - 1] * power.conj()
+    return whole
+
+
+def _used(orders: ComplexArray) -> Flags:
+    """Return which orders (64,) are there, in any machine."""
+    return np.asarray((orders != 0).reshape(len(orders), -1).any(axis=1))
+
+
+class Rest(NamedTuple):
+    """What a short rod adds to the force beside its circles, factor · rest(φ − late); numbers of the machines."""
+
+    waves: Waves
+    factor: Any
+    late: Any
+
+
+# a vector that repeats after a turn
+
+
+class Circles:
+    """F(φ) = Σ f_n e^{inφ} + g_n e^{−inφ} (+ rests); forward, backward: f and g in kg m, or kg m², (64,).
+
+    Of a batch they are (64, machines).
+    """
+
+    def __init__(self, forward: ComplexArray, backward: ComplexArray, rests: Sequence[Rest] = ()) -> None:
+        self.forward, self.backward, self.rests = forward, backward, tuple(rests)
+
+    def turned_by(self, weight: Any) -> Circles:
+        """Return the sum of this and a vector that turns once with φ."""
+        forward = self.forward.copy()
+        forward[0] += weight
+        return Circles(forward, self.backward, self.rests)
+
+    def at(self, degrees: Array) -> ComplexArray:
+        """Return the vectors (n,) of one machine at angles (n,) in degrees; what cancels is exactly 0."""
+        size = np.abs(self.forward).sum() + np.abs(self.backward).sum()
+        orders = np.flatnonzero(_used(self.forward) | _used(self.backward))
+        turned = unit_vector(np.multiply.outer(np.asarray(degrees, float), orders + 1))
+        # either sense by itself, so that what is mirrored cancels to the last digit
+        found = turned @ self.forward[orders] + turned.conj() @ self.backward[orders]
+        found = np.asarray(unless_cancelled(found, size))
+        for waves, factor, late in self.rests:
+            found = found + factor * waves.rest(CrankAngle.of(np.asarray(degrees - late)), None)
+        return found
+
+    def on(self, pieces: Pieces) -> ComplexArray:
+        """Return the vectors at the nodes of pieces, (nodes, pieces)."""
+        batch = self.forward.ndim > 1
+        angle = CrankAngle.at_nodes(pieces)
+        sides = (one[:, pieces.machine] if batch else one for one in (self.forward, self.backward))
+        found = _turned(*sides, angle.cos + 1j * angle.sin)
+        for waves, factor, late in self.rests:
+            own = CrankAngle.at_nodes(_behind(pieces, pieces.of(late)))
+            found = found + pieces.of(factor) * waves.rest(own, pieces.machine if batch else None)
+        return found
+
+    @property
+    def power(self) -> float:
+        """Mean square of the length over a turn, of one machine: the sum of the squares of all circles (Parseval)."""
+        if not self.rests:
+            return float((np.abs(self.forward) ** 2 + np.abs(self.backward) ** 2).sum())
+        pieces, found = sampled([self])
+        return float(pieces.mean(np.abs(found[0]) ** 2)[0])
+
+    @property
+    def rest(self) -> Circles:
+        """What it is beside its circles."""
+        return Circles(0 * self.forward, 0 * self.backward, self.rests)
+
+
+def _behind(pieces: Pieces, late: Any) -> Pieces:
+    """Return the pieces as a crank counts them that follows by an angle in degrees; no digit at 90° is lost."""
+    quarter = 90.0 * np.rint(np.asarray(late) / 90.0)
+    return replace(pieces, right_angle=pieces.right_angle - quarter, offset=pieces.offset - (late - quarter))
+
+
+def sampled(vectors: Sequence[Circles], count: int | None = None, parts: int = 8) -> tuple[Pieces, ComplexArray]:
+    """Return a turn in pieces on which vectors and their squares are polynomials, and them, (q, nodes, pieces).
+
+    parts: of the turn at least, a multiple of 8.
+    """
+
+    def sample(pieces: Pieces) -> ComplexArray:
+        found = np.stack([one.on(pieces) for one in vectors])
+        return np.concatenate((found, np.abs(found) ** 2))
+
+    pieces, found = refined(_equal_pieces(parts, count or 1), sample)
+    return pieces, found[: len(vectors)]
+
+
+def largest(pieces: Pieces, vectors: ComplexArray) -> tuple[Array, Array]:
+    """Return the largest lengths of vectors (q, nodes, pieces), and the first angles in degrees with them, (q, n)."""
+    squares = vectors.real**2 + vectors.imag**2
+    size = pieces.largest(squares)
+    first = squares[:, 0, pieces.first]
+    above = squares - first[:, None, pieces.machine]
+    # a length that never changes rises and falls by rounding
+    above = np.where((pieces.largest(above) > _ROUNDING * size)[:, None, pieces.machine], above, 0.0)
+    top, degrees = pieces.highest(above, size)
+    return np.sqrt(np.maximum(first + top, 0.0)), degrees
+
+
+# the force and the moment of all that moves
+
+
+class Terms(NamedTuple):
+    """What throws and weights give to the force: forward, backward (terms, 64), of a batch (terms, 64, machines).
+
+    places: of each term along the shaft in m, None: not known; rests: what short rods add, with the row of the term.
+    """
+
+    forward: ComplexArray
+    backward: ComplexArray
+    places: tuple[Any, ...]
+    rests: tuple[tuple[int, Rest], ...] = ()
+
+    @classmethod
+    def of(cls, throws: Sequence[OwnThrow], curvature: Curvature, count: int | None) -> Terms:
+        """Return what throws give, masses to and fro and at the pin; of equal mechanisms one is computed."""
+        shape = () if count is None else (count,)
+        known: dict[object, Waves] = {}
+        orders, forward, backward, rests = np.arange(1, _ORDERS + 1), [], [], []
+        for row, throw in enumerate(throws):
+            waves = _known(known, throw.mechanism, curvature, count)
+            behind, factor = np.multiply.outer(orders, np.broadcast_to(throw.late, shape)), throw.mass
+            forward.append(waves.orders * factor * unit_vector(throw.bank - behind))
+            backward.append(waves.orders.conj() * factor * unit_vector(throw.bank + behind))
+            if some(waves.short):
+                rests.append((row, Rest(waves, factor * unit_vector(throw.bank), throw.late)))
+        places = tuple(throw.place for throw in throws)
+        own = cls(np.array(forward), np.array(backward), places, tuple(rests))
+        return own.with_weights(throw.weight(throw.rotating) for throw in throws)
+
+    def with_weights(self, weights: Iterable[Weight]) -> Terms:
+        """Return them with further weights, each of which turns `order` times and pulls with u n²."""
+        given = [one for one in weights if some(one.product != 0)]
+        more = np.zeros((2, len(given), *self.forward.shape[1:]), complex)
+        for row, one in enumerate(given):
+            more[int(one.order < 0), row, abs(one.order) - 1] = one.product * one.order**2
+        forward, backward = (np.concatenate(pair) for pair in zip(self[:2], more))
+        return Terms(forward, backward, (*self.places, *(one.place for one in given)), self.rests)
+
+    def summed(self, levers: Sequence[Any] | None = None) -> Circles:
+        """Return the sum, each term times its lever; what cancels is exactly 0."""
+        times = np.ones(len(self.places)) if levers is None else levers
+        column = np.array([np.broadcast_to(one, self.forward.shape[2:]) for one in times])[:, None]
+        sides = (terms if levers is None else terms * column for terms in (self.forward, self.backward))
+        sums = (np.asarray(unless_cancelled(one.sum(axis=0), np.abs(one).sum(axis=0))) for one in sides)
+        return Circles(*sums, [rest._replace(factor=rest.factor * times[row]) for row, rest in self.rests])
+
+
+def _known(known: dict[object, Waves], mechanism: Mechanism, curvature: Curvature, count: int | None) -> Waves:
+    """Return the waves of a mechanism, computed once."""
+    values = values_of(mechanism).values()
+    key = (type(mechanism), *(one.tobytes() if isinstance(one, np.ndarray) else one for one in values))
+    if key not in known:
+        known[key] = Waves.of(mechanism, curvature, count)
+    return known[key]
+
+
+class Free:
+    """The unbalanced force over ω² in kg m, and the moment in kg m², None where a place is not known.
+
+    z_0: from where moments are taken in m, None: not known.
+    """
+
+    def __init__(self, terms: Terms, z_0: Any) -> None:
+        self._terms = terms
+        self.force = terms.summed()
+        known = z_0 is not None and all(place is not None for place in terms.places)
+        self.moment = terms.summed([place - z_0 for place in terms.places]) if known else None
+
+    # what of it is listed, of one machine
+
+    @cached_property
+    def _sizes(self) -> Array:
+        """The size of each order in the term that has most of it, whether or not terms cancel."""
+        sizes = (np.abs(self._terms.forward) + np.abs(self._terms.backward)).max(axis=0)
+        for _, rest in self._terms.rests:
+            more = 2 * np.abs(rest.factor) * np.abs(_long_line(rest.waves, _SHOWN / 8))
+            sizes = np.pad(sizes, (0, max(0, len(more) - len(sizes))))
+            sizes[_ORDERS : len(more)] = np.maximum(sizes[_ORDERS : len(more)], more[_ORDERS:])
+        return sizes
+
+    @cached_property
+    def _all_orders(self) -> tuple[int, ...]:
+        return tuple((np.flatnonzero(self._sizes > _SHOWN * self._sizes.max()) + 1).tolist())
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """The lowest orders that some throw or weight has."""
+        return self._all_orders[:_MOST]
+
+    @property
+    def higher(self) -> tuple[int, ...]:
+        """The orders above these, as far as they are counted."""
+        return self._all_orders[_MOST:]
+
+    @property
+    def counted(self) -> bool:
+        """Whether all orders are counted."""
+        return len(self._sizes) < _LONGEST // 2
+
+    def at_most(self, vector: Circles) -> float:
+        """Return what the force or the moment of the higher orders is at most, whatever the angle."""
+        most = float(sum(np.abs(part[self.orders[-1] :]).sum() for part in (vector.forward, vector.backward)))
+        if vector.rests:
+            pieces = sampled([vector], parts=_ORDERS)[0]  # as narrow as the waves of what is left
+            most += float(largest(pieces, vector.rest.on(pieces)[None])[0][0, 0])
+        return most
+
+
+def _long_line(waves: Waves, least: float) -> ComplexArray:
+    """Return c_n of one machine as far as they are more than this share of the largest, n = 1, 2, …, to be counted."""
+    samples = 32 * _ORDERS
+    while True:
+        angle = CrankAngle.of(np.arange(samples) * (360.0 / samples))
+        found = np.fft.rfft(waves.curvature(waves.mechanism, angle))[1:] / samples
+        shown = np.flatnonzero(np.abs(found) > least * np.abs(found).max())
+        if samples == _LONGEST or shown[-1] < 3 * samples // 8:
+            return np.asarray(found)
+        samples *= 2
+
+
+def true_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
+    """Return d²x/dφ² in m."""
+    return mechanism.curvature(angle)
+
+
+def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
+    """Return d²x/dφ² in m of first order, R 291; the true one where there is no rod, None where the book has none."""
+    offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
+    return offer.factor(mechanism, angle) if offer else mechanism.curvature(angle)
+
+
+# the counterweight that leaves the least largest force
+
+_SETTLED = 1e-13
+"""Of the radius: by what points may stand beyond the circle."""
+_AS_ONE = 1e-9
+"""Share of a point in a circle that is 0 but for rounding."""
+_NEAR = 1e-4
+"""Of the radius: as near to the smallest circle leads the search among samples; Newton's method goes on from there."""
+_FLAT = 1e-9
+"""Of the terms: a curve whose distance from a centre bends less is itself a circle about it."""
+_ROUNDS = 60
+_SLOPES = tuple(slope_of_series(count) for count in (16, 15))
+
+
+class Least(NamedTuple):
+    """The counterweight in kg m, complex, that leaves the least largest force, and the force that it leaves."""
+
+    weight: Any
+    left: Circles
+
+
+class Enclosing(NamedTuple):
+    """Smallest circles round points (k, n): centre, complex, square of the radius (n,), and the share of each point.
+
+    shares: (k, n), of sum 1, 0 of points that do not carry the circle; Σ share · point is the centre.
+    """
+
+    centre: ComplexArray
+    square: Array
+    shares: Array
+
+
+@lru_cache
+def _choices(count: int) -> Indices:
+    """Return which points may carry a circle round so many: one, as (i, i, i), two, as (i, j, j), or three."""
+    alone, pairs = ([(i, i, i) for i in range(count)], [(i, j, j) for i, j in combinations(range(count), 2)])
+    return np.array([*alone, *pairs, *combinations(range(count), 3)]).T
+
+
+def smallest_circle(points: ComplexArray, more: Any = 0.0) -> Enclosing:
+    """Return the smallest circles round few points (k, n), for which max(|point − centre|² + more) is least.
+
+    A circle through three points with u = b − a, v = c − a has w = centre − a with 2 w·u = |u|² + more_b − more_a, and
+    so for v. It is the smallest of those carried by one, two or three points, between which it lies, that enclose all.
+
+    >>> smallest_circle(np.array([[0j], [2 + 0j], [1 + 0.5j]]))[:2]
+    (array([1.+0.j]), array([1.]))
+    """
+    choices, more = _choices(len(points)), np.broadcast_to(more, points.shape)
+    (a, b, c), (more_a, more_b, more_c) = points[choices], more[choices]
+    u, v = b - a, c - a
+    p, q = np.abs(u) ** 2 + (more_b - more_a), np.abs(v) ** 2 + (more_c - more_a)
+    alone, two = ((choices[i] == choices[2])[:, None] for i in (0, 1))
+    with np.errstate(all="ignore"):
+        area = (u.conj() * v).imag
+        along = np.where(alone, 0.0, p / (2 * np.abs(u) ** 2))
+        w = np.where(two, along * u, (p * v - q * u) / (2j * area))
+        of_b = np.where(two, along, (w.conj() * v).imag / area)
+        of_c = np.where(two, 0.0, (u.conj() * w).imag / area)
+        square = (np.abs(points[:, None] - (a + w)) ** 2 + more[:, None]).max(axis=0)
+        carried = np.minimum(1 - of_b - of_c, np.minimum(of_b, of_c)) >= -_AS_ONE
+    best = np.where(carried, square, np.inf).argmin(axis=0)
+    each = np.arange(points.shape[1])
+    owners, of_b, of_c = choices[:, best], of_b[best, each], of_c[best, each]
+    is_owner = owners[:, None] == np.arange(len(points))[:, None]
+    shares = (is_owner * np.array([1 - of_b - of_c, of_b, of_c])[:, None]).sum(axis=0)
+    return Enclosing((a + w)[best, each], square[best, each], shares)
+
+
+class ClosedCurve:
+    """A curve in the plane, complex, sampled on the pieces of a turn, (nodes, pieces), one of every machine (n,)."""
+
+    def __init__(self, pieces: Pieces, points: ComplexArray) -> None:
+        self.pieces, self.points = pieces, points
+        value = pieces.rule.series @ points
+        slope = _SLOPES[0] @ value / np.radians(pieces.half)
+        self._series = value.T, slope.T, (_SLOPES[1] @ slope / np.radians(pieces.half)).T
+
+    def at(self, degrees: Array) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """Return the points at angles (k, n) in degrees, with their first and second derivatives per radian."""
+        machine = np.broadcast_to(np.arange(self.pieces.count), degrees.shape)
+        row = self.pieces.holding(machine, degrees)
+        from_low = np.mod(degrees, self.pieces.cycle) - self.pieces.low[row]
+        waves = chebyshev(np.clip(from_low / self.pieces.half[row] - 1, -1, 1), 16)
+        value, slope, bend = ((one[row] * waves[..., : one.shape[1]]).sum(axis=-1) for one in self._series)
+        return value, slope, bend
+
+    def farthest(self, measure: Array) -> tuple[ComplexArray, Array]:
+        """Return the samples (n,) at which a measure (nodes, pieces) is largest, and their angles in degrees."""
+        pieces, tops = self.pieces, measure.max(axis=0)
+        best = np.maximum.reduceat(tops, pieces.first)
+        reached = np.flatnonzero(~(tops < best[pieces.machine]))  # of nan, too, there is one
+        column = reached[np.searchsorted(pieces.machine[reached], np.arange(pieces.count))]
+        node = measure[:, column].argmax(axis=0)
+        return self.points[node, column], pieces.degrees[node, column]
+
+    def enclosed_samples(self) -> Array:
+        """Return the angles (4, n) in degrees of four samples, of which two or three nearly carry the circle round all.
+
+        A circle round four samples grows as the farthest sample takes the place of one that does not carry it.
+        """
+        ways = (self.points.real, self.points.imag, -self.points.real, -self.points.imag)
+        points, degrees = (np.array(one) for one in zip(*map(self.farthest, ways)))
+        each = np.arange(points.shape[1])
+        for _ in range(_ROUNDS):
+            circle = smallest_circle(points)
+            far, far_at = self.farthest(np.abs(self.points - circle.centre[self.pieces.machine]))
+            if not (np.abs(far - circle.centre) ** 2 > circle.square * (1 + _NEAR)).any():
+                break
+            slot = circle.shares.argmin(axis=0)
+            points[slot, each], degrees[slot, each] = far, far_at
+        return degrees
+
+    def enclosed(self, degrees: Array) -> tuple[ComplexArray, Array, Array, Array]:
+        """Return centre and square of the radius (n,) of the smallest circle round the curve near four of its points.
+
+        degrees: of the points, (4, n); with the circle come those where the curve is farthest from the centre, and
+        their shares. Each point stays there as the centre z moves: with arm d = c − z and τ = |c′|² + d·c″ < 0
+
+            dφ = (c′·dz − d·c′)/τ      h(z) = |d|²/2 − (d·c′)²/2τ     h′ = −(d + c′dφ)     h″ = 1 − c′c′ᵀ/τ
+
+        and min max h is found by Newton's method: with the mean h″ of the carrying points, H = LLᵀ, it is in each step
+        the smallest circle round L⁻¹h′ with 2h − |L⁻¹h′|² more. It goes as fast where two points carry the circle.
+        """
+        circle = smallest_circle(self.at(degrees)[0])
+        centre, shares, size = circle.centre, circle.shares, np.sqrt(circle.square.max()) or 1.0
+        for _ in range(_ROUNDS):
+            points, slope, bend = self.at(degrees)
+            arm = points - centre
+            touching, speed, turn = (arm.conj() * slope).real, np.abs(slope) ** 2, (arm.conj() * bend).real
+            summit = speed + turn < -_FLAT * (speed + np.abs(turn))
+            yielding = np.where(summit, 1 / np.where(summit, speed + turn, 1.0), 0.0)
+            step = -touching * yielding
+            height, lean = np.abs(arm) ** 2 + touching * step, -(arm + slope * step)
+            xx, xy, yy = slope.real**2, slope.real * slope.imag, slope.imag**2
+            h_xx, h_xy, h_yy = (
+                one - (shares * part * yielding).sum(axis=0) for one, part in ((1, xx), (0, xy), (1, yy))
+            )
+            l_xx = np.sqrt(h_xx)
+            l_xy = h_xy / l_xx
+            l_yy = np.sqrt(h_yy - l_xy**2)
+            real = lean.real / l_xx
+            scaled = real + 1j * (lean.imag - l_xy * real) / l_yy
+            circle = smallest_circle(scaled, height - np.abs(scaled) ** 2)
+            shares, down = circle.shares, -circle.centre.imag / l_yy
+            moved = (-circle.centre.real - l_xy * down) / l_xx + 1j * down
+            centre = centre + moved
+            step = np.clip(step + (slope.conj() * moved).real * yielding, -0.2, 0.2)
+            degrees = np.mod(degrees + np.degrees(step), 360.0)
+            if max(np.abs(step).max(), np.abs(moved).max() / size) < 1e-7:
+                break
+        return centre, circle.square, degrees, shares
+
+
+def least_centres(
+    pieces: Pieces, curve: ComplexArray, even: Flags, others: ComplexArray
+) -> tuple[ComplexArray, Array, Array]:
+    """Return the centres (n,) of the smallest circles round closed curves c(φ), sampled on the pieces of a turn.
+
+    even: which curves (n,) are their own image about 0, their centre. With them the lengths of other vectors (q, nodes,
+    pieces), and last that of c less its centre, are searched together; see `largest`.
+    """
+    if even.all():
+        return np.zeros(pieces.count, complex), *largest(pieces, np.concatenate((others, [curve])))
+    closed = ClosedCurve(pieces, curve)
+    size, each = pieces.largest(curve), np.arange(pieces.count)
+    degrees = closed.enclosed_samples()
+    for _ in range(_ROUNDS):
+        centre, square, degrees, shares = closed.enclosed(degrees)
+        centre = np.where(even | (np.abs(centre) <= _ROUNDING * size), 0.0, centre)
+        top, at = largest(pieces, np.concatenate((others, [curve - centre[pieces.machine]])))
+        if not (~even & (top[-1] > np.sqrt(square) * (1 + _SETTLED) + 4 * _EPS * size)).any():
+            break
+        degrees[shares.argmin(axis=0), each] = at[-1]
+    return centre, top, at
+
+
+# the whole machine
+
+_VECTORS: dict[str, tuple[str, str, Callable[[Any], Any]]] = {
+    "F_x": ("free", "force", np.real),
+    "F_y": ("free", "force", np.imag),
+    "F_free": ("free", "force", np.abs),
+    "M_x": ("free", "moment", np.real),
+    "M_y": ("free", "moment", np.imag),
+    "M_free": ("free", "moment", np.abs),
+    "F_x_book": ("book", "force", np.real),
+    "F_y_book": ("book", "force", np.imag),
+    "M_x_book": ("book", "moment", np.real),
+    "M_y_book": ("book", "moment", np.imag),
+}
+"""Column -> the part of the unbalanced force in N or moment in N m that it is, of the true one or of the book."""
+
+
+class MachineBalance(Results):
+    """The key values of the whole machine over a turn; `at(degrees)` gives the columns.
+
+    Attributes are named by the ids of the key values, in SI; one that the machine does not have is None. Raises
+    UsageError where nothing moves that could be balanced, and where a place of a weight is missing. count: of how many
+    machines the numbers are, (machines,); then so are the key values, nan where a machine has none.
+
+    z_0: place in m from where moments are taken; wheels: of the counterweights in the wheels of a locomotive, none of
+    another machine; counterweights: those of the machine file.
+    """
+
+    command = "balance"
+
+    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], count: int | None = None) -> None:
+        self.machine, self.count = machine, count
+        self._cylinders = cylinders
+        first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
+        own = (OwnThrow(number, one, first) for number, one in enumerate(machine.cylinders) if one.masses)
+        self.throws = tuple(own)
+        if not any(some(one.mass != 0) or some(one.rotating != 0) for one in self.throws):
+            raise UsageError(f"{machine.name}: nothing moves that could be balanced; give 'masses' to its cylinders")
+        for throw in self.throws:
+            if throw.mechanism.quick_return:
+                raise UsageError(f"{throw.name}: the masses of what drives a ram back quickly are not known")
+        self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
+        self.counterweights = tuple(counterweights_of(machine, self.throws))
+
+    @property
+    def answering(self) -> tuple[Any, ...]:
+        """What has key values, the first that has one."""
+        return (self, *((self.locomotive,) if self.locomotive else ()))
+
+    def _columns(self, phi: Array, within: Array) -> Columns:
+        @cache
+        def vector(of: str, name: str) -> ComplexArray | None:
+            free = self.free if of == "free" else self.book
+            circles = None if free is None else free.force if name == "force" else free.moment
+            return None if circles is None or self.omega is None else circles.at(phi) * (self.omega * self.omega)
+
+        def part(of: str, name: str, component: Callable[[ComplexArray], Array]) -> Array | None:
+            found = vector(of, name)
+            return None if found is None else component(found)
+
+        formulas = {id: partial(part, *each) for id, each in _VECTORS.items()}
+        return Columns(phi, formulas | {"M_roll": lambda: self._roll_at(phi, within)})
+
+    # what moves, all of it over ω²
+
+    @cached_property
+    def _throws_alone(self) -> Terms:
+        return Terms.of(self.throws, true_curvature, self.count)
+
+    @cached_property
+    def bare(self) -> Free:
+        """What the throws give, without counterweights and balance shafts."""
+        return Free(self._throws_alone, self.z_0)
+
+    @cached_property
+    def free(self) -> Free:
+        """What is unbalanced, with the counterweights and balance shafts of the machine file."""
+        return Free(self._throws_alone.with_weights(self._given), self.z_0) if self._given else self.bare
+
+    @cached_property
+    def _given(self) -> tuple[Weight, ...]:
+        """The weights of the machine file, on the crank and on shafts."""
+        return (*self.counterweights, *shafts_of(self.machine))
+
+    @cached_property
+    def book(self) -> Free | None:
+        """The same by the acceleration of first order, R 291; None where the book has none for a mechanism."""
+        if any(book_curvature(one.mechanism, CrankAngle.of(0.0)) is None for one in self.throws):
+            return None
+        return Free(Terms.of(self.throws, book_curvature, self.count).with_weights(self._given), self.z_0)
+
+    # the largest of it, and the counterweight that leaves the least largest force
+
+    @cached_property
+    def _searched(self) -> tuple[Any, dict[str, Extreme]]:
+        """The least counterweight in kg m, and the largest lengths over ω², all found in one search.
+
+        In the frame of the crank the force without a counterweight is the closed curve F e^{−iφ} = f_1 + c(φ), to
+        which a weight u on the crank adds u: the least largest |F + u e^{iφ}| has −u in the centre of the smallest
+        circle round it. With even orders alone c(φ + 180°) = −c(φ), and the centre is 0.
+        """
+        bare, free = self.bare.force, self.free
+        turning = bare.forward[0]
+        vectors = {"force": free.force, "moment": free.moment, "bare": bare.turned_by(-turning)}
+        given = {name: one for name, one in vectors.items() if one is not None}
+        pieces, (*found, loose) = sampled([*given.values()], self.count)
+        rows = dict(zip(given, found))
+        if self.machine.locomotive:
+            rows |= {f"{name} along": one.real.astype(complex) for name, one in rows.items()}
+        angle = CrankAngle.at_nodes(pieces)
+        odd = np.concatenate((given["bare"].forward[2::2], given["bare"].backward[::2], [turning]))
+        even = ~(odd.reshape(len(odd), -1) != 0).any(axis=0) & (not bare.rests)
+        curve = loose * (angle.cos - 1j * angle.sin)
+        centre, top, at = least_centres(pieces, curve, np.broadcast_to(even, pieces.count), np.array([*rows.values()]))
+        extremes = [Extreme(self._told(one), self._told(where_)) for one, where_ in zip(top, at)]
+        weight = -(turning + (complex(centre[0]) if self.count is None else centre))
+        return weight, dict(zip([*rows, "least"], extremes))
+
+    def _told(self, values: Array) -> Any:
+        """Return numbers of every machine (machines,), or that of the only one."""
+        return float(values[0]) if self.count is None else values
+
+    def _times_square(self, found: Extreme | None) -> Extreme | None:
+        """Return an extreme over ω² times ω²; None without a speed."""
+        if found is None or self.omega is None:
+            return None
+        return Extreme(found.value * self.omega * self.omega, found.degrees)
+
+    def largest(self, vector: Circles | None) -> Extreme | None:
+        """Return the largest length of a vector over ω², times ω², with its angle; None without a speed."""
+        if vector is None:
+            return None
+        top, at = largest(*sampled([vector], self.count))
+        return self._times_square(Extreme(self._told(top[0]), self._told(at[0])))
+
+    def searched(self, name: str) -> Extreme | None:
+        """Return the largest `force`, `moment`, or what of them is `along` the stroke lines, in N or N m."""
+        return self._times_square(self._searched[1].get(name))
+
+    @property
+    def F_free_max(self) -> Extreme | None:
+        """Largest unbalanced force in N."""
+        return self.searched("force")
+
+    @property
+    def M_free_max(self) -> Extreme | None:
+        """Largest unbalanced moment in N m."""
+        return self.searched("moment")
+
+    @property
+    def F_free_best(self) -> Extreme | None:
+        """The least largest unbalanced force in N."""
+        return self.searched("least")
+
+    # the rolling moment on the frame about the shaft: −(M + dH/dt), H the moment of momentum about the shaft
+
+    @cached_property
+    def _effort(self) -> TurningEffort | None:
+        """The turning effort of the machine, with its losses; None without a speed."""
+        if self.omega is None or not some(self.omega != 0):
+            return None
+        return TurningEffort(self.machine, self._cylinders, self.count)
+
+    @property
+    def rolls(self) -> bool:
+        """Whether a rolling moment is known. Raises UsageError where no force acts."""
+        return self._effort is not None
+
+    @cached_property
+    def _swirls(self) -> list[Term]:
+        """−dH/dt in N m of the masses whose moment of momentum changes."""
+        return [Term(-1.0, group, swirl) for group in self._effort.groups if swirls(group[0])] if self._effort else []
+
+    @property
+    def rolls_as_it_turns(self) -> bool:
+        """Whether the rolling moment is the turning effort of `kurbel flywheel` with the other sign."""
+        return not any(map(swirls, self._cylinders))
+
+    def _roll_at(self, phi: Array, within: Array) -> Array | None:
+        """Return the rolling moment in N m at crank angles (k,), on the sides of jumps that hold `within`."""
+        if self._effort is None:
+            return None
+        turned = -self._effort.M_at(phi, within)
+        return turned + self._effort.sum_at(self._swirls, phi, within) if self._swirls else turned
+
+    @cached_property
+    def _roll_extremes(self) -> tuple[Extreme, Extreme] | None:
+        if self._effort is None:
+            return None
+        effort = self._effort
+        roll = sum((effort.sampled([one]) for one in self._swirls), -effort.M)
+        high, high_at, low, low_at = (effort.told(one[0]) for one in effort.pieces.extremes(roll[None]))
+        return Extreme(high, high_at), Extreme(low, low_at)
+
+    @property
+    def M_roll_max(self) -> Extreme | None:
+        """Largest rolling moment on the frame in N m."""
+        return self._roll_extremes and self._roll_extremes[0]
+
+    @property
+    def M_roll_min(self) -> Extreme | None:
+        """Smallest rolling moment on the frame in N m."""
+        return self._roll_extremes and self._roll_extremes[1]
+
+    @property
+    def cycle(self) -> float:
+        """Degrees after which everything repeats: a turn, or with gas in the rolling moment that of the machine."""
+        return 360.0 * (self.machine.revolutions if any(one.drive.has_gas for one in self._cylinders) else 1)
+
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees between which every quantity of the only machine is smooth."""
+        low = self._effort.pieces.low if self._effort else np.zeros(1)
+        return np.append(low[low < self.cycle], self.cycle)
+
+    # counterweights
+
+    def angle_of(self, product: Any) -> Any:
+        """Return the direction of a weight from throw 1 in degrees, above −180 and up to 180; None, nan of nothing."""
+        turned = product / self.throws[0].weight(1.0).product
+        degrees = np.degrees(np.arctan2(turned.imag, turned.real))
+        degrees = np.where(degrees > _REAL - 180, degrees, 180.0)
+        if self.count is None:
+            return float(degrees) if product else None
+        return np.where(product != 0, degrees, np.nan)
+
+    @property
+    def counterweight_given(self) -> Any:
+        """Size of the sum of the given counterweights in kg m."""
+        return abs(sum(one.product for one in self.counterweights)) if self.counterweights else None
+
+    @cached_property
+    def _forward(self) -> Any:
+        """The forward circle of order 1 over ω², in kg m."""
+        first = self.bare.force.forward[0]
+        return complex(first) if self.count is None else first
+
+    @property
+    def counterweight_best(self) -> Any:
+        """Product in kg m of the counterweight that takes away the forward circle of order 1."""
+        return abs(self._forward)
+
+    @property
+    def counterweight_best_angle(self) -> Any:
+        """Its direction from throw 1 in degrees; None for a weight of nothing."""
+        return self.angle_of(-self._forward)
+
+    @cached_property
+    def least(self) -> Least:
+        """The counterweight that leaves the least largest force."""
+        weight = self._searched[0]
+        return Least(weight, self.bare.force.turned_by(weight))
+
+    @property
+    def counterweight_least(self) -> Any:
+        """Product in kg m of the counterweight that leaves the least largest force."""
+        return abs(self.least.weight)
+
+    @property
+    def counterweight_least_angle(self) -> Any:
+        """Its direction from throw 1 in degrees; None for a weight of nothing."""
+        return self.angle_of(self.least.weight)
+
+    @property
+    def share_best(self) -> Any:
+        """Share of the reciprocating mass with which a counterweight opposite the only throw is the least one's."""
+        throw, *others = self.throws
+        if others or not some(throw.mass != 0):
+            return None
+        opposite = -self.least.weight / throw.weight(1.0).product
+        aside = abs(opposite.imag) > _REAL * abs(opposite)
+        if self.count is None:
+            return None if aside else (opposite.real - throw.rotating) / throw.mass
+        with np.errstate(all="ignore"):
+            return np.where(aside | (throw.mass == 0), np.nan, (opposite.real - throw.rotating) / throw.mass)
+
+    @cached_property
+    def planes(self) -> tuple[Any, ...]:
+        """Places in m of two planes for counterweights: those given, or of the outer cylinders; () if they are one."""
+        given = self.machine.counterweights
+        named = () if isinstance(given, tuple) else given.planes
+        places = [one.place for one in self.throws if one.place is not None]
+        outer = (min(places), max(places)) if places and min(places) < max(places) else ()
+        return named or self.wheels or outer
+
+    @cached_property
+    def best_in_planes(self) -> tuple[Weight, ...]:
+        """The counterweights in two planes that take away all that turns with the crank, force and moment.
+
+        u_a + u_b = −F and (z_a − z_0) u_a + (z_b − z_0) u_b = −M, with F and M of the forward circles of order 1.
+        """
+        if not self.planes or self.bare.moment is None:
+            return ()
+        force, moment, (first, second) = self._forward, complex(self.bare.moment.forward[0]), self.planes
+        far = ((first - self.z_0) * force - moment) / (second - first)
+        return Weight(-force - far, 1, first), Weight(far, 1, second)
+
+    @cached_property
+    def best_shafts(self) -> tuple[Weight, ...]:
+        """The weights on shafts that take away what no counterweight can: order 1 against, order 2 either way.
+
+        Two of order 2 are those of Lanchester. Weights of nothing are left out; where a place makes one take the moment
+        away as well, it has that place.
+        """
+        found = []
+        for order in (-1, 2, -2):
+            vectors = [
+                one and (one.forward if order > 0 else one.backward) for one in (self.bare.force, self.bare.moment)
+            ]
+            circle, lever = (0j if one is None else complex(one[abs(order) - 1]) for one in vectors)
+            if circle:
+                arm = 1j if self.bare.moment is None else lever / circle
+                place = None if self.z_0 is None or abs(arm.imag) > _REAL * (1 + abs(arm)) else self.z_0 + arm.real
+                found.append(Weight(-circle / order**2, order, place))
+        return tuple(found)
+
+    @cached_property
+    def locomotive(self) -> LocomotiveBalance | None:
+        """What of it concerns the wheels of a locomotive; None of another machine."""
+        return LocomotiveBalance(self, self.machine.locomotive) if self.machine.locomotive else None
+
+
+def swirls(cylinder: CylinderForces) -> bool:
+    """Return whether the moment of momentum of its masses about the shaft changes."""
+    drive = cylinder.drive
+    return drive.has_inertia and (some(drive.mechanism.offset != 0) or drive.rod is not None)
+
+
+def swirl(state: State) -> Any:
+    """Return dH/dt = m e b in N m, less the couple of an exact rod, which swings against the crank."""
+    drive = state.drive
+    moment = state.b * (drive.mass * drive.mechanism.offset)
+    return moment - drive.rod.couple(state.rod_angle, state.angle) if drive.rod else moment
+
+
+class BookBalance:
+    """The key values by the book's acceleration of first order, which are shown only on request."""
+
+    def __init__(self, balance: MachineBalance) -> None:
+        self._balance = balance
+
+    @property
+    def F_free_max_book(self) -> Extreme | None:
+        """Largest unbalanced force in N."""
+        return self._balance.largest(self._balance.book.force if self._balance.book else None)
+
+    @property
+    def M_free_max_book(self) -> Extreme | None:
+        """Largest unbalanced moment in N m."""
+        return self._balance.largest(self._balance.book.moment if self._balance.book else None)
+
+
+class LocomotiveBalance:
+    """The key values of a locomotive, in SI, at the angular velocity of its machine; None what needs one not given.
+
+    The counterweights balance all that turns; what they have more than that, so as to balance a share of what goes to
+    and fro, loads and lifts the wheel that has it: its hammer blow.
+    """
+
+    def __init__(self, balance: MachineBalance, given: Locomotive) -> None:
+        self._balance, self._given = balance, given
+        self._square = balance.omega * balance.omega if balance.omega is not None and some(balance.omega != 0) else None
+
+    @property
+    def train_speed(self) -> Any:
+        """Speed of the train in m/s; None without the diameter of the wheels."""
+        return None if self._square is None else self._rolling(self._balance.omega)
+
+    def _rolling(self, omega: Any) -> Any:
+        diameter = self._given.wheel_diameter
+        return None if diameter is None else diameter / 2 * omega
+
+    @property
+    def traction_variation(self) -> Extreme | None:
+        """Largest unbalanced force in N along the stroke lines, by which the pull at the drawbar varies."""
+        return self._balance.searched("force along")
+
+    @property
+    def swaying_couple(self) -> Extreme | None:
+        """Largest moment in N m of the unbalanced forces along the stroke lines about the upright axis."""
+        return self._balance.searched("moment along")
+
+    def _in_wheels(self, weights: Iterable[tuple[str, Weight]]) -> tuple[Any, Any]:
+        """Return the sums of weights in the two wheels, as by a lever, in kg m; each with what it is of."""
+        parts = [levered(one, self._balance.wheels, owner) for owner, one in weights]
+        return sum(part[0].product for part in parts), sum(part[1].product for part in parts)
+
+    @cached_property
+    def unbalanced(self) -> tuple[Any, Any]:
+        """What turns in each wheel in kg m, counterweights and rotating masses together."""
+        rotating = [(one.name, one.weight(one.rotating)) for one in self._balance.throws]
+        return self._in_wheels((*rotating, *(("counterweights", one) for one in self._balance.counterweights)))
+
+    @property
+    def hammer_blow(self) -> Any:
+        """Largest force in N by which a wheel is loaded and lifted."""
+        return None if self._square is None else _larger(*self.unbalanced) * self._square
+
+    @property
+    def hammer_speed(self) -> Any:
+        """Revolutions per second at which the hammer blow is the load of a wheel; None without that, or a blow."""
+        most = _larger(*self.unbalanced)
+        if self._given.wheel_load is None or not some(most != 0):
+            return None
+        return sqrt(self._given.wheel_load / where(most != 0, most, math.nan)) / (2 * math.pi)
+
+    @property
+    def hammer_train_speed(self) -> Any:
+        """Speed of the train in m/s at which it is."""
+        return None if self.hammer_speed is None else self._rolling(2 * math.pi * self.hammer_speed)
+
+    @property
+    def share_allowed(self) -> Any:
+        """Largest share of the reciprocating masses of which the counterweights keep the limit of the hammer blow."""
+        if self._given.hammer_limit is None or self._square is None:
+            return None
+        whole = self._in_wheels((one.name, one.weight(one.mass)) for one in self._balance.throws)
+        blow = _larger(*whole) * self._square
+        return self._given.hammer_limit / where(blow > self._given.hammer_limit, blow, self._given.hammer_limit)
+
+
+def _larger(one: Any, other: Any) -> Any:
+    return where(abs(one) >= abs(other), abs(one), abs(other))
