@@ -18,8 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, lru_cache, partial
-from itertools import combinations
+from functools import cache, cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -33,13 +32,14 @@ from kurbel.machine.balance import Locomotive
 from kurbel.machine.variants import taken
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import some, sqrt, unless_cancelled, where
+from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.numerics.extreme import Extreme
-from kurbel.numerics.lobatto import chebyshev, slope_of_series
 from kurbel.numerics.pieces import Angles, Pieces, refined
 from kurbel.solver.effort import Term, TurningEffort
 from kurbel.solver.figures import Columns, Results
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft.weights import (
+from kurbel.solver.state import State
+from kurbel.solver.weights import (
     OwnThrow,
     Weight,
     counterweights_of,
@@ -48,7 +48,6 @@ from kurbel.solver.shaft.weights import (
     shafts_of,
     wheels_of,
 )
-from kurbel.solver.state import State
 
 _ORDERS = 64
 """Orders that are circles; a rod with L/R < 1.17 has more, which are sampled together."""
@@ -56,8 +55,11 @@ _SHOWN = 1e-9
 """Of the largest order: smaller ones are not listed."""
 _MOST = 24
 """Orders that are listed; a rod hardly longer than the crank has thousands, which die away slowly."""
-_LONGEST = 2**20
-"""Samples of a turn from which such orders are counted at most."""
+_CANCELLED = 64 * float(np.finfo(float).eps)
+"""Of their terms: a sum of rests that is smaller all over the turn is rounding."""
+_SETTLED = 1e-13
+"""Of the radius: by what a curve may reach beyond the smallest circle round it."""
+_ROUNDS = 60
 _ROUNDING = 1e-14
 """Of a squared length: by what it changes by rounding."""
 _EPS = float(np.finfo(float).eps)
@@ -84,33 +86,31 @@ class Waves:
     short: Any
 
     @classmethod
-    def of(cls, mechanism: Mechanism, curvature: Curvature, count: int | None) -> Waves:
-        """Return the waves by 256 equal angles of the turn, of short rods by their means over refined pieces."""
+    def of(cls, mechanism: Mechanism, curvature: Curvature, shape: tuple[int, ...]) -> Waves:
+        """Return the waves by 256 equal angles of the turn, those of short rods by means over halved pieces."""
         samples = 4 * _ORDERS
-        angle = CrankAngle.of(np.arange(samples)[:, None] * (360.0 / samples))
-        values = np.broadcast_to(curvature(mechanism, angle), (samples, count or 1))
+        degrees = np.reshape(np.arange(samples) * (360.0 / samples), (samples, *(1 for _ in shape)))
+        values = np.broadcast_to(curvature(mechanism, CrankAngle.of(degrees)), (samples, *shape))
         found = _told_apart(np.fft.rfft(values, axis=0) / samples, np.abs(values).max(axis=0))
-        short = found[_ORDERS + 1 :].any(axis=0)
-        orders = found[1 : _ORDERS + 1]
+        short, orders = found[_ORDERS + 1 :].any(axis=0), found[1 : _ORDERS + 1]
         if short.any():
             rows = np.flatnonzero(short)
-            orders[:, rows] = _means(mechanism if count is None else taken(mechanism, rows), curvature, len(rows))
-        return cls(mechanism, curvature, *((orders[:, 0], bool(short[0])) if count is None else (orders, short)))
+            means = _means(taken(mechanism, rows), curvature, len(rows))
+            orders[:, short] = means if shape else means[:, 0, None]
+        return cls(mechanism, curvature, orders, short)
 
-    def rest(self, angle: CrankAngle, machine: Indices | None) -> Array:
-        """Return what is left of x″ in m at crank angles (…, n) of the only machine, or of these machines (n,)."""
-        if machine is None:
-            mechanism, orders, short = self.mechanism, self.orders, self.short
-        else:
-            mechanism, orders, short = taken(self.mechanism, machine), self.orders[:, machine], self.short[machine]
-        waves = _turned(orders, orders.conj(), angle.cos + 1j * angle.sin)
-        return np.where(short, self.curvature(mechanism, angle) - waves.real, 0.0)
+    def rest(self, angle: CrankAngle, machine: Indices) -> Array:
+        """Return x″ less its orders in m at crank angles (…, n) of these machines (n,)."""
+        orders = _of(self.orders, machine)
+        waves = _turned(orders, orders.conj(), angle.cos + 1j * angle.sin).real
+        short = self.short[machine] if self.short.ndim else self.short
+        return np.where(short, self.curvature(taken(self.mechanism, machine), angle) - waves, 0.0)
 
 
 def _told_apart(orders: ComplexArray, size: Any) -> ComplexArray:
     """Return orders (…, n) without what is rounding of a size (n,), cosines and sines each: even is without sines."""
-    keep = [np.where(np.abs(part) > _EPS * size, part, 0.0) for part in (orders.real, orders.imag)]
-    return np.asarray(keep[0] + 1j * keep[1])
+    parts = (np.where(np.abs(part) > _EPS * size, part, 0.0) for part in (orders.real, orders.imag))
+    return np.asarray(next(parts) + 1j * next(parts))
 
 
 def _means(mechanism: Mechanism, curvature: Curvature, count: int) -> ComplexArray:
@@ -121,8 +121,7 @@ def _means(mechanism: Mechanism, curvature: Curvature, count: int) -> ComplexArr
         return np.broadcast_to(values, (1, *pieces.degrees.shape))
 
     pieces, (values,) = refined(_equal_pieces(_ORDERS, count), sample)
-    angle = CrankAngle.at_nodes(pieces)
-    back, wave, found = angle.cos - 1j * angle.sin, values.astype(complex), []
+    back, wave, found = _turn(pieces).conj(), values.astype(complex), []
     for _ in range(_ORDERS):
         wave = wave * back
         found.append(pieces.mean(wave))
@@ -135,35 +134,52 @@ def _equal_pieces(parts: int, count: int) -> Pieces:
     return Pieces.between(Angles(np.repeat(np.arange(count), parts), np.tile(breaks, count)), count, 360.0)
 
 
+def _turn(pieces: Pieces) -> ComplexArray:
+    """Return e^{iφ} at the nodes of pieces."""
+    angle = CrankAngle.at_nodes(pieces)
+    return np.asarray(angle.cos + 1j * angle.sin)
+
+
+def _of(orders: ComplexArray, machine: Indices) -> ComplexArray:
+    """Return orders (64, machines) of these machines (n,); those of one machine (64,) are of all."""
+    return orders[:, machine] if orders.ndim > 1 else orders
+
+
 def _turned(forward: ComplexArray, backward: ComplexArray, turn: ComplexArray) -> ComplexArray:
     """Return Σ f_n e^{inφ} + g_n e^{−inφ} (…, n); forward, backward: (64,) or (64, n); turn: e^{iφ} (…, n)."""
-    whole, power, reached = np.zeros_like(turn), turn, 1
-    twice = turn * turn
-    for order in (_used(forward) | _used(backward)).nonzero()[0] + 1:
+    used = ((forward != 0) | (backward != 0)).reshape(len(forward), -1).any(axis=1)
+    whole, power, twice, reached = np.zeros_like(turn), turn, turn * turn, 1
+    for order in np.flatnonzero(used) + 1:
         power = power if order == reached else power * (twice if order == reached + 2 else turn ** (order - reached))
         reached = order
         whole = whole + forward[order - 1] * power + backward[order - 1] * power.conj()
     return whole
 
 
-def _used(orders: ComplexArray) -> Flags:
-    """Return which orders (64,) are there, in any machine."""
-    return np.asarray((orders != 0).reshape(len(orders), -1).any(axis=1))
-
-
 class Rest(NamedTuple):
-    """What a short rod adds to the force beside its circles, factor · rest(φ − late); numbers of the machines."""
+    """What a short rod adds beside the circles: factor · rest(φ − late); numbers of the machines."""
 
     waves: Waves
     factor: Any
     late: Any
+
+    def on(self, pieces: Pieces) -> ComplexArray:
+        """Return it at the nodes of pieces; no digit at 90° is lost."""
+        late = np.asarray(pieces.of(self.late))
+        quarter = 90.0 * np.rint(late / 90.0)
+        own = replace(pieces, right_angle=pieces.right_angle - quarter, offset=pieces.offset - (late - quarter))
+        return np.asarray(pieces.of(self.factor) * self.waves.rest(CrankAngle.at_nodes(own), pieces.machine))
+
+    def size(self) -> Any:
+        """Return what the whole curvature is at most, but for its rest."""
+        return np.abs(self.factor) * 2 * np.abs(self.waves.orders).sum(axis=0)
 
 
 # a vector that repeats after a turn
 
 
 class Circles:
-    """F(φ) = Σ f_n e^{inφ} + g_n e^{−inφ} (+ rests); forward, backward: f and g in kg m, or kg m², (64,).
+    """F(φ) = Σ f_n e^{inφ} + g_n e^{−inφ} + rests; forward, backward: f and g in kg m, or kg m², (64,).
 
     Of a batch they are (64, machines).
     """
@@ -177,47 +193,24 @@ class Circles:
         forward[0] += weight
         return Circles(forward, self.backward, self.rests)
 
+    def above(self, order: int) -> Circles:
+        """Return what it is but for the orders up to this one."""
+        low = np.arange(1, _ORDERS + 1) <= order
+        return Circles(np.where(low, 0.0, self.forward), np.where(low, 0.0, self.backward), self.rests)
+
     def at(self, degrees: Array) -> ComplexArray:
         """Return the vectors (n,) of one machine at angles (n,) in degrees; what cancels is exactly 0."""
         size = np.abs(self.forward).sum() + np.abs(self.backward).sum()
-        orders = np.flatnonzero(_used(self.forward) | _used(self.backward))
-        turned = unit_vector(np.multiply.outer(np.asarray(degrees, float), orders + 1))
-        # either sense by itself, so that what is mirrored cancels to the last digit
-        found = turned @ self.forward[orders] + turned.conj() @ self.backward[orders]
-        found = np.asarray(unless_cancelled(found, size))
-        for waves, factor, late in self.rests:
-            found = found + factor * waves.rest(CrankAngle.of(np.asarray(degrees - late)), None)
+        found = np.asarray(unless_cancelled(_turned(self.forward, self.backward, unit_vector(degrees)), size))
+        machine = np.zeros(degrees.shape, dtype=np.intp)
+        for rest in self.rests:
+            found = found + rest.factor * rest.waves.rest(CrankAngle.of(degrees - rest.late), machine)
         return found
 
     def on(self, pieces: Pieces) -> ComplexArray:
         """Return the vectors at the nodes of pieces, (nodes, pieces)."""
-        batch = self.forward.ndim > 1
-        angle = CrankAngle.at_nodes(pieces)
-        sides = (one[:, pieces.machine] if batch else one for one in (self.forward, self.backward))
-        found = _turned(*sides, angle.cos + 1j * angle.sin)
-        for waves, factor, late in self.rests:
-            own = CrankAngle.at_nodes(_behind(pieces, pieces.of(late)))
-            found = found + pieces.of(factor) * waves.rest(own, pieces.machine if batch else None)
-        return found
-
-    @property
-    def power(self) -> float:
-        """Mean square of the length over a turn, of one machine: the sum of the squares of all circles (Parseval)."""
-        if not self.rests:
-            return float((np.abs(self.forward) ** 2 + np.abs(self.backward) ** 2).sum())
-        pieces, found = sampled([self])
-        return float(pieces.mean(np.abs(found[0]) ** 2)[0])
-
-    @property
-    def rest(self) -> Circles:
-        """What it is beside its circles."""
-        return Circles(0 * self.forward, 0 * self.backward, self.rests)
-
-
-def _behind(pieces: Pieces, late: Any) -> Pieces:
-    """Return the pieces as a crank counts them that follows by an angle in degrees; no digit at 90° is lost."""
-    quarter = 90.0 * np.rint(np.asarray(late) / 90.0)
-    return replace(pieces, right_angle=pieces.right_angle - quarter, offset=pieces.offset - (late - quarter))
+        found = _turned(_of(self.forward, pieces.machine), _of(self.backward, pieces.machine), _turn(pieces))
+        return np.asarray(sum((rest.on(pieces) for rest in self.rests), found))
 
 
 def sampled(vectors: Sequence[Circles], count: int | None = None, parts: int = 8) -> tuple[Pieces, ComplexArray]:
@@ -226,10 +219,11 @@ def sampled(vectors: Sequence[Circles], count: int | None = None, parts: int = 8
     parts: of the turn at least, a multiple of 8.
     """
 
-    def sample(pieces: Pieces) -> ComplexArray:
+    def sample(pieces: Pieces) -> Any:
         found = np.stack([one.on(pieces) for one in vectors])
         return np.concatenate((found, np.abs(found) ** 2))
 
+    found: Any
     pieces, found = refined(_equal_pieces(parts, count or 1), sample)
     return pieces, found[: len(vectors)]
 
@@ -237,13 +231,18 @@ def sampled(vectors: Sequence[Circles], count: int | None = None, parts: int = 8
 def largest(pieces: Pieces, vectors: ComplexArray) -> tuple[Array, Array]:
     """Return the largest lengths of vectors (q, nodes, pieces), and the first angles in degrees with them, (q, n)."""
     squares = vectors.real**2 + vectors.imag**2
-    size = pieces.largest(squares)
-    first = squares[:, 0, pieces.first]
+    size, first = pieces.largest(squares), squares[:, 0, pieces.first]
     above = squares - first[:, None, pieces.machine]
     # a length that never changes rises and falls by rounding
     above = np.where((pieces.largest(above) > _ROUNDING * size)[:, None, pieces.machine], above, 0.0)
     top, degrees = pieces.highest(above, size)
     return np.sqrt(np.maximum(first + top, 0.0)), degrees
+
+
+def power(vector: Circles) -> float:
+    """Return the mean square of the length of a vector of one machine: the sum of the squares of all its circles."""
+    pieces, (found,) = sampled([vector])
+    return float(pieces.mean(np.abs(found) ** 2)[0])
 
 
 # the force and the moment of all that moves
@@ -265,16 +264,17 @@ class Terms(NamedTuple):
         """Return what throws give, masses to and fro and at the pin; of equal mechanisms one is computed."""
         shape = () if count is None else (count,)
         known: dict[object, Waves] = {}
-        orders, forward, backward, rests = np.arange(1, _ORDERS + 1), [], [], []
+        forward, backward, rests = [], [], []
         for row, throw in enumerate(throws):
-            waves = _known(known, throw.mechanism, curvature, count)
-            behind, factor = np.multiply.outer(orders, np.broadcast_to(throw.late, shape)), throw.mass
-            forward.append(waves.orders * factor * unit_vector(throw.bank - behind))
-            backward.append(waves.orders.conj() * factor * unit_vector(throw.bank + behind))
-            if some(waves.short):
-                rests.append((row, Rest(waves, factor * unit_vector(throw.bank), throw.late)))
-        places = tuple(throw.place for throw in throws)
-        own = cls(np.array(forward), np.array(backward), places, tuple(rests))
+            values = values_of(throw.mechanism).values()
+            key = (type(throw.mechanism), *(one.tobytes() if isinstance(one, np.ndarray) else one for one in values))
+            waves = known[key] = known.get(key) or Waves.of(throw.mechanism, curvature, shape)
+            behind = np.multiply.outer(np.arange(1, _ORDERS + 1), np.broadcast_to(throw.late, shape))
+            forward.append(waves.orders * throw.mass * unit_vector(throw.bank - behind))
+            backward.append(waves.orders.conj() * throw.mass * unit_vector(throw.bank + behind))
+            if waves.short.any():
+                rests.append((row, Rest(waves, throw.mass * unit_vector(throw.bank), throw.late)))
+        own = cls(np.array(forward), np.array(backward), tuple(throw.place for throw in throws), tuple(rests))
         return own.with_weights(throw.weight(throw.rotating) for throw in throws)
 
     def with_weights(self, weights: Iterable[Weight]) -> Terms:
@@ -288,20 +288,22 @@ class Terms(NamedTuple):
 
     def summed(self, levers: Sequence[Any] | None = None) -> Circles:
         """Return the sum, each term times its lever; what cancels is exactly 0."""
-        times = np.ones(len(self.places)) if levers is None else levers
-        column = np.array([np.broadcast_to(one, self.forward.shape[2:]) for one in times])[:, None]
-        sides = (terms if levers is None else terms * column for terms in (self.forward, self.backward))
-        sums = (np.asarray(unless_cancelled(one.sum(axis=0), np.abs(one).sum(axis=0))) for one in sides)
-        return Circles(*sums, [rest._replace(factor=rest.factor * times[row]) for row, rest in self.rests])
+        shape, times = self.forward.shape[2:], levers or [1.0] * len(self.places)
+        column = np.array([np.broadcast_to(one, shape) for one in times])[:, None]
+        sides = (terms * column for terms in (self.forward, self.backward))
+        forward, backward = (unless_cancelled(one.sum(axis=0), np.abs(one).sum(axis=0)) for one in sides)
+        rests = [rest._replace(factor=rest.factor * times[row]) for row, rest in self.rests]
+        return Circles(np.asarray(forward), np.asarray(backward), _unless_cancelled(rests, shape))
 
 
-def _known(known: dict[object, Waves], mechanism: Mechanism, curvature: Curvature, count: int | None) -> Waves:
-    """Return the waves of a mechanism, computed once."""
-    values = values_of(mechanism).values()
-    key = (type(mechanism), *(one.tobytes() if isinstance(one, np.ndarray) else one for one in values))
-    if key not in known:
-        known[key] = Waves.of(mechanism, curvature, count)
-    return known[key]
+def _unless_cancelled(rests: Sequence[Rest], shape: tuple[int, ...]) -> Sequence[Rest]:
+    """Return rests without those of machines whose sum is rounding."""
+    if not rests:
+        return rests
+    pieces = _equal_pieces(_ORDERS, *(shape or (1,)))
+    left = pieces.largest(np.abs(sum(rest.on(pieces) for rest in rests)))
+    lasting = left > _CANCELLED * sum(rest.size() for rest in rests)
+    return [rest._replace(factor=rest.factor * np.reshape(lasting, shape)) for rest in rests] if lasting.any() else ()
 
 
 class Free:
@@ -316,61 +318,25 @@ class Free:
         known = z_0 is not None and all(place is not None for place in terms.places)
         self.moment = terms.summed([place - z_0 for place in terms.places]) if known else None
 
-    # what of it is listed, of one machine
-
     @cached_property
-    def _sizes(self) -> Array:
-        """The size of each order in the term that has most of it, whether or not terms cancel."""
+    def _orders(self) -> tuple[int, ...]:
         sizes = (np.abs(self._terms.forward) + np.abs(self._terms.backward)).max(axis=0)
-        for _, rest in self._terms.rests:
-            more = 2 * np.abs(rest.factor) * np.abs(_long_line(rest.waves, _SHOWN / 8))
-            sizes = np.pad(sizes, (0, max(0, len(more) - len(sizes))))
-            sizes[_ORDERS : len(more)] = np.maximum(sizes[_ORDERS : len(more)], more[_ORDERS:])
-        return sizes
-
-    @cached_property
-    def _all_orders(self) -> tuple[int, ...]:
-        return tuple((np.flatnonzero(self._sizes > _SHOWN * self._sizes.max()) + 1).tolist())
+        return tuple((np.flatnonzero(sizes > _SHOWN * sizes.max()) + 1).tolist())
 
     @property
     def orders(self) -> tuple[int, ...]:
-        """The lowest orders that some throw or weight has."""
-        return self._all_orders[:_MOST]
+        """The lowest orders of one machine that some throw or weight has, whether or not they cancel."""
+        return self._orders[:_MOST]
 
     @property
-    def higher(self) -> tuple[int, ...]:
-        """The orders above these, as far as they are counted."""
-        return self._all_orders[_MOST:]
-
-    @property
-    def counted(self) -> bool:
-        """Whether all orders are counted."""
-        return len(self._sizes) < _LONGEST // 2
+    def next_order(self) -> int | None:
+        """The first order that is not among them; None where there is none."""
+        return self._orders[_MOST] if len(self._orders) > _MOST else None
 
     def at_most(self, vector: Circles) -> float:
-        """Return what the force or the moment of the higher orders is at most, whatever the angle."""
-        most = float(sum(np.abs(part[self.orders[-1] :]).sum() for part in (vector.forward, vector.backward)))
-        if vector.rests:
-            pieces = sampled([vector], parts=_ORDERS)[0]  # as narrow as the waves of what is left
-            most += float(largest(pieces, vector.rest.on(pieces)[None])[0][0, 0])
-        return most
-
-
-def _long_line(waves: Waves, least: float) -> ComplexArray:
-    """Return c_n of one machine as far as they are more than this share of the largest, n = 1, 2, …, to be counted."""
-    samples = 32 * _ORDERS
-    while True:
-        angle = CrankAngle.of(np.arange(samples) * (360.0 / samples))
-        found = np.fft.rfft(waves.curvature(waves.mechanism, angle))[1:] / samples
-        shown = np.flatnonzero(np.abs(found) > least * np.abs(found).max())
-        if samples == _LONGEST or shown[-1] < 3 * samples // 8:
-            return np.asarray(found)
-        samples *= 2
-
-
-def true_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
-    """Return d²x/dφ² in m."""
-    return mechanism.curvature(angle)
+        """Return what the force or the moment of the higher orders is at most."""
+        pieces = sampled([vector], parts=_ORDERS)[0]  # as narrow as their waves
+        return float(largest(pieces, vector.above(self.orders[-1]).on(pieces)[None])[0][0, 0])
 
 
 def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
@@ -381,156 +347,12 @@ def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
 
 # the counterweight that leaves the least largest force
 
-_SETTLED = 1e-13
-"""Of the radius: by what points may stand beyond the circle."""
-_AS_ONE = 1e-9
-"""Share of a point in a circle that is 0 but for rounding."""
-_NEAR = 1e-4
-"""Of the radius: as near to the smallest circle leads the search among samples; Newton's method goes on from there."""
-_FLAT = 1e-9
-"""Of the terms: a curve whose distance from a centre bends less is itself a circle about it."""
-_ROUNDS = 60
-_SLOPES = tuple(slope_of_series(count) for count in (16, 15))
-
 
 class Least(NamedTuple):
     """The counterweight in kg m, complex, that leaves the least largest force, and the force that it leaves."""
 
     weight: Any
     left: Circles
-
-
-class Enclosing(NamedTuple):
-    """Smallest circles round points (k, n): centre, complex, square of the radius (n,), and the share of each point.
-
-    shares: (k, n), of sum 1, 0 of points that do not carry the circle; Σ share · point is the centre.
-    """
-
-    centre: ComplexArray
-    square: Array
-    shares: Array
-
-
-@lru_cache
-def _choices(count: int) -> Indices:
-    """Return which points may carry a circle round so many: one, as (i, i, i), two, as (i, j, j), or three."""
-    alone, pairs = ([(i, i, i) for i in range(count)], [(i, j, j) for i, j in combinations(range(count), 2)])
-    return np.array([*alone, *pairs, *combinations(range(count), 3)]).T
-
-
-def smallest_circle(points: ComplexArray, more: Any = 0.0) -> Enclosing:
-    """Return the smallest circles round few points (k, n), for which max(|point − centre|² + more) is least.
-
-    A circle through three points with u = b − a, v = c − a has w = centre − a with 2 w·u = |u|² + more_b − more_a, and
-    so for v. It is the smallest of those carried by one, two or three points, between which it lies, that enclose all.
-
-    >>> smallest_circle(np.array([[0j], [2 + 0j], [1 + 0.5j]]))[:2]
-    (array([1.+0.j]), array([1.]))
-    """
-    choices, more = _choices(len(points)), np.broadcast_to(more, points.shape)
-    (a, b, c), (more_a, more_b, more_c) = points[choices], more[choices]
-    u, v = b - a, c - a
-    p, q = np.abs(u) ** 2 + (more_b - more_a), np.abs(v) ** 2 + (more_c - more_a)
-    alone, two = ((choices[i] == choices[2])[:, None] for i in (0, 1))
-    with np.errstate(all="ignore"):
-        area = (u.conj() * v).imag
-        along = np.where(alone, 0.0, p / (2 * np.abs(u) ** 2))
-        w = np.where(two, along * u, (p * v - q * u) / (2j * area))
-        of_b = np.where(two, along, (w.conj() * v).imag / area)
-        of_c = np.where(two, 0.0, (u.conj() * w).imag / area)
-        square = (np.abs(points[:, None] - (a + w)) ** 2 + more[:, None]).max(axis=0)
-        carried = np.minimum(1 - of_b - of_c, np.minimum(of_b, of_c)) >= -_AS_ONE
-    best = np.where(carried, square, np.inf).argmin(axis=0)
-    each = np.arange(points.shape[1])
-    owners, of_b, of_c = choices[:, best], of_b[best, each], of_c[best, each]
-    is_owner = owners[:, None] == np.arange(len(points))[:, None]
-    shares = (is_owner * np.array([1 - of_b - of_c, of_b, of_c])[:, None]).sum(axis=0)
-    return Enclosing((a + w)[best, each], square[best, each], shares)
-
-
-class ClosedCurve:
-    """A curve in the plane, complex, sampled on the pieces of a turn, (nodes, pieces), one of every machine (n,)."""
-
-    def __init__(self, pieces: Pieces, points: ComplexArray) -> None:
-        self.pieces, self.points = pieces, points
-        value = pieces.rule.series @ points
-        slope = _SLOPES[0] @ value / np.radians(pieces.half)
-        self._series = value.T, slope.T, (_SLOPES[1] @ slope / np.radians(pieces.half)).T
-
-    def at(self, degrees: Array) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """Return the points at angles (k, n) in degrees, with their first and second derivatives per radian."""
-        machine = np.broadcast_to(np.arange(self.pieces.count), degrees.shape)
-        row = self.pieces.holding(machine, degrees)
-        from_low = np.mod(degrees, self.pieces.cycle) - self.pieces.low[row]
-        waves = chebyshev(np.clip(from_low / self.pieces.half[row] - 1, -1, 1), 16)
-        value, slope, bend = ((one[row] * waves[..., : one.shape[1]]).sum(axis=-1) for one in self._series)
-        return value, slope, bend
-
-    def farthest(self, measure: Array) -> tuple[ComplexArray, Array]:
-        """Return the samples (n,) at which a measure (nodes, pieces) is largest, and their angles in degrees."""
-        pieces, tops = self.pieces, measure.max(axis=0)
-        best = np.maximum.reduceat(tops, pieces.first)
-        reached = np.flatnonzero(~(tops < best[pieces.machine]))  # of nan, too, there is one
-        column = reached[np.searchsorted(pieces.machine[reached], np.arange(pieces.count))]
-        node = measure[:, column].argmax(axis=0)
-        return self.points[node, column], pieces.degrees[node, column]
-
-    def enclosed_samples(self) -> Array:
-        """Return the angles (4, n) in degrees of four samples, of which two or three nearly carry the circle round all.
-
-        A circle round four samples grows as the farthest sample takes the place of one that does not carry it.
-        """
-        ways = (self.points.real, self.points.imag, -self.points.real, -self.points.imag)
-        points, degrees = (np.array(one) for one in zip(*map(self.farthest, ways)))
-        each = np.arange(points.shape[1])
-        for _ in range(_ROUNDS):
-            circle = smallest_circle(points)
-            far, far_at = self.farthest(np.abs(self.points - circle.centre[self.pieces.machine]))
-            if not (np.abs(far - circle.centre) ** 2 > circle.square * (1 + _NEAR)).any():
-                break
-            slot = circle.shares.argmin(axis=0)
-            points[slot, each], degrees[slot, each] = far, far_at
-        return degrees
-
-    def enclosed(self, degrees: Array) -> tuple[ComplexArray, Array, Array, Array]:
-        """Return centre and square of the radius (n,) of the smallest circle round the curve near four of its points.
-
-        degrees: of the points, (4, n); with the circle come those where the curve is farthest from the centre, and
-        their shares. Each point stays there as the centre z moves: with arm d = c − z and τ = |c′|² + d·c″ < 0
-
-            dφ = (c′·dz − d·c′)/τ      h(z) = |d|²/2 − (d·c′)²/2τ     h′ = −(d + c′dφ)     h″ = 1 − c′c′ᵀ/τ
-
-        and min max h is found by Newton's method: with the mean h″ of the carrying points, H = LLᵀ, it is in each step
-        the smallest circle round L⁻¹h′ with 2h − |L⁻¹h′|² more. It goes as fast where two points carry the circle.
-        """
-        circle = smallest_circle(self.at(degrees)[0])
-        centre, shares, size = circle.centre, circle.shares, np.sqrt(circle.square.max()) or 1.0
-        for _ in range(_ROUNDS):
-            points, slope, bend = self.at(degrees)
-            arm = points - centre
-            touching, speed, turn = (arm.conj() * slope).real, np.abs(slope) ** 2, (arm.conj() * bend).real
-            summit = speed + turn < -_FLAT * (speed + np.abs(turn))
-            yielding = np.where(summit, 1 / np.where(summit, speed + turn, 1.0), 0.0)
-            step = -touching * yielding
-            height, lean = np.abs(arm) ** 2 + touching * step, -(arm + slope * step)
-            xx, xy, yy = slope.real**2, slope.real * slope.imag, slope.imag**2
-            h_xx, h_xy, h_yy = (
-                one - (shares * part * yielding).sum(axis=0) for one, part in ((1, xx), (0, xy), (1, yy))
-            )
-            l_xx = np.sqrt(h_xx)
-            l_xy = h_xy / l_xx
-            l_yy = np.sqrt(h_yy - l_xy**2)
-            real = lean.real / l_xx
-            scaled = real + 1j * (lean.imag - l_xy * real) / l_yy
-            circle = smallest_circle(scaled, height - np.abs(scaled) ** 2)
-            shares, down = circle.shares, -circle.centre.imag / l_yy
-            moved = (-circle.centre.real - l_xy * down) / l_xx + 1j * down
-            centre = centre + moved
-            step = np.clip(step + (slope.conj() * moved).real * yielding, -0.2, 0.2)
-            degrees = np.mod(degrees + np.degrees(step), 360.0)
-            if max(np.abs(step).max(), np.abs(moved).max() / size) < 1e-7:
-                break
-        return centre, circle.square, degrees, shares
 
 
 def least_centres(
@@ -541,22 +363,26 @@ def least_centres(
     even: which curves (n,) are their own image about 0, their centre. With them the lengths of other vectors (q, nodes,
     pieces), and last that of c less its centre, are searched together; see `largest`.
     """
-    if even.all():
-        return np.zeros(pieces.count, complex), *largest(pieces, np.concatenate((others, [curve])))
-    closed = ClosedCurve(pieces, curve)
-    size, each = pieces.largest(curve), np.arange(pieces.count)
-    degrees = closed.enclosed_samples()
+    closed, size, each = ClosedCurve(pieces, curve), pieces.largest(np.abs(curve)), np.arange(pieces.count)
+    degrees = np.zeros((4, pieces.count)) if even.all() else closed.nearly_enclosed()
     for _ in range(_ROUNDS):
-        centre, square, degrees, shares = closed.enclosed(degrees)
-        centre = np.where(even | (np.abs(centre) <= _ROUNDING * size), 0.0, centre)
+        circle, degrees = closed.enclosed(degrees)
+        centre = np.where(even | (np.abs(circle.centre) <= _ROUNDING * size), 0.0, circle.centre)
         top, at = largest(pieces, np.concatenate((others, [curve - centre[pieces.machine]])))
-        if not (~even & (top[-1] > np.sqrt(square) * (1 + _SETTLED) + 4 * _EPS * size)).any():
+        beyond = ~even & (top[-1] > np.sqrt(circle.square) * (1 + _SETTLED) + 4 * _EPS * size)
+        if not beyond.any():
             break
-        degrees[shares.argmin(axis=0), each] = at[-1]
+        degrees[circle.shares.argmin(axis=0), each] = at[-1]
     return centre, top, at
 
 
 # the whole machine
+
+
+def _found(name: str, text: str) -> Any:
+    """Return a key value of the balance that is found with the others; see `MachineBalance.searched`."""
+    return property(lambda balance: balance.searched(name), doc=text)
+
 
 _VECTORS: dict[str, tuple[str, str, Callable[[Any], Any]]] = {
     "F_x": ("free", "force", np.real),
@@ -624,7 +450,7 @@ class MachineBalance(Results):
 
     @cached_property
     def _throws_alone(self) -> Terms:
-        return Terms.of(self.throws, true_curvature, self.count)
+        return Terms.of(self.throws, lambda one, angle: one.curvature(angle), self.count)
 
     @cached_property
     def bare(self) -> Free:
@@ -666,10 +492,9 @@ class MachineBalance(Results):
         rows = dict(zip(given, found))
         if self.machine.locomotive:
             rows |= {f"{name} along": one.real.astype(complex) for name, one in rows.items()}
-        angle = CrankAngle.at_nodes(pieces)
         odd = np.concatenate((given["bare"].forward[2::2], given["bare"].backward[::2], [turning]))
         even = ~(odd.reshape(len(odd), -1) != 0).any(axis=0) & (not bare.rests)
-        curve = loose * (angle.cos - 1j * angle.sin)
+        curve = loose * _turn(pieces).conj()
         centre, top, at = least_centres(pieces, curve, np.broadcast_to(even, pieces.count), np.array([*rows.values()]))
         extremes = [Extreme(self._told(one), self._told(where_)) for one, where_ in zip(top, at)]
         weight = -(turning + (complex(centre[0]) if self.count is None else centre))
@@ -696,20 +521,11 @@ class MachineBalance(Results):
         """Return the largest `force`, `moment`, or what of them is `along` the stroke lines, in N or N m."""
         return self._times_square(self._searched[1].get(name))
 
-    @property
-    def F_free_max(self) -> Extreme | None:
-        """Largest unbalanced force in N."""
-        return self.searched("force")
+    F_free_max = _found("force", "Largest unbalanced force in N.")
 
-    @property
-    def M_free_max(self) -> Extreme | None:
-        """Largest unbalanced moment in N m."""
-        return self.searched("moment")
+    M_free_max = _found("moment", "Largest unbalanced moment in N m.")
 
-    @property
-    def F_free_best(self) -> Extreme | None:
-        """The least largest unbalanced force in N."""
-        return self.searched("least")
+    F_free_best = _found("least", "The least largest unbalanced force in N.")
 
     # the rolling moment on the frame about the shaft: −(M + dH/dt), H the moment of momentum about the shaft
 
