@@ -44,7 +44,6 @@ NEEDLESS = (
             "machine.turning",
             "machine.flywheel",
             "machine.balance",
-            "solver.balance.locomotive",
             "report.notes",
             "solver.pressure.trace",
         ),

@@ -152,7 +152,7 @@ def test_a_rod_hardly_longer_than_the_crank_has_its_largest_force_half_way(above
     half_way = crank / math.sqrt((rod - crank) * (rod + crank))
     assert found.F_free_max.value / (0.1 * OMEGA**2) == pytest.approx(half_way, rel=above / 100 + 1e-13)
     assert found.F_free_max.degrees == pytest.approx(90.0, abs=3 * above)
-    assert found.F_free_best.value <= found.F_free_max.value
+    assert found.F_free_best.value <= found.F_free_max.value * (1 + 1e-14)
 
 
 # against the forces inside

@@ -38,7 +38,7 @@ class Enclosing(NamedTuple):
 def _choices(count: int) -> Indices:
     """Return which points may carry a circle round so many: one, as (i, i, i), two, as (i, j, j), or three."""
     alone, pairs = ([(i, i, i) for i in range(count)], [(i, j, j) for i, j in combinations(range(count), 2)])
-    return np.array([*alone, *pairs, *combinations(range(count), 3)]).T
+    return np.array([*alone, *pairs, *combinations(range(count), 3)], dtype=np.intp).T
 
 
 def smallest_circle(points: ComplexArray, more: Any = 0.0) -> Enclosing:
@@ -75,18 +75,23 @@ class ClosedCurve:
 
     def __init__(self, pieces: Pieces, points: ComplexArray) -> None:
         self.pieces, self.points = pieces, points
-        self._each, per_radian = np.arange(pieces.count), 1 / np.radians(pieces.half)
-        series = [pieces.rule.series @ points]
-        for _ in range(2):
-            series.append(slope_of_series(len(series[-1])) @ series[-1] * per_radian)
-        self._series = [one.T for one in series]
+        self._each = np.arange(pieces.count)
 
     def at(self, degrees: Array) -> tuple[ComplexArray, ...]:
         """Return the points at angles (k, n) in degrees, with their first and second derivatives per radian."""
         row = self.pieces.holding(np.broadcast_to(self._each, degrees.shape), degrees)
-        places = (np.mod(degrees, self.pieces.cycle) - self.pieces.low[row]) / self.pieces.half[row] - 1
-        waves = chebyshev(np.clip(places, -1, 1), self._series[0].shape[1])
-        return tuple((one[row] * waves[..., : one.shape[1]]).sum(axis=-1) for one in self._series)
+        half, series = (
+            self.pieces.half[row],
+            self.pieces.rule.series @ self.points[:, row].reshape(len(self.points), -1),
+        )
+        places = (np.mod(degrees, self.pieces.cycle) - self.pieces.low[row]) / half - 1
+        waves = np.moveaxis(chebyshev(np.clip(places, -1, 1), len(series)), -1, 0)
+        found = []
+        for order in range(3):
+            values = (series.reshape(-1, *degrees.shape) * waves[: len(series)]).sum(axis=0)
+            found.append(values / np.radians(half) ** order)
+            series = slope_of_series(len(series)) @ series
+        return tuple(found)
 
     def nearly_enclosed(self) -> Array:
         """Return the angles (4, n) in degrees of samples, of which two or three nearly carry the circle round all.
@@ -97,7 +102,8 @@ class ClosedCurve:
         points, degrees = (np.array(one) for one in zip(*map(self._farthest, ways)))
         for _ in range(_ROUNDS):
             circle = smallest_circle(points)
-            far, far_at = self._farthest(np.abs(self.points - circle.centre[self.pieces.machine]))
+            arm = self.points - circle.centre[self.pieces.machine]
+            far, far_at = self._farthest(arm.real**2 + arm.imag**2)
             if not (np.abs(far - circle.centre) ** 2 > circle.square * (1 + _NEAR)).any():
                 break
             slot = circle.shares.argmin(axis=0)

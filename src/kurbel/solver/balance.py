@@ -53,6 +53,10 @@ _ORDERS = 64
 """Orders that are circles; a rod with L/R < 1.17 has more, which are sampled together."""
 _SHOWN = 1e-9
 """Of the largest order: smaller ones are not listed."""
+_FEWEST = 8
+"""Orders that are kept at least: those of balance shafts."""
+_LARGE = 0.01
+"""Of the largest order: such an order makes the waves of a square shorter."""
 _MOST = 24
 """Orders that are listed; a rod hardly longer than the crank has thousands, which die away slowly."""
 _CANCELLED = 64 * float(np.finfo(float).eps)
@@ -149,7 +153,7 @@ def _turned(forward: ComplexArray, backward: ComplexArray, turn: ComplexArray) -
     """Return Σ f_n e^{inφ} + g_n e^{−inφ} (…, n); forward, backward: (64,) or (64, n); turn: e^{iφ} (…, n)."""
     used = ((forward != 0) | (backward != 0)).reshape(len(forward), -1).any(axis=1)
     whole, power, twice, reached = np.zeros_like(turn), turn, turn * turn, 1
-    for order in np.flatnonzero(used) + 1:
+    for order in (np.flatnonzero(used) + 1).tolist():
         power = power if order == reached else power * (twice if order == reached + 2 else turn ** (order - reached))
         reached = order
         whole = whole + forward[order - 1] * power + backward[order - 1] * power.conj()
@@ -179,9 +183,9 @@ class Rest(NamedTuple):
 
 
 class Circles:
-    """F(φ) = Σ f_n e^{inφ} + g_n e^{−inφ} + rests; forward, backward: f and g in kg m, or kg m², (64,).
+    """F(φ) = Σ f_n e^{inφ} + g_n e^{−inφ} + rests; forward, backward: f and g in kg m, or kg m², (k,).
 
-    Of a batch they are (64, machines).
+    Of a batch they are (k, machines), k up to 64.
     """
 
     def __init__(self, forward: ComplexArray, backward: ComplexArray, rests: Sequence[Rest] = ()) -> None:
@@ -195,7 +199,7 @@ class Circles:
 
     def above(self, order: int) -> Circles:
         """Return what it is but for the orders up to this one."""
-        low = np.arange(1, _ORDERS + 1) <= order
+        low = (np.arange(1, len(self.forward) + 1) <= order).reshape(-1, *(1 for _ in self.forward.shape[1:]))
         return Circles(np.where(low, 0.0, self.forward), np.where(low, 0.0, self.backward), self.rests)
 
     def at(self, degrees: Array) -> ComplexArray:
@@ -213,19 +217,45 @@ class Circles:
         return np.asarray(sum((rest.on(pieces) for rest in self.rests), found))
 
 
-def sampled(vectors: Sequence[Circles], count: int | None = None, parts: int = 8) -> tuple[Pieces, ComplexArray]:
+def sampled(vectors: Sequence[Circles], count: int | None = None, parts: int = 0) -> tuple[Pieces, ComplexArray]:
     """Return a turn in pieces on which vectors and their squares are polynomials, and them, (q, nodes, pieces).
 
-    parts: of the turn at least, a multiple of 8.
+    parts: of the turn at least, a multiple of 8, or 0.
     """
 
     def sample(pieces: Pieces) -> Any:
         found = np.stack([one.on(pieces) for one in vectors])
         return np.concatenate((found, np.abs(found) ** 2))
 
-    found: Any
-    pieces, found = refined(_equal_pieces(parts, count or 1), sample)
-    return pieces, found[: len(vectors)]
+    if any(one.rests for one in vectors):
+        found: Any
+        pieces, found = refined(_equal_pieces(parts or 8, count or 1), sample)
+        return pieces, found[: len(vectors)]
+    orders = np.array([(one.forward, one.backward) for one in vectors]).reshape(len(vectors), 2, -1, count or 1)
+    used = np.union1d(0, np.flatnonzero((orders != 0).any(axis=(0, 1, 3))))
+    equal = _equal_pieces(parts or _parts(orders), count or 1)
+    turn = _turn(equal.taken(equal.machine == 0))
+    waves = np.repeat(turn[..., None], used[-1] + 1, axis=-1).cumprod(axis=-1)[..., used]
+    both = np.concatenate((waves, waves.conj()), axis=-1)
+    values = both.reshape(-1, 2 * len(used)) @ orders[:, :, used].reshape(len(vectors), -1, count or 1)
+    return equal, np.swapaxes(values.reshape(-1, *turn.shape, count or 1), 2, 3).reshape(-1, *equal.offsets.shape)
+
+
+def _parts(orders: ComplexArray) -> int:
+    """Return in how many pieces the squares of vectors (q, 2, 64, machines) are polynomials of 16 nodes, but for 1e-13.
+
+    With the largest orders, n_0, an order n of the share w makes waves of n + n_0 in the square; on a piece of half the
+    width h the last coefficient of such a wave is 2 ((n + n_0) h/2)^14/14!.
+    """
+    sizes = np.abs(orders).sum(axis=1)
+    shares = np.moveaxis(sizes / np.maximum(sizes.max(axis=1, keepdims=True), 1e-300), 1, -1).reshape(
+        -1, sizes.shape[1]
+    )
+    numbers = np.arange(1, shares.shape[1] + 1)
+    large = ((shares > _LARGE) * numbers).max(axis=1, keepdims=True)
+    most = (shares * (numbers + large) ** 14.0).max()
+    half_width = 2 * (1e-13 * math.factorial(14) / 2 / max(most, 1.0)) ** (1 / 14)
+    return 8 * math.ceil(math.pi / half_width / 8)
 
 
 def largest(pieces: Pieces, vectors: ComplexArray) -> tuple[Array, Array]:
@@ -233,8 +263,9 @@ def largest(pieces: Pieces, vectors: ComplexArray) -> tuple[Array, Array]:
     squares = vectors.real**2 + vectors.imag**2
     size, first = pieces.largest(squares), squares[:, 0, pieces.first]
     above = squares - first[:, None, pieces.machine]
-    # a length that never changes rises and falls by rounding
-    above = np.where((pieces.largest(above) > _ROUNDING * size)[:, None, pieces.machine], above, 0.0)
+    level = pieces.largest(above) <= _ROUNDING * size
+    if level.any():  # a length that never changes rises and falls by rounding
+        above = np.where(level[:, None, pieces.machine], 0.0, above)
     top, degrees = pieces.highest(above, size)
     return np.sqrt(np.maximum(first + top, 0.0)), degrees
 
@@ -249,7 +280,7 @@ def power(vector: Circles) -> float:
 
 
 class Terms(NamedTuple):
-    """What throws and weights give to the force: forward, backward (terms, 64), of a batch (terms, 64, machines).
+    """What throws and weights give to the force: forward, backward (terms, k), of a batch (terms, k, machines).
 
     places: of each term along the shaft in m, None: not known; rests: what short rods add, with the row of the term.
     """
@@ -264,16 +295,21 @@ class Terms(NamedTuple):
         """Return what throws give, masses to and fro and at the pin; of equal mechanisms one is computed."""
         shape = () if count is None else (count,)
         known: dict[object, Waves] = {}
-        forward, backward, rests = [], [], []
+        found, rests = [], []
         for row, throw in enumerate(throws):
             values = values_of(throw.mechanism).values()
             key = (type(throw.mechanism), *(one.tobytes() if isinstance(one, np.ndarray) else one for one in values))
             waves = known[key] = known.get(key) or Waves.of(throw.mechanism, curvature, shape)
-            behind = np.multiply.outer(np.arange(1, _ORDERS + 1), np.broadcast_to(throw.late, shape))
-            forward.append(waves.orders * throw.mass * unit_vector(throw.bank - behind))
-            backward.append(waves.orders.conj() * throw.mass * unit_vector(throw.bank + behind))
+            found.append(waves.orders * throw.mass)
             if waves.short.any():
                 rests.append((row, Rest(waves, throw.mass * unit_vector(throw.bank), throw.late)))
+        last = max(_FEWEST, *(np.flatnonzero(one.reshape(_ORDERS, -1).any(axis=1)).max(initial=0) + 1 for one in found))
+        orders = np.arange(1, last + 1)
+        behind = [np.multiply.outer(orders, np.broadcast_to(throw.late, shape)) for throw in throws]
+        forward, backward = (
+            [own * unit_vector(throw.bank + sense * late) for own, throw, late in zip(sides, throws, behind)]
+            for sense, sides in ((-1, [one[:last] for one in found]), (1, [one[:last].conj() for one in found]))
+        )
         own = cls(np.array(forward), np.array(backward), tuple(throw.place for throw in throws), tuple(rests))
         return own.with_weights(throw.weight(throw.rotating) for throw in throws)
 
