@@ -13,8 +13,9 @@ from kurbel.report.frame import Frame, Subject
 from kurbel.report.pin_notes import pin_notes
 from kurbel.report.shown import place_table, shown_column
 from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
-from kurbel.solver.balance import BookBalance, Circles, Free, MachineBalance, power
+from kurbel.solver.balance import BookBalance, MachineBalance
 from kurbel.solver.case import Case
+from kurbel.solver.unbalanced import Circles, Free, power
 from kurbel.solver.weights import Weight
 
 _Entry = tuple[Quantity, "list[float | None]"]
@@ -132,14 +133,13 @@ def _circles(balance: MachineBalance, square: float, compare: bool) -> Iterator[
 
 def _pair(vector: Circles, order: int) -> tuple[complex, complex]:
     """Return the circles of an order, with their directions at φ = 0; 0 of one that there is not."""
-    forward, backward = ((one[order - 1] if order <= len(one) else 0.0) for one in (vector.forward, vector.backward))
-    return complex(forward), complex(backward)
+    return complex(vector.of(order)), complex(vector.of(-order))
 
 
 def _shares(vector: Circles, orders: Iterable[int]) -> list[float | None]:
-    squares = abs(vector.forward) ** 2 + abs(vector.backward) ** 2
     whole = power(vector)
-    return [float(squares[order - 1]) / whole if whole else None for order in orders]
+    squares = (sum(abs(circle) ** 2 for circle in _pair(vector, order)) for order in orders)
+    return [one / whole if whole else None for one in squares]
 
 
 def _ellipses(free: Free, square: float) -> Iterator[_Entry]:
