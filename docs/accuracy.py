@@ -11,7 +11,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from kurbel.machine_file import loads
-from kurbel.render import Look, render
+from kurbel.render import Look
+from kurbel.render.formats import render
 from kurbel.render.output import write_file
 from kurbel.render.pictures.drawing import draw_file
 from kurbel.report.accuracy import accuracy_report, extremes_report

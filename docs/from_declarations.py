@@ -14,14 +14,15 @@ from kurbel.cli import COMMANDS, kurbel
 from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.factors import FACTORS
 from kurbel.declared.forms import Record
-from kurbel.declared.keys import Key, Keys, required
+from kurbel.declared.keys import Described, Key, Keys, required
 from kurbel.declared.kinds import KINDS, MOST_ITEMS, MOST_POINTS, range_of
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.shaft import STRESSES
 from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.declared.units import kinds, unit_names
-from kurbel.mechanisms import every_quantity
+from kurbel.machine import Machine
+from kurbel.mechanisms.kinds import every_quantity
 
 _WRITTEN = "Written from the declarations by `pytest --rewrite tests/test_documents.py`; do not edit by hand."
 
@@ -130,12 +131,12 @@ def _sizes() -> Iterator[str]:
 
 def _records() -> Iterator[str]:
     """Yield a table of keys for the machine and for every record that its keys lead to, each record once."""
-    seen: set[str] = set()
-    waiting = [("machine", Record("kurbel.machine:Machine"))]
+    seen: set[type[Described]] = set()
+    waiting = [("machine", Record(Machine))]
     while waiting:
         name, record = waiting.pop(0)
-        if record.target not in seen:
-            seen.add(record.target)
+        if record.load() not in seen:
+            seen.add(record.load())
             yield f"## {name}\n\n{_keys(record.keys)}"
             waiting += [one for word, key in record.keys.items() for one in key.form.records(word)]
 

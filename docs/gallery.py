@@ -10,7 +10,8 @@ from pathlib import Path
 from kurbel.machine_file import load
 from kurbel.render import Look
 from kurbel.render.pictures.svg import svg_file
-from kurbel.report.pictures import PICTURES, Wish, pictures
+from kurbel.report.pictures import PICTURES, pictures
+from kurbel.report.pictures.source import Wish
 from kurbel.solver.case import Case
 
 CONFIGS = Path(__file__).parent.parent / "configs"

@@ -10,7 +10,7 @@ from kurbel.machine.indicator import Card, Constant, Indicator
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 AT = 98066.5
 

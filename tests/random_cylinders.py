@@ -13,7 +13,7 @@ from kurbel.machine.indicator import Card, Chamber, Indicator
 from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import constant_pressure, one_cylinder
 
 

@@ -18,8 +18,9 @@ from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import by_id
 from kurbel.errors import UsageError
 from kurbel.report.check import checked
+from kurbel.report.commands import report_of
 from kurbel.report.compared import Unjudged, compared
-from kurbel.report.frame import Frame, report_of
+from kurbel.report.frame import Frame
 from kurbel.report.whole import COMMANDS
 from representative import CONFIGS, case_of, few, shipped
 

@@ -32,7 +32,7 @@ MACHINE = (
     "origin=None"
 )
 SIGNATURES = {
-    "Case": "machine",
+    "Case": "machine, count=None",
     "Cylinder": CYLINDER,
     "Machine": MACHINE,
     "Piston": "bore, head_end_rod=0.0, crank_end_rod=0.0, indicator=None, name='piston'",

@@ -74,5 +74,5 @@ def test_docstrings_and_pages_point_to_what_is_there() -> None:
 
 
 def test_what_is_not_there_is_found() -> None:
-    text = "see formulas.md 3.7, docs/limits.md, kurbel.solver.case.Case and kurbel.solver.drive"
-    assert astray(text, ROOT / "README.md") == ["formulas.md", "kurbel.solver.drive"]
+    text = "see formulas.md 3.7, docs/limits.md, kurbel.solver.case.Case and kurbel.solver.driver"
+    assert astray(text, ROOT / "README.md") == ["formulas.md", "kurbel.solver.driver"]

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from kurbel import loads, solve
 from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 

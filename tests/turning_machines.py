@@ -10,7 +10,7 @@ from kurbel.machine import Machine
 from kurbel.machine.flywheel import Flywheel
 from kurbel.machine.turning import Effort
 from kurbel.solver.case import Case
-from kurbel.solver.turning.flywheel import MachineTurning
+from kurbel.solver.flywheel import MachineTurning
 
 Point = tuple[float, float]
 

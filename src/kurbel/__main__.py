@@ -18,10 +18,8 @@ def main() -> "NoReturn":
     # matrices of nine rows are no work for many: threads cost their making, and wait for each other in a sweep
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
-        from kurbel.late_patterns import late_patterns
+        from kurbel.cli import kurbel
 
-        with late_patterns():
-            from kurbel.cli import kurbel
         kurbel.main()
     except KeyboardInterrupt:
         sys.exit(130)

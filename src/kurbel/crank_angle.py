@@ -7,7 +7,6 @@ from kurbel.numerics.arithmetic import where
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-    from kurbel.numerics.grid import Pieces
 
 _RADIANS_PER_DEGREE = math.pi / 180
 
@@ -39,9 +38,9 @@ class CrankAngle(NamedTuple):
         return cls(degrees, *_sin_cos_array(degrees))
 
     @classmethod
-    def at_nodes(cls, pieces: "Pieces") -> "CrankAngle":
+    def at_nodes(cls, pieces: Any) -> "CrankAngle":
         """Return the angles of the nodes of pieces of a cycle, (pieces, nodes)."""
-        offsets = pieces.offset if pieces.offset.ndim > 1 else pieces.offsets
+        offsets: Any = getattr(pieces, "offsets", pieces.offset)  # of the old grid the offsets
         return cls(pieces.degrees, *_turned(pieces.right_angle, offsets))
 
     @property
@@ -110,6 +109,7 @@ def _turned(right_angle: "Array", offset: "Array") -> "tuple[Array, Array]":
     rest = offset * _RADIANS_PER_DEGREE
     sin, cos = np.sin(rest), np.cos(rest)
     quarter = (right_angle / 90.0).astype(int) % 4
-    turned_sin, turned_cos = np.array((0.0, 1.0, 0.0, -1.0))[quarter], np.array((1.0, 0.0, -1.0, 0.0))[quarter]
-    # exact, since one term is zero; a sum with a zero of each sign, or with cos > 0 times 0.0, is no −0.0
-    return sin * turned_cos + cos * turned_sin, cos * turned_cos - sin * turned_sin
+    swapped = quarter % 2 == 1
+    # adding 0.0 turns −0.0 into 0.0
+    signs = np.array((1.0, 1.0, -1.0, -1.0)), np.array((1.0, -1.0, -1.0, 1.0))
+    return np.where(swapped, cos, sin) * signs[0][quarter] + 0.0, np.where(swapped, sin, cos) * signs[1][quarter] + 0.0

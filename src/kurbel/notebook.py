@@ -37,7 +37,8 @@ def draw(case: Case, *names: str, units: str = "metric", angles: tuple[float, ..
 
     angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that there is not.
     """
-    from kurbel.report.pictures import FILE, Wish, pictures
+    from kurbel.report.pictures import pictures
+    from kurbel.report.pictures.source import FILE, Wish
 
     return Drawing(tuple(pictures(case, names, Wish(units, FILE, None, angles))))
 

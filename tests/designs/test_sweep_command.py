@@ -213,7 +213,8 @@ def test_who_is_killed_leaves_no_process_and_the_old_file(end: int, suffix: str,
     file.write_text("old")
     process = in_the_midst(file, "2")
     os.kill(process.pid, end)
-    process.communicate(timeout=60)  # comes to the end of what each of them may write to when none is left
+    stderr = process.communicate(timeout=60)[1]  # comes to the end of what each of them may write to when none is left
+    assert stderr == ""
     assert file.read_text() == "old"
     if suffix == "csv":
         assert part(file).read_text().startswith("row,rod_ratio,T_max_N,failure\n1,3.0,")

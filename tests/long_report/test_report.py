@@ -21,7 +21,8 @@ from kurbel.cli.report import Progress
 from kurbel.machine_file import loads
 from kurbel.machine_file.given import given
 from kurbel.report.keys import every_place, meaning
-from kurbel.report.pictures import TERMINAL, Wish, pictures
+from kurbel.report.pictures import pictures
+from kurbel.report.pictures.source import TERMINAL, Wish
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 

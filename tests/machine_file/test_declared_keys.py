@@ -24,14 +24,14 @@ from schemas import whole_schema
 
 def all_records() -> Iterator[Record]:
     """Every record that the keys of a machine lead to."""
-    found = {ROOT.target: ROOT}
+    found = {ROOT.load(): ROOT}
     waiting = [ROOT]
     while waiting:
         record = waiting.pop()
         for name, key in record.keys.items():
             for _, inner in key.form.records(name):
-                if inner.target not in found:
-                    found[inner.target] = inner
+                if inner.load() not in found:
+                    found[inner.load()] = inner
                     waiting.append(inner)
     return iter(found.values())
 

@@ -12,7 +12,7 @@ from mpmath import mp
 from kurbel.errors import MachineFileError
 from kurbel.machine_file import load, loads
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 RPM = 90
 OMEGA = 2 * mp.pi * RPM / 60

@@ -18,14 +18,16 @@ from kurbel.declared.keys import Described, required
 from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.resistance import Moment, RamForce
-from kurbel.mechanisms import MECHANISMS, Mechanism
+from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.four_bar import FourBar
+from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
-from kurbel.report.frame import Frame, report_of
+from kurbel.report.commands import report_of
+from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 from representative import few, law_of_each
 

@@ -6,8 +6,9 @@ from dataclasses import replace
 from functools import cache
 
 from kurbel.machine_file import loads
-from kurbel.report.pictures import FILE, Wish, pictures, pictures_of
+from kurbel.report.pictures import pictures, pictures_of
 from kurbel.report.pictures.picture import Picture
+from kurbel.report.pictures.source import FILE, Wish
 from kurbel.solver.case import Case
 from representative import case_of
 

@@ -9,7 +9,8 @@ import pytest
 from drawn import drawn, ids_of
 
 from kurbel.machine_file import loads
-from kurbel.report.pictures import Wish, pictures_of
+from kurbel.report.pictures import pictures_of
+from kurbel.report.pictures.source import Wish
 from kurbel.solver.case import Case
 from representative import case_of
 

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import pytest
 
 import gallery  # docs/gallery.py
-from kurbel.mechanisms import MECHANISMS
+from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.report.pictures import PICTURES
 
 ROOT = Path(__file__).parent.parent.parent

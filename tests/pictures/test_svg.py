@@ -25,7 +25,8 @@ from kurbel.render.pictures.layout import scene
 from kurbel.render.pictures.scene import Text, thinned
 from kurbel.render.pictures.style import FAINT, GAIN, INK, LOOKS, LOSS, PAPER, css
 from kurbel.render.pictures.svg import svg_file
-from kurbel.report.pictures import Wish, pictures
+from kurbel.report.pictures import pictures
+from kurbel.report.pictures.source import Wish
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 
@@ -48,6 +49,9 @@ def contrast(one: str, other: str) -> float:
 def test_files_are_small_and_whole(name: str) -> None:
     for id in ids_of(name):
         for picture in drawn(name, id):
+            for piece in (piece for panel in picture.panels for curve in panel.curves for piece in curve.pieces):
+                assert np.isfinite(piece.x).all()
+                assert np.isfinite(piece.y).all()
             text = "".join(svg_file([picture], Look()))
             assert len(text.encode()) <= LARGEST
             root = ElementTree.fromstring(text)
@@ -149,8 +153,6 @@ def test_the_same_picture_every_time(suffix: str, begin: bytes, tmp_path: Path) 
 
 
 def test_thinning_leaves_out_only_what_lies_on_a_line() -> None:
-    import numpy as np
-
     x = np.linspace(0, 100, 401)
     y = np.abs(x - 50)
     assert thinned(x, y) == ((0.0, 50.0), (50.0, 0.0), (100.0, 50.0))

@@ -15,8 +15,9 @@ from kurbel.render.lines import plain
 from kurbel.render.pictures.canvas import Canvas
 from kurbel.render.pictures.letters import letters
 from kurbel.render.pictures.scale import Scale
-from kurbel.report.pictures import TERMINAL, Wish, pictures
+from kurbel.report.pictures import pictures
 from kurbel.report.pictures.picture import Picture
+from kurbel.report.pictures.source import TERMINAL, Wish
 from representative import few
 
 GOLDEN = Path(__file__).parent.parent / "golden"

@@ -13,7 +13,7 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import constant_pressure, one_cylinder
 
 PSI, POUND, INCH, FOOT = 0.45359237 * 9.80665 / 0.0254**2, 0.45359237 * 9.80665, 0.0254, 0.3048

@@ -16,7 +16,7 @@ from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.four_bar_loop import Loop
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
-from kurbel.solver.cylinder.motion import Motion
+from kurbel.solver.motion import Motion
 
 
 def omega(rpm):

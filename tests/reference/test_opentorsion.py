@@ -23,7 +23,7 @@ from kurbel.machine_file import load
 from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 FOLDER = Path(__file__).resolve().parents[3] / "shared" / "data"
 PRESSURES, PEAKS = FOLDER / "opentorsion_pressure_data.csv", FOLDER / "opentorsion_peak_data.csv"

@@ -12,7 +12,7 @@ from kurbel.machine.friction import Friction, Rings
 from kurbel.machine.indicator import Constant, Indicator
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.cylinder import friction as rules
+from kurbel.solver import friction as rules
 from machines import constant_pressure, one_cylinder
 from representative import few
 

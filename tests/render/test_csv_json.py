@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.errors import UsageError
-from kurbel.render import Look, render
+from kurbel.render import Look
+from kurbel.render.formats import render
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from render.sample_report import HIGH, ONE, PHI, REPORT, texts
 

@@ -11,8 +11,9 @@ import pytest
 from click.testing import CliRunner
 
 from kurbel.cli import kurbel
-from kurbel.mechanisms import every_quantity
-from kurbel.render import Look, render
+from kurbel.mechanisms.kinds import every_quantity
+from kurbel.render import Look
+from kurbel.render.formats import render
 from kurbel.render.latex import symbol, text
 from render.sample_report import REPORT
 from representative import CONFIGS

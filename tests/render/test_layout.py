@@ -12,9 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurbel.render import Look, render
+from kurbel.render import Look
 from kurbel.render.book import _book_sizes, _fitting_sizes
 from kurbel.render.charset import _NARROW, Charset, width
+from kurbel.render.formats import render
 from kurbel.render.prose import folded
 from kurbel.report.zusammenstellung import zusammenstellung
 from render.sample_report import ONE, REPORT, texts

@@ -10,7 +10,8 @@ import pytest
 from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import by_id
 from kurbel.machine_file import loads
-from kurbel.render import Look, render
+from kurbel.render import Look
+from kurbel.render.formats import render
 from kurbel.report.check import checked
 from kurbel.report.shown import shown_key_values
 from kurbel.report.tables import Column, Part, Report

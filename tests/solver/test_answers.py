@@ -14,10 +14,10 @@ from kurbel.cli import kurbel
 from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import by_id
 from kurbel.machine_file import loads
-from kurbel.numerics.grid import Grid
-from kurbel.numerics.search import Curve, lasting
+from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.cycle import lasting
+from kurbel.solver.forces import CylinderForces
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -232,15 +232,15 @@ class TestReversalsInTheNoise:
         text = f"{{speed: 60 rpm, crank: 400 mm, rod: 2 m, bore: 450 mm, indicator: {card}}}"
         plain = Case(loads(text)).cylinders[0]
         assert plain.reversals_in_noise == 0
-        assert not vars(plain).keys() & {"_reversals", "_extremes"}
+        assert not vars(plain).keys() & {"pieces", "_extremes"}
 
     def test_changes_in_a_band_lead_on_or_back(self) -> None:
         """Above, thrice through zero within the band, below; then to zero and back below; then above again."""
-        angles = np.array([10.0, 30, 50, 70, 90, 110, 130, 150, 170])
         values = np.array([9.0, -0.5, 0.5, -9, 0.5, -9, 9, 0.1, 8])
-        curve = Curve(
-            angles, np.arange(9), values, np.array([0]), Grid(np.arange(0.0, 181, 20)), np.arange(0), values[:, None]
-        )
+        breaks = Angles(np.zeros(9, dtype=np.intp), np.arange(0.0, 180.0, 20.0))
+        pieces = Pieces.between(breaks, 1, 360.0)
+        at = np.searchsorted(np.arange(0.0, 181.0, 20.0), pieces.middle) - 1
+        samples = np.broadcast_to(np.append(values, 8.0)[np.minimum(at, 9)], pieces.degrees.shape)
         changes = np.array([20.0, 40, 60, 80, 100, 120])
-        assert lasting(curve, changes, 1.0).tolist() == [40.0, 120.0]
-        assert lasting(curve, changes, 0.0).tolist() == changes.tolist()
+        assert lasting(pieces, samples, changes, 1.0).tolist() == [40.0, 120.0]
+        assert lasting(pieces, samples, changes, 0.0).tolist() == changes.tolist()

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from kurbel import loads
-from kurbel.frozen import values_of
 from kurbel.machine import Machine
-from kurbel.machine.variants import record_of
+from kurbel.machine.variants import record_of, values_of
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.case import Case
 

@@ -24,10 +24,10 @@ from kurbel.machine.piston import Piston
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.grid import Grid
+from kurbel.report.flywheel import dead_centre_force
 from kurbel.solver.case import Case
+from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.turning.excess import Excess
-from kurbel.solver.turning.flywheel import MachineTurning
-from kurbel.solver.turning.machine_effort import dead_centre_force
 from machines import STEAM_CARD, constant_pressure
 from representative import few, law_of_each
 from turning_machines import of_points

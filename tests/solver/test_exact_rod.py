@@ -22,7 +22,7 @@ from kurbel.machine_file import loads
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import STEAM_CARD, one_cylinder
 
 CRANK, LENGTH, RPM = 0.3, 1.3, 140.0

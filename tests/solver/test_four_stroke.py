@@ -23,7 +23,7 @@ from kurbel.report.angles import stepped
 from kurbel.report.forces import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import STEAM_CARD, constant_pressure
 
 BAR = 1e5
@@ -95,7 +95,7 @@ def test_energy_over_the_cycle(crank_end: Any, more: dict[str, Any]) -> None:
     """The quadrature of T over 720° is the closed work less friction."""
     forces = engine(CARD, crank_end, **more)
     assert abs(forces.energy_residual or 0.0) < 1e-14
-    assert forces.grid.breaks[-1] == 720
+    assert forces.breaks[-1] == 720
     if crank_end:
         head, crank = forces.drive.gas[0].works
         assert crank == pytest.approx(head * (0.22**2 - 0.06**2) / 0.22**2, rel=1e-14)

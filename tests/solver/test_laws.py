@@ -18,7 +18,7 @@ from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from machines import STEAM_CARD, one_cylinder
 from representative import few
 
@@ -127,9 +127,8 @@ def test_druckwechsel() -> None:
 def test_one_sided_values_at_a_jump() -> None:
     """Exhaust opens at the outer dead centre: 2.2 at before it, 1.2 at after it."""
     forces = one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(0.45, indicator=Indicator(STEAM_CARD)),))
-    drive = forces.drive
     at = np.array([180.0, 180.0])
-    before, after = drive.jets_at(at, np.array([179.0, 181.0])).p_head.value / 98066.5
+    before, after = forces.at(at, np.array([179.0, 181.0])).p_head / 98066.5
     assert before == pytest.approx(2.2, rel=1e-14)
     assert after == pytest.approx(1.2, rel=1e-14)
     assert forces.at([180.0]).p_head[0] / 98066.5 == pytest.approx(1.2, rel=1e-14)

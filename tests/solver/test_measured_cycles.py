@@ -25,7 +25,7 @@ from kurbel.machine_file.motored import Motored, dead_centre
 from kurbel.machine_file.samples import Layout
 from kurbel.numerics.vertex import vertex
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")

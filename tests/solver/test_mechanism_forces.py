@@ -23,9 +23,9 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
-from kurbel.numerics.gauss import GAUSS
-from kurbel.numerics.grid import Pieces
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.numerics.lobatto import rule
+from kurbel.numerics.pieces import Pieces
+from kurbel.solver.forces import CylinderForces
 from machines import AT, STEAM_CARD
 from representative import law_of_each
 
@@ -269,10 +269,11 @@ def test_extremes_of_the_motion_are_exact(mechanism: Mechanism) -> None:
 
 def test_a_hair_beyond_a_right_angle() -> None:
     """Nodes on a piece of 2⁻⁴⁰ degrees: what is too small to show in their angles still shows in their cosines."""
-    pieces = Pieces(np.array([90.0]), np.array([90 + 2.0**-40]), GAUSS)
-    beyond = np.radians(2.0**-41 * (1 + pieces.nodes))
-    assert CrankAngle.at_nodes(pieces).cos[0] == pytest.approx(-beyond, rel=1e-14, abs=0)
-    assert CrankAngle.of(pieces.degrees).cos[0] != pytest.approx(-beyond, rel=1e-4, abs=0)
+    half = np.array([2.0**-41])
+    pieces = Pieces(np.array([90.0]), np.array([0.0]), half, np.zeros(1, dtype=np.intp), 1, 360.0, rule(16))
+    beyond = np.radians(2.0**-41 * (1 + pieces.rule.nodes))
+    assert CrankAngle.at_nodes(pieces).cos[:, 0] == pytest.approx(-beyond, rel=1e-14, abs=0)
+    assert CrankAngle.of(pieces.degrees).cos[:, 0] != pytest.approx(-beyond, rel=1e-4, abs=0)
 
 
 def test_no_dead_centre_has_a_negative_zero() -> None:

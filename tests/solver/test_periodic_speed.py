@@ -24,7 +24,7 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.collocation_old import Unsettled, periodic
 from kurbel.numerics.elements import rule
 from kurbel.solver.case import Case
-from kurbel.solver.turning.flywheel import MachineTurning
+from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedEquation
 from machines import STEAM_CARD
 from representative import few

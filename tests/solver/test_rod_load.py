@@ -13,7 +13,7 @@ from kurbel.cli import kurbel
 from kurbel.machine_file import loads
 from kurbel.report.warnings import cylinder_warnings
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -55,7 +55,7 @@ def rod_load(degrees: mpf) -> mpf:
 def test_reversal_angles_are_roots_to_1e_9_degrees() -> None:
     with mp.workdps(40):
         wanted = [findroot(rod_load, (mpf(low), mpf(low) + mpf("0.1"))) for low in (15.9, 208.4)]
-    found = solved(RLO1).rod_load.phi_rod_reversal
+    found = solved(RLO1).phi_rod_reversal
     assert found == pytest.approx([float(one) for one in wanted], rel=0, abs=1e-9)
 
 
@@ -96,7 +96,7 @@ def test_pieces_of_the_reversed_load_add_up_and_the_longest_is_told() -> None:
     steps = ((0, 20, 2), (20, 30, -1), (30, 50, 2), (50, 80, -1), (80, 180, 2), (180, 360, 3))
     points = [[degrees, bar] for start, end, bar in steps for degrees in range(start, end + 1, 5)]
     trace = f"{{trace: {{unit: bar, points: {points}}}}}"
-    found = solved(f"crank: 100 mm\nrod: 500 mm\nbore: 100 mm\nindicator: {{head_end: {trace}}}\n").rod_load
+    found = solved(f"crank: 100 mm\nrod: 500 mm\nbore: 100 mm\nindicator: {{head_end: {trace}}}\n")
     assert found.phi_rod_reversal == pytest.approx([20, 30, 50, 80], abs=1e-9)
     assert found.reversal_angle == pytest.approx(40, abs=1e-9)
     assert found.reversal_longest == pytest.approx(30, abs=1e-9)

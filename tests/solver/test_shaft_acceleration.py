@@ -10,7 +10,7 @@ import pytest
 
 from kurbel.machine_file import load, loads
 from kurbel.solver.case import Case
-from kurbel.solver.turning.flywheel import MachineTurning
+from kurbel.solver.flywheel import MachineTurning
 from representative import few
 from turning_machines import of_points, rectangles
 

@@ -14,7 +14,7 @@ from kurbel.accuracy.rivals import MOTIONS, summed_excess, trapezoid
 from kurbel.accuracy.textbook import Moved, TextbookCylinder, TextbookMachine
 from kurbel.arrays import Array
 from kurbel.machine import Cylinder, Machine
-from kurbel.solver.cylinder.friction import mean_friction_over_rod_angle, redtenbacher_logarithm, redtenbacher_loss
+from kurbel.solver.friction import mean_friction_over_rod_angle, redtenbacher_logarithm, redtenbacher_loss
 
 SHIFT = 0.1
 """Degrees by which a dead centre may be found wrong."""
@@ -95,7 +95,7 @@ def _turnover(torque: Array) -> float:
 
 def _of_friction(machine: Machine, cylinder: Cylinder) -> Iterator[Difference]:
     """Redtenbacher's means over the rod angle against each other, and against the work truly lost."""
-    from kurbel.solver.cylinder.forces import CylinderForces
+    from kurbel.solver.forces import CylinderForces
 
     lam, f = cylinder.mechanism.lam, cylinder.friction.crosshead if cylinder.friction else None
     if not f or not lam or cylinder.mechanism.offset:

@@ -3,6 +3,7 @@
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -10,7 +11,6 @@ import click
 
 from kurbel.cli import readings
 from kurbel.cli.completion import complete_columns, complete_cylinder, complete_override
-from kurbel.frozen import frozen
 from kurbel.render import FORMATS, LAYOUTS, Look
 from kurbel.report.tables import Report
 
@@ -23,7 +23,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 Item = TypeVar("Item")
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Output:
     """Where a report goes and how it looks."""
 
@@ -32,7 +32,7 @@ class Output:
 
     def write(self, report: Report) -> None:
         """Write the report."""
-        from kurbel.render.output import write_report
+        from kurbel.render.formats import write_report
 
         write_report(report, self.look, self.file_name)
 
@@ -232,7 +232,7 @@ Spreads = tuple[tuple[str, str], ...]
 """Dotted keys, each with its standard uncertainty as a text."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Asked:
     """What is asked of a command that prints a table for a machine, by the names of the options.
 

@@ -48,7 +48,8 @@ def plot(
     and pdf need matplotlib. FILE may be - for standard input.
     """
     from kurbel.render.pictures.drawing import check_file, draw_file, draw_stdout
-    from kurbel.report.pictures import FILE, PICTURES, TERMINAL, Wish, pictures, pictures_of
+    from kurbel.report.pictures import PICTURES, pictures, pictures_of
+    from kurbel.report.pictures.source import FILE, TERMINAL, Wish
     from kurbel.solver.case import Case
 
     if listed and file_name is not None:

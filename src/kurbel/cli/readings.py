@@ -53,7 +53,7 @@ def columns(text: str) -> tuple[str, ...]:
     if all(word in COLUMNS for word in named):
         return named
     from kurbel.declared.quantity import ambiguity, called, joined
-    from kurbel.mechanisms import every_quantity
+    from kurbel.mechanisms.kinds import every_quantity
 
     known = [column for column in every_quantity().all_columns if column.commands]
 

@@ -5,6 +5,7 @@ A record (`Cylinder`, `Piston`, …) carries a table `KEYS` of these.
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.declared.reading import REFUSED, Reading, Tree
@@ -202,6 +203,13 @@ class Described:
     """A record that a machine file describes by its `KEYS`."""
 
     KEYS: ClassVar[Keys]
+
+    def __repr__(self) -> str:
+        """Return the call that makes the record, without what has its default value: a machine has many of these."""
+        record: Any = self
+        values = [(one, getattr(record, one.name)) for one in fields(record)]
+        given = (f"{one.name}={value!r}" for one, value in values if value is not one.default)
+        return f"{type(self).__name__}({', '.join(given)})"
 
     @classmethod
     def from_keys(cls, **values: Any) -> Any:

@@ -1,6 +1,7 @@
 """Every quantity that kurbel prints, declared once: reports, CSV heads, JSON, limits and docs read it here."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import partial
 
 from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
@@ -11,7 +12,6 @@ from kurbel.declared.forces import INDICATED_COLUMNS, INDICATED_VALUES, ROD_COLU
 from kurbel.declared.quantity import Quantity, by_id, extremes, placed
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
 from kurbel.declared.torsion import HARMONIC_VALUES, TORSION_COLUMNS, TORSION_VALUES
-from kurbel.frozen import frozen
 
 _FORCES, _FLYWHEEL, _STRESS = ("forces",), ("flywheel",), ("stress",)
 _motion = partial(Quantity, commands=("motion", "forces"))
@@ -196,7 +196,7 @@ _WORK_VALUES = (
 )
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Lists:
     """The columns and the key values that there can be, each in the order in which they are printed."""
 

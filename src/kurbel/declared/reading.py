@@ -5,10 +5,10 @@ The tree is made of dict, list and texts. Numbers stay text: what a text means i
 
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Any
 
 from kurbel.errors import Fault, Path, RuleError
-from kurbel.frozen import frozen
 
 Tree = dict[str, Any]
 FAULT_LIMIT = 100
@@ -34,7 +34,7 @@ class _Refused:
 REFUSED = _Refused()
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Birth:
     """A record that was read: its form, the mapping at a path, the values of its keys, and what was made of them."""
 

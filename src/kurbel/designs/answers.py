@@ -1,39 +1,24 @@
-"""The answers of many machines: those of one kind side by side, the others one after another."""
+"""The answers of many machines: those of one structure in batches, the others one after another."""
 
 from collections.abc import Container, Sequence
-from functools import cache
 from itertools import compress
 from typing import Any, Union
 
 import numpy as np
 
-from kurbel.declared.quantity import Quantity
-from kurbel.designs.columns import Answer, answered_alone
+from kurbel.designs.columns import Answer, answered_alone, answers_in
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
-from kurbel.machine.side_by_side import Kinds, side_by_side
+from kurbel.machine.batch import Structures, batch
 from kurbel.machine.variants import Lot
-from kurbel.numerics.cycles import Unlike
-from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.cylinder.guide_load import GuideLoad
-from kurbel.solver.cylinder.indicated import Indicated
-from kurbel.solver.cylinder.motion import Motion
-from kurbel.solver.cylinder.rod_load import RodLoad
-from kurbel.solver.figures import answered
+from kurbel.solver.case import Case
 
-_ALONE = ("energy_residual",)
-"""Key values whose quadrature cuts the pieces of each machine until they agree, and answers one machine at a time."""
-_BESIDE = (CylinderForces, GuideLoad, Indicated, Motion, RodLoad)
-"""What answers key values of a cylinder by formulas that take many machines."""
+_ALONE = ("torsion", "flywheel", "harmonics", "stress", "bearings", "balance")
+"""Commands that answer one machine at a time: torsion turns matrices of its own size, the others are not moved yet."""
 _FEWEST = 3
-"""Machines of one kind; fewer are answered as quickly alone."""
+"""Machines of one structure; fewer are answered as quickly alone."""
 AT_ONCE = 1000
-"""Machines side by side: enough to share the overhead of one run; more would only take memory."""
-
-_KEPT = 256 * 2**20
-"""Bytes that are freed and may be kept: what one run over many machines gives back the next one takes again."""
-_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
-"""What malloc.h of the GNU C library calls M_TRIM_THRESHOLD and M_MMAP_THRESHOLD."""
+"""Machines of a batch: enough to share the overhead of one run; more would only take memory."""
 
 Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, a tuple or None each; or why it answers nothing."""
@@ -45,30 +30,18 @@ def answers_of(lots: Sequence[Lot], asked: Sequence[Answer], rows: Container[int
     Where rounding depends on the length of an array, as in older versions of numpy, it depends on the company in which
     a machine stands: whoever wants the same digits of a row at every time gives all lots of its company each time.
     """
-    side_by_side = [one.of_cylinder and _stands_beside(one.quantity) for one in asked]
+    in_batches = [one.command not in _ALONE for one in asked]
     with np.errstate(all="ignore"):
-        together = _Answers(lots, [one for one, beside in zip(asked, side_by_side) if beside]).found(rows)
-        if all(side_by_side):
+        together = _Answers(lots, [one for one, own in zip(asked, in_batches) if own]).found(rows)
+        if all(in_batches):
             return together
-        alone = _Answers(lots, [one for one, beside in zip(asked, side_by_side) if not beside], True).found(rows)
-    return {row: _merged(first, alone[row], side_by_side) for row, first in together.items()}
-
-
-def stands_beside(machine: Machine, asked: Answer) -> bool:
-    """Return whether many such machines answer this side by side, in little more time than one of them."""
-    return _stands_beside(asked.quantity) and not is_slow(machine, asked)
+        alone = _Answers(lots, [one for one, own in zip(asked, in_batches) if not own], True).found(rows)
+    return {row: _merged(first, alone[row], in_batches) for row, first in together.items()}
 
 
 def is_slow(machine: Machine, asked: Answer) -> bool:
-    """Return whether what is asked is of the whole machine, or of a cylinder that must be answered alone."""
-    own = (one for one in machine.cylinders if one.name == asked.subject and asked.of_cylinder)
-    return all(Kinds().of(machine, one) is None for one in own)
-
-
-def _stands_beside(quantity: Quantity) -> bool:
-    """Return whether a key value is one of a cylinder whose formulas take many machines."""
-    name = quantity.asks[0] if quantity.asks else quantity.id
-    return quantity.id not in _ALONE and any(hasattr(one, name) for one in _BESIDE)
+    """Return whether many such machines answer this one after another, and not in batches."""
+    return asked.command in _ALONE or Structures().of(machine) is None
 
 
 def _merged(first: Values, second: Values, of_first: Sequence[bool]) -> Values:
@@ -81,15 +54,12 @@ def _merged(first: Values, second: Values, of_first: Sequence[bool]) -> Values:
 
 class _Answers:
     def __init__(self, lots: Sequence[Lot], asked: Sequence[Answer], alone: bool = False) -> None:
-        self._lots, self._asked = lots, asked
+        self._lots, self._asked, self._one_by_one = lots, asked, alone
         self._places = {row: (number, place) for number, lot in enumerate(lots) for place, row in enumerate(lot.rows)}
         self._found: dict[int, Values] = {}
-        self._names = [] if alone else list(dict.fromkeys(one.subject for one in asked))
 
     def found(self, wanted: Container[int] | None) -> dict[int, Values]:
-        for rows in self._alike() if self._names else ():
-            if 2 * len(rows) > AT_ONCE:  # of a whole chunk some fail
-                _keep_memory()
+        for rows in () if self._one_by_one or not self._asked else self._of_one_structure():
             for start in range(0, len(rows), AT_ONCE):
                 self._together(rows[start : start + AT_ONCE])
         return {
@@ -98,49 +68,36 @@ class _Answers:
             if wanted is None or row in wanted
         }
 
-    def _alike(self) -> list[list[int]]:
-        """Return the rows of machines of one kind; of others none."""
-        kinds: dict[Any, list[int]] = {}
-        known = Kinds()
+    def _of_one_structure(self) -> list[list[int]]:
+        """Return the rows of machines of each structure; of those that must be answered alone none."""
+        found: dict[Any, list[int]] = {}
+        structures = Structures()
         for lot in self._lots:
-            own = {cylinder.name: cylinder for cylinder in lot.machine.cylinders}
-            found = tuple(known.of(lot.machine, own[name]) if name in own else None for name in self._names)
-            if None not in found:
-                kinds.setdefault(found, []).extend(lot.rows)
-        return list(kinds.values())
+            if (structure := structures.of(lot.machine)) is not None:
+                found.setdefault(structure, []).extend(lot.rows)
+        return list(found.values())
 
     def _together(self, rows: list[int]) -> None:
-        """Answer these rows side by side; those that cannot be, and are left, are answered alone."""
+        """Answer these rows in a batch; those that fail, or whose numbers are none, are left to be answered alone."""
         if len(rows) < _FEWEST:
             return
         try:
-            found = self._columns(rows)
-        except Unlike as error:
-            odd = set(np.unique(error.variants).tolist())
-            self._together([row for place, row in enumerate(rows) if place not in odd])
+            found = answers_in(Case(self._batch(rows), len(rows)), self._asked)
         except (KurbelError, ArithmeticError, RuntimeWarning):
             self._together(rows[: len(rows) // 2])
             self._together(rows[len(rows) // 2 :])
-        else:
-            fit = np.ones(len(rows), dtype=bool)
-            for value in found:
-                fit &= _is_finite(value)
-            values = zip(rows, zip(*(_listed(value, len(rows)) for value in found)))
-            self._found.update(compress(values, fit.tolist()))
+            return
+        fit = np.ones(len(rows), dtype=bool)
+        for value in found:
+            fit &= _is_finite(value)
+        values = zip(rows, zip(*(_listed(value, len(rows)) for value in found)))
+        self._found.update(compress(values, fit.tolist()))
 
-    def _columns(self, rows: list[int]) -> list[Any]:
-        cylinders = {name: self._stack(rows, name) for name in self._names}
-        found = [one.part_of(answered(cylinders[one.subject].answering, one.quantity)) for one in self._asked]
-        for one in cylinders.values():
-            vars(one).clear()  # its parts point back: in a circle the arrays of a chunk would outlive many others
-        return found
-
-    def _stack(self, rows: list[int], name: str) -> CylinderForces:
+    def _batch(self, rows: list[int]) -> Machine:
         places: dict[int, list[int]] = {}
         for number, place in (self._places[row] for row in rows):
             places.setdefault(number, []).append(place)
-        lots = [(self._lots[number], np.array(own)) for number, own in places.items()]
-        return CylinderForces(*side_by_side(lots, name), len(rows))
+        return batch([(self._lots[number], np.array(own)) for number, own in places.items()])
 
     def _alone(self, row: int) -> Values:
         if not self._asked:
@@ -154,24 +111,8 @@ class _Answers:
             return f"these numbers lead beyond what can be computed with ({error})"
 
 
-@cache
-def _keep_memory() -> None:
-    """Ask the C library, where it is that of GNU, to keep what is freed.
-
-    It would give it to the system, which hands it out again page by page: a third of the time of a sweep.
-    """
-    try:
-        from ctypes import CDLL
-
-        set_option = CDLL(None).mallopt
-    except (ImportError, OSError, TypeError, AttributeError):  # there is none to ask
-        return
-    for option in (_TRIM_THRESHOLD, _MMAP_THRESHOLD):
-        set_option(option, _KEPT)
-
-
 def _listed(value: Any, count: int) -> Sequence[Any]:
-    """Return the values of so many machines side by side, one by one."""
+    """Return the values of so many machines of a batch, one by one."""
     if value is None or isinstance(value, tuple):
         return value if value and isinstance(value[0], tuple) else [value] * count
     return value.tolist() if np.ndim(value) else [float(value)] * count

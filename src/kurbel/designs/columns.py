@@ -1,7 +1,6 @@
 """What is asked of every design: key values of any command, each of a cylinder or of the whole machine."""
 
-from collections.abc import Iterable, Iterator, Sequence
-from importlib import import_module
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,13 +9,11 @@ from kurbel.declared.quantity import Quantity, ambiguity, called, joined
 from kurbel.declared.reading import shown
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms import every_quantity
+from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
+from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
-
-SIDE_BY_SIDE = ("forces", "motion")
-"""Commands whose key values a cylinder answers."""
 
 
 class Answer(NamedTuple):
@@ -41,16 +38,6 @@ class Answer(NamedTuple):
         if self.angle:
             return found.degrees if isinstance(found, Extreme) else None
         return number_of(found)
-
-    @property
-    def of_cylinder(self) -> bool:
-        """Whether a cylinder answers it by its forces or motion."""
-        return self.command in SIDE_BY_SIDE
-
-
-def subjects(case: Case, command: str) -> Iterable[Any]:
-    """Return whom a command speaks of, with what answers their key values."""
-    return import_module(f"kurbel.report.{command}").subjects(case)  # type: ignore[no-any-return]
 
 
 def asked_answers(machine: Machine, names: Sequence[str], with_angles: bool = False) -> tuple[Answer, ...]:
@@ -80,7 +67,7 @@ def _stands(value: Any) -> bool:
 def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
     """Yield who answers what a command tells unasked, each with what this machine has there: see `_answer`."""
     command = "forces" if case.machine.cylinders else "flywheel"
-    for subject in subjects(case, command):
+    for subject in subjects_of(case, command):
         for quantity in subject.lists.key_values(command).values():
             value = None if quantity.residual else _answer(subject, quantity, unasked=True)
             if value is not None:
@@ -103,7 +90,7 @@ def _named(case: Case, name: str) -> list[tuple[Answer, Any]]:
     for word in dict.fromkeys(command):
         found = [
             (Answer(quantity, word, subject.name), value)
-            for subject in subjects(case, word)
+            for subject in subjects_of(case, word)
             if (quantity := subject.lists.key_values(word).get(ids[0]))
             and (value := _answer(subject, quantity)) is not None
         ]
@@ -122,17 +109,19 @@ def _answer(subject: Any, quantity: Quantity, unasked: bool = False) -> Any:
 
 def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
     """Return the values of a machine alone, in SI, a number, a tuple or None; raises KurbelError."""
-    case = Case(machine)
-    known: dict[tuple[str, str], Any] = {}
-    for command in dict.fromkeys(one.command for one in answers):
-        known |= {(command, subject.name): subject for subject in subjects(case, command)}
-    return [_checked(known.get((one.command, one.subject)), one) for one in answers]
-
-
-def _checked(subject: Any, asked: Answer) -> Any:
     from kurbel.report.shown import too_large
 
-    value = asked.part_of(subject.answer(asked.quantity)) if subject else None
-    if value is not None and not np.isfinite(value).all():
-        raise too_large(asked.quantity)
-    return value
+    found = answers_in(Case(machine), answers)
+    for one, value in zip(answers, found):
+        if value is not None and not np.isfinite(value).all():
+            raise too_large(one.quantity)
+    return found
+
+
+def answers_in(case: Case, answers: Sequence[Answer]) -> list[Any]:
+    """Return the values of a case of one machine or of many, in SI; raises KurbelError."""
+    known: dict[tuple[str, str], Any] = {}
+    for command in dict.fromkeys(one.command for one in answers):
+        known |= {(command, subject.name): subject for subject in subjects_of(case, command)}
+    found = ((one, known.get((one.command, one.subject))) for one in answers)
+    return [one.part_of(subject.answer(one.quantity)) if subject else None for one, subject in found]

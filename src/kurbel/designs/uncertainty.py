@@ -16,9 +16,9 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Values, answers_of, stands_beside
+from kurbel.designs.answers import Values, answers_of, is_slow
 from kurbel.designs.binding import Binder, written
-from kurbel.designs.columns import Answer, subjects
+from kurbel.designs.columns import Answer
 from kurbel.designs.sampling import latin_hypercube
 from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
@@ -26,6 +26,7 @@ from kurbel.machine.origin import Origin
 from kurbel.machine_file.given import tree_of
 from kurbel.machine_file.overrides import path_of
 from kurbel.machine_file.positions import located
+from kurbel.report.commands import subjects_of
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
 
@@ -116,7 +117,7 @@ class Uncertainty:
     def of(self, asked: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
         """Return the uncertainties of those key values that are numbers; counted: goes through parts of a sample."""
         linear, bends = self._of_first_order(asked)
-        beside = [place for place in bends if stands_beside(self._binder.machine, linear[place].answer)]
+        beside = [place for place in bends if not is_slow(self._binder.machine, linear[place].answer)]
         alone = [place for place in bends if place not in beside]
         found = dict(enumerate(linear))
         for places, count, at_once in ((beside, SAMPLE, _AT_ONCE), (alone, SLOW_SAMPLE, _SLOWLY)):
@@ -277,7 +278,7 @@ def _asked(case: Case, command: str) -> list[Answer]:
     """Return the key values of a command that are numbers which the inputs move."""
     return [
         Answer(quantity, command, subject.name)
-        for subject in subjects(case, command)
+        for subject in subjects_of(case, command)
         for quantity, _ in subject.key_values(command)
         if not (quantity.listed or quantity.residual)
     ]

@@ -145,8 +145,9 @@ def work() -> None:
         try:
             pickle.dump(found, sys.stdout.buffer)
             sys.stdout.buffer.flush()
-        except BrokenPipeError:  # nobody reads it: the process that started this one has ended
-            os._exit(1)
+        except BrokenPipeError:  # the process that started this one has ended; what is buffered is for nobody
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return
 
 
 @contextmanager

@@ -1,13 +1,15 @@
 """The machine: one immutable description in SI, complete at birth, from a file or from Python.
 
 Records check their own rules and raise RuleError. They hold numbers only; what the numbers lead to is in
-`kurbel.solver`. Records that few machines need live in modules of their own and are imported when a machine names them.
+`kurbel.solver`.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import (
@@ -29,23 +31,20 @@ from kurbel.declared.forms import (
 )
 from kurbel.declared.forms.figures import MACHINE, Expected, scoped
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.quantity import Quantity
+from kurbel.declared.quantity import Quantity, by_id
 from kurbel.declared.reading import REFUSED, shown
 from kurbel.errors import Fault, RuleError, refuse
-from kurbel.frozen import frozen
+from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
+from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.cylinder import COUNTERWEIGHTS, CYCLES, Cylinder, crowded
+from kurbel.machine.equal import EqualCylinders, in_order
+from kurbel.machine.flywheel import Flywheel
+from kurbel.machine.origin import Origin
+from kurbel.machine.shaft_line import ShaftLine, ShaftPart
+from kurbel.machine.shaft_list import line_of, shaft_faults
+from kurbel.machine.turning import Coupling, Effort, Harmonics, Load
+from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
-    from kurbel.machine.crankshaft import Crankshaft
-    from kurbel.machine.equal import EqualCylinders
-    from kurbel.machine.flywheel import Flywheel
-    from kurbel.machine.origin import Origin
-    from kurbel.machine.shaft_line import ShaftLine, ShaftPart
-    from kurbel.machine.turning import Coupling, Effort, Harmonics, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
 
@@ -55,9 +54,6 @@ STANDARD_ATMOSPHERE = 101325.0
 
 
 def _key_values() -> dict[str, Quantity]:
-    from kurbel.declared.quantity import by_id
-    from kurbel.mechanisms import every_quantity
-
     return by_id(*every_quantity().all_key_values)
 
 
@@ -66,13 +62,11 @@ def _names(cylinders: Sequence[Cylinder]) -> list[str]:
 
 
 def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: tuple[Cylinder, ...] | EqualCylinders) -> list[Fault]:
-    from kurbel.machine.shaft_list import shaft_faults
-
     names = _names(cylinders if isinstance(cylinders, tuple) else cylinders.cylinders)
     return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Machine(Described):
     """A whole machine.
 
@@ -134,11 +128,11 @@ class Machine(Described):
             "power", "Power measured at the shaft; a warning tells when less is indicated", "N_e", absent="not compared"
         ),
         "brake_torque": not_negative("torque", "The same as a torque", "M_e", instead="brake_power", needs="speed"),
-        "cylinder": Key(Inline(Record("kurbel.machine:Cylinder"), unless="cylinders"), "The keys of the only cylinder"),
+        "cylinder": Key(Inline(Record(Cylinder), unless="cylinders"), "The keys of the only cylinder"),
         "cylinders": Key(
             OneOf(
-                Alike(Record("kurbel.machine:Cylinder", inline_too=True), "cylinder"),
-                Record("kurbel.machine.equal:EqualCylinders"),
+                Alike(Record(Cylinder, inline_too=True), "cylinder"),
+                Record(EqualCylinders),
             ),
             "Several cylinders, listed, or equal ones at once; their keys then do not stand at the top",
             absent="one cylinder, flat",
@@ -148,9 +142,9 @@ class Machine(Described):
             "Order in which the cylinders fire, at equal intervals over the cycle; sets `crank_position`",
             absent="positions as given",
         ),
-        "flywheel": Key(Record("kurbel.machine.flywheel:Flywheel"), "Flywheel", absent="no speed line"),
+        "flywheel": Key(Record(Flywheel), "Flywheel", absent="no speed line"),
         "load": Key(
-            OneOf(Choice(("constant",)), Record("kurbel.machine.turning:Load")),
+            OneOf(Choice(("constant",)), Record(Load)),
             "Resistance at the shaft",
             absent="constant",
         ),
@@ -159,17 +153,15 @@ class Machine(Described):
             "A turning-moment diagram known from elsewhere, instead of cylinders",
             absent="from the cylinders",
         ),
-        "coupling": Key(
-            Record("kurbel.machine.turning:Coupling"), "Elastic coupling to a driven moment of inertia", absent="rigid"
-        ),
+        "coupling": Key(Record(Coupling), "Elastic coupling to a driven moment of inertia", absent="rigid"),
         "crankshaft": Key(
-            Record("kurbel.machine.crankshaft:Crankshaft"),
+            Record(Crankshaft),
             "One throw between bearings A and B",
             absent="no strength check",
         ),
         "counterweights": COUNTERWEIGHTS,
         "balance_shafts": Key(
-            Listing(Record("kurbel.machine.balance:BalanceShaft")),
+            Listing(Record(BalanceShaft)),
             "Shafts with weights that turn once, twice, … in a turn of the crank, with it or against it",
             absent="none",
         ),
@@ -180,12 +172,12 @@ class Machine(Described):
             absent="the middle of the outer cylinders",
         ),
         "locomotive": Key(
-            Record("kurbel.machine.balance:Locomotive"),
+            Record(Locomotive),
             "Driven wheels, for hammer blow and swaying couple",
             absent="no locomotive",
         ),
         "shaft": Key(
-            Listing(OneOf(Choice(("ground", "flywheel")), Record("kurbel.machine.shaft_line:ShaftPart"))),
+            Listing(OneOf(Choice(("ground", "flywheel")), Record(ShaftPart))),
             "Shaft line for torsional vibration, read along the shaft: masses, pieces between them, one pair of gears, "
             "and the words `flywheel`, that of the machine, and `ground`, a fixed end",
             absent="no torsional vibration",
@@ -223,20 +215,14 @@ class Machine(Described):
         **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
-        from dataclasses import replace
-
         if brake_torque is not None:
             keys["brake_power"] = 2 * math.pi * keys["speed"] * brake_torque
         given = (cylinder,) if cylinder else cylinders
         faults = _shaft_faults(shaft, given) if shaft else []
         try:
             if firing_order or not isinstance(given, tuple) or len(given) > 1:
-                from kurbel.machine.equal import in_order
-
                 given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
             if shaft and not faults:
-                from kurbel.machine.shaft_list import line_of
-
                 keys["shaft"] = line_of(shaft, _names(given))
             elif not given:
                 refuse(*faults)

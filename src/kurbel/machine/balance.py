@@ -1,11 +1,11 @@
 """What is put on a machine to balance it: counterweights on the crank, balance shafts, the wheels of a locomotive."""
 
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Choice, Count, Listing, Number, Physical, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import refused
-from kurbel.frozen import frozen
 
 _WEIGHT_KEYS: Keys = {
     "product": not_negative(
@@ -28,7 +28,7 @@ def _product(keys: dict[str, Any]) -> float:
     return product
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Counterweight(Described):
     """A weight that turns with the crank: mass times radius in kg m, its direction and its place.
 
@@ -55,7 +55,7 @@ class Counterweight(Described):
         return cls(_product(keys), **keys)
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class SharedCounterweights(Described):
     """Counterweights opposite each throw, for what turns with it and a share of what goes to and fro.
 
@@ -87,7 +87,7 @@ class SharedCounterweights(Described):
             refused(f"{len(self.planes)} of them, {len(set(self.planes))} different; {message}", "planes")
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class BalanceShaft(Described):
     """A shaft with a weight of mass times radius in kg m that turns `order` times in a turn of the crank.
 
@@ -127,7 +127,7 @@ class BalanceShaft(Described):
         return cls(_product(keys), against=sense == "against", **keys)
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Locomotive(Described):
     """The driven wheels of a locomotive, in which its counterweights stand: lengths in m, forces in N.
 

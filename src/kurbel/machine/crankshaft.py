@@ -1,13 +1,13 @@
 """One crank throw between two bearings or overhung beyond one, with a flywheel (Öl- und Gasmaschinen)."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.declared.forms import Physical, Truth, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
-from kurbel.frozen import frozen
 
 _ROUNDED = 1.05
 """What lengths may contradict one another by: printed examples round them."""
@@ -17,7 +17,7 @@ def _length(text: str, symbol: str, required: bool = True, absent: str = "") -> 
     return positive("length", text, symbol, required=required, absent=absent)
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Crankshaft(Described):
     """A crank throw between bearing A and bearing B, the one on the side of the flywheel; lengths in m.
 

@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Choice, Inline, Listing, OneOf, Physical, Record, Text, Variant
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse, refused
-from kurbel.frozen import frozen
-from kurbel.mechanisms import MECHANISMS, Mechanism
-
-if TYPE_CHECKING:
-    from kurbel.machine.balance import Counterweight, SharedCounterweights
-    from kurbel.machine.friction import Friction
-    from kurbel.machine.masses import ConnectingRod, Masses
-    from kurbel.machine.piston import Piston
-    from kurbel.machine.resistance import Moment, RamForce
-    from kurbel.machine.rod_point import RodPoint
+from kurbel.machine.balance import Counterweight, SharedCounterweights
+from kurbel.machine.friction import Friction
+from kurbel.machine.masses import ConnectingRod, Masses
+from kurbel.machine.piston import Piston
+from kurbel.machine.resistance import Moment, RamForce
+from kurbel.machine.rod_point import RodPoint
+from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms.kinds import MECHANISMS
 
 CYCLES = {"two-stroke": 1, "four-stroke": 2}
 """Cycle -> revolutions of the shaft."""
@@ -40,8 +39,8 @@ _OTHER_NAMES = {
 
 COUNTERWEIGHTS = Key(
     OneOf(
-        Record("kurbel.machine.balance:SharedCounterweights"),
-        Listing(Record("kurbel.machine.balance:Counterweight")),
+        Record(SharedCounterweights),
+        Listing(Record(Counterweight)),
     ),
     "Counterweights on the crank: a share of the reciprocating mass, or a list of them",
     absent="none",
@@ -49,7 +48,7 @@ COUNTERWEIGHTS = Key(
 """Of a cylinder beside its throw, or of the whole machine."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Cylinder(Described):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 
@@ -89,15 +88,15 @@ class Cylinder(Described):
             "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft, beyond it leaning over",
             absent="weight left out",
         ),
-        "piston": Key(Inline(Record("kurbel.machine.piston:Piston")), "The cylinder's own piston"),
+        "piston": Key(Inline(Record(Piston)), "The cylinder's own piston"),
         "tandem": Key(
-            Listing(Record("kurbel.machine.piston:Piston", inline_too=True)),
+            Listing(Record(Piston, inline_too=True)),
             "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
             absent="none",
         ),
-        "masses": Key(Record("kurbel.machine.masses:Masses"), "Masses of the moving parts", absent="no inertia"),
+        "masses": Key(Record(Masses), "Masses of the moving parts", absent="no inertia"),
         "friction": Key(
-            Record("kurbel.machine.friction:Friction"),
+            Record(Friction),
             "Friction of crosshead, piston rings, pins and journals, or a force",
             absent="no friction",
         ),
@@ -115,17 +114,17 @@ class Cylinder(Described):
         "axial_position": Key(Physical("length"), "Place along the shaft", "z", absent="free moments left out"),
         "counterweights": COUNTERWEIGHTS,
         "ram_force": Key(
-            Record("kurbel.machine.resistance:RamForce"),
+            Record(RamForce),
             "Force on a ram against its motion, constant on each stroke",
             absent="none",
         ),
         "moment": Key(
-            Record("kurbel.machine.resistance:Moment"),
+            Record(Moment),
             "Moment against the motion of a mechanism whose output only swings or turns",
             absent="none",
         ),
         "point": Key(
-            Record("kurbel.machine.rod_point:RodPoint"),
+            Record(RodPoint),
             "A point of the connecting rod or coupler, of which place, velocity and acceleration are told",
             absent="none",
         ),

@@ -1,15 +1,15 @@
 """Cards as the indicator drew them: millimetres on the paper, by the length of the card and the scale of its spring."""
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Described, Keys
 from kurbel.declared.kinds import Factor
-from kurbel.frozen import frozen
 from kurbel.machine.rectangle import Rectangle
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Drawn(Described):
     """The paper of a card: its length in m, and the scale of the spring in m/Pa."""
 

@@ -1,19 +1,18 @@
 """Equal cylinders described at once, and where the cranks of several cylinders stand."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record, not_negative
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
-from kurbel.frozen import frozen
 from kurbel.machine.cylinder import CYCLES, Cylinder
 from kurbel.machine.firing import in_even_turns
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class EqualCylinders(Described):
     """Cylinders that differ in name, crank position and place only.
 
@@ -53,7 +52,7 @@ class EqualCylinders(Described):
             "γ",
             absent="in line",
         ),
-        "each": Key(Record("kurbel.machine:Cylinder", inline_too=True), "The keys of one cylinder", required=True),
+        "each": Key(Record(Cylinder, inline_too=True), "The keys of one cylinder", required=True),
     }
 
     @classmethod

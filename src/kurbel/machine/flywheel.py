@@ -1,19 +1,19 @@
 """The flywheel, and the rim that is to be built for it."""
 
 import math
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Number, Record, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.frozen import frozen
 
 CAST_IRON = 7250.0
 """Density in kg/m³ of what rims are cast of."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Rim(Described):
     """The rim of a flywheel: mean diameter in m, density in kg/m³, and the tension in Pa that it may bear or None.
 
@@ -109,7 +109,7 @@ class Rim(Described):
         return self.density * self.speed(omega) ** 2
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Flywheel(Described):
     """A flywheel: its moment of inertia J in kg m², the wanted coefficient of fluctuation δ, and the rim to be built.
 
@@ -143,7 +143,7 @@ class Flywheel(Described):
             example="1/80",
         ),
         "rim": Key(
-            Record("kurbel.machine.flywheel:Rim"),
+            Record(Rim),
             "A rim that has the whole moment of inertia; its sizes tell it, or else its section is told",
             absent="no section",
         ),

@@ -1,18 +1,18 @@
 """Friction of the crosshead on its guide and of piston rings (Redtenbacher 1862), as a force, in pins and journals."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from kurbel.declared.forms import Count, Number, Record, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys, check
 from kurbel.errors import Fault, refused
-from kurbel.frozen import frozen
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Rings(Described):
     """Piston rings: their number, height in m, pressure on the wall in Pa, and coefficient of friction."""
 
@@ -29,7 +29,7 @@ class Rings(Described):
     }
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Guide(Described):
     """The shoe with which a crosshead presses on its guide: length along the stroke and width in m."""
 
@@ -54,7 +54,7 @@ def _diameter(of: str, text: str, symbol: str, absent: str = "") -> Key:
     return positive("length", text, symbol, absent=absent, needs=of)
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Friction(Described):
     """Coefficient f of the crosshead, None where it is left out, rings, a force in N against the motion, the shoe.
 
@@ -76,9 +76,9 @@ class Friction(Described):
 
     KEYS: ClassVar[Keys] = {
         "crosshead": Key(Number(least=0), "Coefficient of friction of the crosshead on its guide", "f"),
-        "rings": Key(Record("kurbel.machine.friction:Rings"), "Piston rings"),
+        "rings": Key(Record(Rings), "Piston rings"),
         "constant": not_negative("force", "Force against the motion, the same over the stroke", "F_0"),
-        "guide": Key(Record("kurbel.machine.friction:Guide"), "Shoe of the crosshead", needs="crosshead"),
+        "guide": Key(Record(Guide), "Shoe of the crosshead", needs="crosshead"),
         "crank_pin": Key(Number(least=0), "Coefficient of friction of the connecting rod on the crank pin", "f_Z"),
         "crank_pin_diameter": _diameter("crank_pin", "Diameter of the crank pin", "d_z", "that of `crankshaft`"),
         "crosshead_pin": Key(

@@ -6,6 +6,7 @@ the stroke volume. Exponents are those of p V^n.
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar, Union
 
 from kurbel.declared.forms import Number, Physical
@@ -13,9 +14,11 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
-from kurbel.frozen import frozen
-from kurbel.machine.indicator import CLEARANCE, CLEARANCE_OR_NONE
 
+CLEARANCE = Number("the stroke", least=1e-6, most=1e5)
+"""A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
+CLEARANCE_OR_NONE = Number("the stroke", least=1e-6, most=1e5, zero=True)
+"""The same where nothing need be compressed into it: then it may be left out of the theory."""
 _CLEARANCE = Key(CLEARANCE_OR_NONE, "Clearance volume over stroke volume", "c", required=True)
 AIR_EXPONENT = 1.4
 """Exponent of the adiabatic line of air."""
@@ -78,7 +81,7 @@ class _TwoStroke(Described):
         return _vacuum_fault(lift, **{key: getattr(self, key) for key in self.KEYS if key in (self.higher, self.lower)})
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Steam(_TwoStroke):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression.
 
@@ -119,7 +122,7 @@ class Steam(_TwoStroke):
         refuse(*faults)
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Compressor(_TwoStroke):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance. Pressures in Pa."""
 
@@ -220,7 +223,7 @@ class _Engine(Described):
         )
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Otto(_Engine):
     """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume. Pressures in Pa.
 
@@ -238,7 +241,7 @@ class Otto(_Engine):
     KEYS: ClassVar[Keys] = {**_ENGINE_KEYS, "peak": _pressure("Largest pressure, after combustion")}
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Diesel(_Engine):
     """A Diesel engine: injection at constant pressure up to the cut-off. Pressures in Pa.
 

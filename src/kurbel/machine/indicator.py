@@ -1,24 +1,17 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
 
-from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Physical, Points, Record, UnitName, not_negative
+from kurbel.declared.forms import Choice, Keyed, OneOf, Physical, Points, Record, UnitName, not_negative
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, refuse, refused
-from kurbel.frozen import frozen
+from kurbel.machine.drawn import Drawn
+from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, Otto, Steam
 from kurbel.machine.rectangle import Rectangle, Rectangular
-
-if TYPE_CHECKING:
-    from kurbel.machine.drawn import Drawn
-
-CLEARANCE = Number("the stroke", least=1e-6, most=1e5)
-"""A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
-CLEARANCE_OR_NONE = Number("the stroke", least=1e-6, most=1e5, zero=True)
-"""The same where nothing need be compressed into it: then it may be left out of the theory."""
-
 
 _POINTS = Points("stroke fraction", "pressure", ratio=True)
 
@@ -36,7 +29,7 @@ class Chamber(Protocol):
         ...
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Line:
     """One line of a card: pressures in Pa over fractions of the chamber's stroke, in the order of the process.
 
@@ -53,7 +46,7 @@ STROKES = {"two-stroke": ("expansion", "compression"), "four-stroke": ("expansio
 """Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Card(Described):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
@@ -70,7 +63,7 @@ class Card(Described):
     KEYS: ClassVar[Keys] = {
         "unit": Key(UnitName("pressure"), "Unit of the pressures; or give `drawn`", required=True, example="bar"),
         "drawn": Key(
-            Record("kurbel.machine.drawn:Drawn"),
+            Record(Drawn),
             "The paper of the card: all points are then millimetres, from the card's own dead centre and from the "
             "atmospheric line",
             instead="unit",
@@ -226,19 +219,19 @@ class Constant(Described):
 _CHAMBER = Keyed(
     cases={
         "mean_pressure": Rectangular("mean"),
-        "constant": Record("kurbel.machine.indicator:Constant"),
+        "constant": Record(Constant),
         "trace": Record("kurbel.machine_file.trace:Measured"),
-        "steam": Record("kurbel.machine.ideal_cards:Steam"),
-        "compressor": Record("kurbel.machine.ideal_cards:Compressor"),
-        "otto": Record("kurbel.machine.ideal_cards:Otto"),
-        "diesel": Record("kurbel.machine.ideal_cards:Diesel"),
+        "steam": Record(Steam),
+        "compressor": Record(Compressor),
+        "otto": Record(Otto),
+        "diesel": Record(Diesel),
     },
-    otherwise=Record("kurbel.machine.indicator:Card"),
+    otherwise=Record(Card),
 )
 _ONE_PRESSURE = Rectangular("level")
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Indicator(Described):
     """The pressures in the two ends of a cylinder; an end that is None is open to the ambient.
 

@@ -1,12 +1,12 @@
 """Masses of the moving parts."""
 
 import math
+from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.declared.forms import Listing, Number, OneOf, Physical, Record, not_negative
 from kurbel.declared.keys import Described, Form, Key, Keys, check
 from kurbel.errors import refused
-from kurbel.frozen import frozen
 from kurbel.numerics.arithmetic import total
 
 _ONE_OR_MORE: Form = OneOf(Physical("mass", least=0), Listing(Physical("mass", least=0)))
@@ -16,7 +16,7 @@ def _part(text: str) -> Key:
     return Key(_ONE_OR_MORE, text, instead="reciprocating")
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class ConnectingRod(Described):
     """The connecting rod's mass in kg and how it moves.
 
@@ -72,7 +72,7 @@ class ConnectingRod(Described):
         return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Masses(Described):
     """Moving masses in kg: the sum of piston, piston rod, crosshead and others, the connecting rod, and what turns.
 
@@ -96,7 +96,7 @@ class Masses(Described):
         "crosshead": _part("Crosshead"),
         "other": _part("Whatever else goes to and fro"),
         "connecting_rod": Key(
-            OneOf(Physical("mass", least=0), Record("kurbel.machine.masses:ConnectingRod")),
+            OneOf(Physical("mass", least=0), Record(ConnectingRod)),
             "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
             instead="reciprocating",
             also=("con_rod", "conrod"),

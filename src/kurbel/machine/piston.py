@@ -1,26 +1,24 @@
 """A piston with the pressures on its two sides."""
 
 import math
-from typing import TYPE_CHECKING, ClassVar
+from dataclasses import dataclass
+from typing import ClassVar
 
 from kurbel.declared.forms import Record, Text, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, refuse
-from kurbel.frozen import frozen
-
-if TYPE_CHECKING:
-    from kurbel.machine.indicator import Chamber, Indicator
+from kurbel.machine.indicator import Chamber, Indicator
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Piston(Described):
     """A piston: bore and rod diameters in m, and what the indicator shows on its two sides."""
 
     bore: float
     head_end_rod: float = 0.0
     crank_end_rod: float = 0.0
-    indicator: "Indicator | None" = None
+    indicator: Indicator | None = None
     name: str = "piston"
 
     KEYS: ClassVar[Keys] = {
@@ -31,7 +29,7 @@ class Piston(Described):
             "length", "Diameter of the rod through the crank end", absent="0", also=("piston_rod", "rod_diameter")
         ),
         "indicator": Key(
-            Record("kurbel.machine.indicator:Indicator"),
+            Record(Indicator),
             "Pressures on the two sides",
             absent="no gas force",
             also=("pressure", "card", "trace"),

@@ -1,6 +1,7 @@
 """Rectangular cards: one pressure on every stroke, or an indicated mean pressure and nothing more."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.declared.forms import Physical
@@ -8,10 +9,9 @@ from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.frozen import frozen
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Rectangle:
     """A card of horizontal lines, for any working cycle; pressures in Pa.
 

@@ -1,14 +1,14 @@
 """What the output of a mechanism works against: the ram of a shaper or a press, the rocker of a four-bar."""
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 from kurbel.declared.forms import not_negative
 from kurbel.declared.keys import Described, Keys, check
 from kurbel.errors import refused
-from kurbel.frozen import frozen
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class RamForce(Described):
     """A force in N on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
 
@@ -31,7 +31,7 @@ class RamForce(Described):
         return cls(work or 0.0, others.get("return", 0.0))
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Moment(RamForce):
     """A moment in N m on a member that swings or turns, opposing its motion; what turns has no return stroke."""
 

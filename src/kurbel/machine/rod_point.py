@@ -1,16 +1,16 @@
 """A point of the connecting rod or coupler, of which the motion is asked."""
 
 import math
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Choice, Physical
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import Fault
-from kurbel.frozen import frozen
 from kurbel.mechanisms import Mechanism
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class RodPoint(Described):
     """A point `along` the rod in m from one of its pins toward the other, or beyond it, and `across` from its line.
 

@@ -6,13 +6,13 @@ of the cranks.
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 from kurbel.declared.forms import Listing, Number, OneOf, Text, Truth, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
-from kurbel.frozen import frozen
 
 STEEL = 82e9
 """Shear modulus of steel in Pa."""
@@ -23,7 +23,7 @@ _OF_MASS = ("inertia", "cylinder", "load")
 _OF_PIECE = ("stiffness", "diameter", "length", "bore", "shear_modulus", "loss_factor")
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class ShaftPart(Described):
     """One item of the list: a mass, a piece of shaft, or a pair of gears; what is not given is None."""
 
@@ -137,7 +137,7 @@ class Section(NamedTuple):
         return math.pi * (self.diameter**4 - self.bore**4) / (16 * self.diameter)
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class ShaftMass:
     """A mass: J in kg m² of what is no cylinder, damping in N m s/rad; both referred to the shaft of the cranks.
 
@@ -153,7 +153,7 @@ class ShaftMass:
     ratio: float = 1.0
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class ShaftPiece:
     """A piece of shaft between two masses: stiffness in N m/rad and damping in N m s/rad referred to the cranks' shaft.
 
@@ -167,7 +167,7 @@ class ShaftPiece:
     ratio: float = 1.0
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class ShaftLine:
     """Masses along a shaft and the pieces between them; the piece to a fixed end comes first or last.
 

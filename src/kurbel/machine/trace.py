@@ -1,6 +1,6 @@
 """Measured pressure over the crank angle."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -10,7 +10,6 @@ from kurbel.arrays import Array
 from kurbel.declared.forms import Physical
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import refused
-from kurbel.frozen import frozen
 from kurbel.machine.cylinder import CYCLES
 
 PERIODS = (360.0, 720.0)
@@ -18,7 +17,7 @@ _EVEN = 1e-3  # of a step: what rounded angles may miss
 _ROUNDING = 1e-9  # of a period
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Pegging(Described):
     """Where the level of a trace is known: angle in degrees from the (firing) dead centre, pressure in Pa.
 
@@ -35,7 +34,7 @@ class Pegging(Described):
     }
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Trace:
     """A measured trace over one whole cycle, or over many.
 

@@ -1,12 +1,12 @@
 """What works on the shaft: load, a turning-moment diagram known from elsewhere, an elastic coupling."""
 
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Number, Points, UnitName, not_negative, positive
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.errors import Fault, Path, refuse, refused
-from kurbel.frozen import frozen
 from kurbel.machine.cylinder import CYCLES
 
 _TORQUE_KEYS: Keys = {
@@ -17,7 +17,7 @@ _TORQUE_KEYS: Keys = {
 }
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Effort:
     """A turning-moment diagram: torques in N m over crank angles in degrees, from 0 to 360 or 720, ascending.
 
@@ -46,7 +46,7 @@ class Effort:
         return "file" if self.files else "points"
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Harmonics:
     """A turning effort by harmonics, M = mean + Σ c cos νφ + s sin νφ: in N m, ν per turn of the shaft.
 
@@ -66,7 +66,7 @@ class Harmonics:
         return ""
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Load(Described):
     """The resistance at the shaft, in exactly one of three forms.
 
@@ -103,7 +103,7 @@ class Load(Described):
         return self.diagram.cycle_fault(cycle) if self.diagram else ""
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Coupling(Described):
     """An elastic coupling: stiffness in N m/rad, damping in N m s/rad, and the driven moment of inertia in kg m²."""
 

@@ -1,20 +1,19 @@
 """Records of many variants of a machine: what differs among them is `Varied`, or, for the solver, an array (v,)."""
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kurbel.arrays import Indices
-from kurbel.frozen import frozen, values_of
 from kurbel.numerics.varied import Varied, varied
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Lot:
     """Machines of one kind in one record, whose numbers are `Varied` where they differ; rows: what each is known by."""
 
@@ -24,6 +23,11 @@ class Lot:
     def one(self, place: int) -> "Machine":
         """Return one of them, counted from 0, alone."""
         return one_of(self.machine, place)  # type: ignore[no-any-return]
+
+
+def values_of(record: Any) -> dict[str, Any]:
+    """Return the values of a record by the names of its fields."""
+    return {one.name: getattr(record, one.name) for one in fields(record)}
 
 
 def sort_of(value: Any) -> Hashable:
@@ -89,7 +93,7 @@ def _changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]
     return record if all(one is held[name] for name, one in found.items()) else _like(record, found)
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Chambers:
     """What stands in one end of a cylinder of many variants: the different chambers, and which one each has, (v,)."""
 

@@ -7,10 +7,11 @@ from it. Numbers stay text: what a scalar means is decided by the key that it st
 
 from typing import Any
 
+import yaml
+
 from kurbel.declared.kinds import MOST_POINTS
 from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, shown
 from kurbel.errors import Fault, Path, Step
-from kurbel.late_patterns import late_patterns
 
 DEPTH_LIMIT = 32
 _LIKE = "; a cylinder may be 'like: NAME' of another"
@@ -35,9 +36,6 @@ def parse(text: str, reading: Reading) -> Any:
 
 def run(text: str, builder: "Builder") -> bool:
     """Send all events of a text to the builder and return whether the text could be read to its end."""
-    with late_patterns():
-        import yaml
-
     loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     handlers = {
         yaml.ScalarEvent: builder.scalar,

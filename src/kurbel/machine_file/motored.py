@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from os.path import basename
 from typing import ClassVar
 
@@ -11,7 +12,6 @@ from kurbel.arrays import Array
 from kurbel.declared.forms import FilePath, not_negative
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.errors import RuleError, refused
-from kurbel.frozen import frozen
 from kurbel.machine_file.samples import Layout, samples_of
 from kurbel.numerics.vertex import Vertex, vertex
 
@@ -25,7 +25,7 @@ _FEWEST, _NEAR = 36, 5
 _ALIKE = 0.5, 1.15
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class Motored(Described):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 

@@ -16,7 +16,7 @@ from kurbel.machine_file.events import parse
 if TYPE_CHECKING:
     from kurbel.machine_file.overrides import Override
 
-ROOT = Record("kurbel.machine:Machine")
+ROOT = Record(Machine)
 """The form of a whole machine file."""
 
 

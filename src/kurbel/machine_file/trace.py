@@ -6,13 +6,14 @@ from kurbel.declared.forms import Choice, ColumnRange, FilePath, Number, OneOf, 
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import Factor, Point
 from kurbel.errors import Fault, refuse, refused
-from kurbel.machine.indicator import CLEARANCE
+from kurbel.machine.ideal_cards import CLEARANCE
+from kurbel.machine.trace import Pegging
+from kurbel.machine_file.motored import Motored
 from kurbel.machine_file.samples import Layout, layout_keys, samples_of
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-    from kurbel.machine.trace import Pegging, Trace
-    from kurbel.machine_file.motored import Motored
+    from kurbel.machine.trace import Trace
     from kurbel.machine_file.whole_cycle import Samples
 
 _LAYOUT = layout_keys("pressure")
@@ -35,7 +36,7 @@ class Measured(Described):
             ColumnRange(), "Columns of pressures, one for each measured cycle", instead="pressure_column"
         ),
         "angle_zero": Key(
-            OneOf(Physical("angle"), Record("kurbel.machine_file.motored:Motored")),
+            OneOf(Physical("angle"), Record(Motored)),
             "Angle of the firing or inner dead centre as the file counts; or a motored trace by which it is found",
             absent="0 deg",
         ),
@@ -45,7 +46,7 @@ class Measured(Described):
         "scale": Key(Number(), "Pressure, in the unit, for 1 of the file, such as bar for a volt", absent="1"),
         "offset": Key(Physical("pressure"), "Pressure that is added after the scale", absent="0 bar"),
         "pegging": Key(
-            OneOf(Choice(("ambient",)), Record("kurbel.machine.trace:Pegging")),
+            OneOf(Choice(("ambient",)), Record(Pegging)),
             "Where the level of every cycle is known; `ambient`: at the dead centre where the compression begins",
             absent="pressures as measured",
         ),
@@ -77,7 +78,7 @@ class Measured(Described):
         **layout: Any,
     ) -> "Trace":
         """Return the trace that these keys describe, its file read."""
-        from kurbel.machine.trace import Pegging, Trace
+        from kurbel.machine.trace import Trace
 
         against = angle_sense == "against"
         gauge = _Gauge(unit, scale, offset)

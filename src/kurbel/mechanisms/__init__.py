@@ -1,20 +1,19 @@
 """The mechanisms of the book behind one interface: the output coordinate and its first two derivatives by crank angle.
 
-A mechanism is one file with one class, and one line in `MECHANISMS`. None imports numpy: the formulas work on whatever
-the crank angle is made of. What a new mechanism must supply stands in `Mechanism`.
+A mechanism is one file with one class, named in `kurbel.mechanisms.kinds`. None imports numpy: the formulas work on
+whatever the crank angle is made of. What a new mechanism must supply stands in `Mechanism`.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Record
 from kurbel.declared.keys import Described, Keys
 from kurbel.declared.quantities import Lists
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, UsageError, refuse
-from kurbel.frozen import frozen
 from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 
@@ -22,18 +21,8 @@ if TYPE_CHECKING:
     from kurbel.mechanisms.coupler import Coupler
     from kurbel.mechanisms.sketch import Sketch
 
-MECHANISMS = {
-    "slider-crank": Record("kurbel.mechanisms.slider_crank:SliderCrank"),
-    "scotch-yoke": Record("kurbel.mechanisms.scotch_yoke:ScotchYoke"),
-    "slotted-lever": Record("kurbel.mechanisms.slotted_lever:SlottedLever"),
-    "four-bar": Record("kurbel.mechanisms.four_bar:FourBar"),
-    "parallel-crank": Record("kurbel.mechanisms.parallel_crank:ParallelCrank"),
-    "yoke-frame": Record("kurbel.mechanisms.yoke_frame:YokeFrame"),
-}
-"""Word in the machine file -> class; imported only when a machine names it."""
 
-
-@frozen
+@dataclass(frozen=True, eq=False)
 class Offer:
     """A column that only some mechanisms have, with its formula.
 
@@ -55,7 +44,7 @@ on_request = partial(Quantity, commands=("motion", "forces"), on_request=("motio
 """Declares a column that a mechanism adds to both, where it is asked for, behind the one that it names."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class KeyOffer:
     """A key value that only some mechanisms have, with its formula.
 
@@ -160,6 +149,10 @@ class Mechanism(Described):
         # beside a dead centre the rounding of the coordinate leaves 1e-6 degrees open
         return np.where(f_low == 0, low, np.where(f_high == 0, high, found))
 
+    def remaining(self, angle: CrankAngle) -> Any:
+        """Return what is left of the stroke to the outer dead centre, s − (q − start), in m (or rad)."""
+        return self.stroke - (self.coordinate(angle) - self.start)
+
     def landmarks(self) -> tuple[float, ...]:
         """Return the crank angles in degrees, besides the dead centres, at which searches should split."""
         return ()
@@ -250,17 +243,12 @@ _REQUIRED = ("name", "KEYS", "crank", "stroke", "dead_centres", "coordinate", "s
 
 def quantities_of(mechanism: Mechanism) -> Lists:
     """Return what a machine with this mechanism may have."""
-    return _lists(mechanism.OFFERS, mechanism.KEY_OFFERS)
-
-
-def every_quantity() -> Lists:
-    """Return what machines may have, whatever their mechanism; this imports all of them."""
-    every: list[Any] = [record.load() for record in MECHANISMS.values()]
-    return _lists(tuple(o for one in every for o in one.OFFERS), tuple(o for one in every for o in one.KEY_OFFERS))
+    return lists_of(mechanism.OFFERS, mechanism.KEY_OFFERS)
 
 
 @cache
-def _lists(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...]) -> Lists:
+def lists_of(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...]) -> Lists:
+    """Return what machines may have with these columns and key values of mechanisms."""
     key_values = (offer.quantity._replace(asks=("offered", offer.quantity.id)) for offer in key_offers)
     return Lists.of(dict.fromkeys(offer.quantity for offer in offers), dict.fromkeys(key_values))
 

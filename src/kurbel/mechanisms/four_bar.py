@@ -1,6 +1,7 @@
 """Four-bar linkage: the crank-rocker (Bogenschubkurbel), R ch. 14 A, and the drag link, whose rocker turns too."""
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -10,7 +11,6 @@ from kurbel.declared.keys import Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, on_request
 from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.four_bar_loop import Loop
@@ -40,7 +40,7 @@ COUPLER_OFFERS = turning_offers(
 )
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class FourBar(Mechanism):
     """A crank that turns fully and through a coupler swings a rocker, or, where the frame is shortest, turns it too.
 

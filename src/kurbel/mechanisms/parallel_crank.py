@@ -1,13 +1,13 @@
 """Parallel crank (Parallelkurbeltrieb), R ch. 14 A: two equal cranks and a coupler as long as the frame."""
 
 import math
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import not_negative, positive
 from kurbel.declared.keys import Keys, check
 from kurbel.declared.quantity import Quantity
-from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_motion
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
@@ -36,7 +36,7 @@ _B_COUPLER = Quantity("b_coupler", "b_K", "acceleration", _ACCELERATION, "", _BO
 _INERTIA = Quantity("coupler_inertia", "F_b", "force", _FORCE, commands=("forces",), after="T_min")
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class ParallelCrank(Mechanism):
     """Two equal cranks, joined by a coupler of the length of the frame: the coupled wheels of a locomotive.
 

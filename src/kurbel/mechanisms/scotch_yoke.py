@@ -1,11 +1,11 @@
 """Scotch yoke (Kurbelschleife), R p. 614: the slider-crank with an infinite rod, its block sliding across the yoke."""
 
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
-from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_force
 from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, check_pin, pin_pressure
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
@@ -16,7 +16,7 @@ _CALLED = "force on each of the two guides of a yoke"
 _N_PAIR = own_force("N_pair", "N_2", "force", f"{_CALLED.capitalize()}, opposite to one another", called=_CALLED)
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class ScotchYoke(Mechanism):
     """A crank pin whose block slides in a yoke square to the stroke line.
 

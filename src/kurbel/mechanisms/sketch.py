@@ -1,8 +1,7 @@
 """What is drawn of a mechanism at a crank angle: where its joints stand, and what joins them."""
 
+from dataclasses import dataclass
 from typing import Any
-
-from kurbel.frozen import frozen
 
 Point = tuple[Any, Any]
 """Place in m from the shaft, along φ = 0 and along φ = 90°; each a number, or as the angle."""
@@ -10,7 +9,7 @@ Point = tuple[Any, Any]
 SHAFT, PIN = "shaft", "pin"
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Sketch:
     """A mechanism at crank angles, to scale.
 

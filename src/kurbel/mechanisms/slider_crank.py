@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -11,7 +12,6 @@ from kurbel.declared.forms import Number, Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.frozen import frozen
 from kurbel.mechanisms import Mechanism, Offer, fan, on_request
 from kurbel.numerics.arithmetic import arsinh, bearing, every, sqrt, total, ulp, where
 from kurbel.numerics.extreme import Extreme
@@ -54,7 +54,7 @@ ROD_OFFERS = (
 )
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 
@@ -247,6 +247,13 @@ class SliderCrank(Mechanism):
         middle_cos = start.cos * half_cos - start.sin * half_sin
         bracket = middle_sin + middle_cos * (sin_psi + sin_start) / (cos_psi + cos_start)
         return self.crank * (2 * half_sin * bracket)
+
+    def remaining(self, angle: CrankAngle) -> Any:
+        """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), which keeps its digits."""
+        if not self._straight:
+            return super().remaining(angle)
+        lead = self.lam * angle.versine / (1 + self.rod_angle(angle)[1])
+        return self.crank * (angle.vercosine * (1 - lead))
 
     def slope(self, angle: CrankAngle) -> Any:
         """Return dx/dφ = R sin(φ+ψ)/cos ψ in m, R 288."""

@@ -1,6 +1,7 @@
 """Slotted lever (schwingende Kurbelschleife): the quick return of shapers, R p. 615, and Whitworth's rotating lever."""
 
 import math
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
@@ -8,7 +9,6 @@ from kurbel.declared.forms import Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.frozen import frozen
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
 from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, check_pin, pin_pressure, sum_along
 from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
@@ -26,7 +26,7 @@ class _Lever(NamedTuple):
     reach: Any
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class SlottedLever(Mechanism):
     """A crank pin that slides in a slotted lever, whose end drives a ram square to the line of the two pivots.
 

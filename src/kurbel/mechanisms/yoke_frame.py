@@ -4,12 +4,12 @@ Steam and pump piston rod lie in one line, joined by a frame in which rod and cr
 slider-crank; the side force N of the rod finds no guide and bends the piston rod.
 """
 
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
-from kurbel.frozen import frozen
 from kurbel.mechanisms import Offer, check_lengths, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 
@@ -17,7 +17,7 @@ _TEXT, _CALLED = "Bending moment of N on the piston rod at its stuffing box", "b
 _M_BEND = own_force("M_bend", "M_b", "torque", _TEXT, called=_CALLED)
 
 
-@frozen
+@dataclass(frozen=True, eq=False, repr=False)
 class YokeFrame(SliderCrank):
     """A slider-crank whose crosshead pin is held by the piston rod alone.
 

@@ -21,6 +21,8 @@ _TOLERANCE = 1e-13
 """Of the swing of an unknown: what the last two coefficients on a piece may be."""
 _NARROWEST = 1e-10
 """Degrees of a piece that is halved no more."""
+_FEWEST = 11
+"""Nodes of a piece, where its torques need less: what follows a kink needs them."""
 _ROUNDS = 60
 _MOST_PIECES = 20_000
 _TAMEST = 12
@@ -74,7 +76,7 @@ class Equation(Protocol):
         """Return what y must stay above, (m, k, pieces); −∞ where nothing bounds it."""
         ...
 
-    def also(self, known: Array, y: Array, pieces: Pieces) -> Array:
+    def also(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> Array:
         """Return what else must be a polynomial on every piece, (…, nodes, pieces), at y (m, nodes, pieces)."""
         ...
 
@@ -136,8 +138,9 @@ def periodic(equation: Equation, pieces: Pieces) -> Periodic:
     Newton's method starts from y = 0; where that leads nowhere, from a solution of an eased equation, which is followed
     back to the given one. What a linear equation leaves open is as small as can be.
     """
-    count = pieces.count
-    still = np.zeros((equation.unknowns, len(pieces.rule.nodes) + 1, len(pieces.half)))
+    count, nodes = pieces.count, max(_FEWEST, len(pieces.rule.nodes))
+    pieces = pieces.with_nodes(nodes)
+    still = np.zeros((equation.unknowns, nodes + 1, len(pieces.half)))
     with np.errstate(all="ignore"):  # a step too far may overflow; it is taken back
         found, y, good = _settled(equation, pieces, still, np.zeros(count))
         if good.all():
@@ -223,7 +226,7 @@ def _rough(chain: _Chain, y: Array) -> Flags:
     tails = np.abs(chain.rule.series[-2:] @ y).sum(axis=1)
     least = _TOLERANCE * np.array(swing) + 4e-15 * _largest(pieces, np.abs(y)) + chain.equation.noise
     rough = (tails > least[:, pieces.machine]).any(axis=0)
-    for one in chain.equation.also(chain.sampled, chain.rule.to_lobatto @ y, pieces):
+    for one in chain.equation.also(chain.sampled, chain.rule.to_lobatto @ y, pieces, chain.eased):
         rough |= np.abs(pieces.rule.series[-2:] @ one).sum(axis=0) > _TOLERANCE * _largest(pieces, one)[pieces.machine]
     return np.asarray(rough & (pieces.half > _NARROWEST / 2))
 

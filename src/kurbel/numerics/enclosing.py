@@ -38,7 +38,8 @@ class Enclosing(NamedTuple):
 def _choices(count: int) -> Indices:
     """Return which points may carry a circle round so many: one, as (i, i, i), two, as (i, j, j), or three."""
     alone, pairs = ([(i, i, i) for i in range(count)], [(i, j, j) for i, j in combinations(range(count), 2)])
-    return np.asarray([*alone, *pairs, *combinations(range(count), 3)], dtype=np.intp).transpose()
+    columns = zip(*alone, *pairs, *combinations(range(count), 3))
+    return np.array([*columns], dtype=np.intp)
 
 
 def smallest_circle(points: ComplexArray, more: Any = 0.0) -> Enclosing:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from kurbel.arrays import Array
 from kurbel.numerics.arithmetic import where
 
 
@@ -17,12 +16,6 @@ class Extreme(NamedTuple):
 
     value: float
     degrees: float
-
-    @classmethod
-    def of(cls, values: Array, degrees: Array) -> Extreme:
-        """Return what was found of every machine (machines,); of one machine two floats."""
-        pair: Any = (values, degrees) if len(values) > 1 else (float(values[0]), float(degrees[0]))
-        return cls(*pair)
 
 
 def number_of(answer: Any) -> Any:

@@ -33,6 +33,10 @@ _NOISE = 1e-8
 """Of the largest value: the tail of such a crowd is noise."""
 _SAME = 1e-9
 """Degrees between crossings that are one, made many by rounding."""
+_NEAR = 0.05
+"""Of the range of samples on a piece: as near they come to zero where a summit between them may pass it."""
+_INSIDE = 1 - 1e-10
+"""Of half a piece: a summit nearer to its end is the end."""
 _NO_WIDTH = 1e-11
 """Degrees of a piece that is none."""
 
@@ -104,6 +108,11 @@ class Pieces:
         columns = (self.right_angle, self.offset, self.half, self.machine)
         return Pieces(*(one[rows] for one in columns), self.count, self.cycle, self.rule)
 
+    def with_nodes(self, nodes: int) -> Pieces:
+        """Return these pieces with so many nodes each."""
+        columns = (self.right_angle, self.offset, self.half, self.machine)
+        return Pieces(*columns, self.count, self.cycle, rule(nodes))
+
     def halved(self, rows: Indices | Flags) -> Pieces:
         """Return the halves of these pieces, in order."""
         right_angle, half, machine = (
@@ -148,9 +157,9 @@ class Pieces:
         return following
 
     @cached_property
-    def ends(self) -> Array:
-        """The angles in degrees at which they end, within the cycle."""
-        return self.low[self.after]
+    def high(self) -> Array:
+        """The angles in degrees at which they end, the last of a machine with the cycle."""
+        return np.where(self.after == self.first[self.machine], self.cycle, self.low[self.after])
 
     def of(self, numbers: Number) -> Number:
         """Return numbers of the machines, (machines,), at their pieces; one number stays one."""
@@ -219,11 +228,11 @@ class Pieces:
         size: (machines,), of the terms of which the values are sums, beside which they are zero.
         """
         size = (self.largest(values) if size is None else size)[self.machine]
-        rows, places = _sign_changes(values, self.rule, self.rule.scan, self.rule.series, size)
         tiny = -ROUNDING * size
+        rows, places = _crossings(values, self.rule, tiny)
         jumps = np.flatnonzero((values[-1] < tiny) != (values[0, self.after] < tiny))
         machine = np.append(self.machine[rows], self.machine[jumps])
-        degrees = np.mod(np.append(self._at(rows, places), self.ends[jumps]), self.cycle)
+        degrees = np.mod(np.append(self._at(rows, places), self.high[jumps]), self.cycle)
         order = np.lexsort((degrees, machine))
         machine, degrees = machine[order], degrees[order]
         # beside a break rounding crosses more than once: an odd number of times is once, an even number never
@@ -253,11 +262,11 @@ class Pieces:
         # a piece exceeds its samples by less than they differ
         which, piece = np.nonzero(tops + (tops - bottoms) >= (best - _REPEATED * size)[:, self.machine])
         samples = values.transpose(1, 0, 2)[:, which, piece]
-        slope = self.rule.slope @ self.rule.series
-        rows, places = _sign_changes(samples, self.rule, self.rule.scan_slope, slope, np.zeros(samples.shape[1]))
-        turning = series_at(self.rule.series @ samples[:, rows], places)
+        rows, places, turning = _turning_points(samples, self.rule)
+        inside = np.abs(places) < _INSIDE
+        rows, places, turning = rows[inside], places[inside], turning[inside]
         value = np.concatenate((samples[0], samples[-1], turning))
-        ends = self.low[piece], self._at(piece, np.ones(len(piece))), self._at(piece[rows], places)
+        ends = self.low[piece], self.high[piece], self._at(piece[rows], places)
         quantity, owner = (
             np.concatenate((which, which, which[rows])),
             self.machine[np.concatenate((piece, piece, piece[rows]))],
@@ -271,9 +280,7 @@ class Pieces:
 
     def ranges(self, values: Array) -> tuple[Array, Array]:
         """Return smallest and largest value (pieces,) of samples inside each piece."""
-        slope = self.rule.slope @ self.rule.series
-        rows, places = _sign_changes(values, self.rule, self.rule.scan_slope, slope, np.zeros(values.shape[-1]))
-        turning = series_at(self.rule.series @ values[:, rows], places)
+        rows, _, turning = _turning_points(values, self.rule)
         low, high = np.minimum(values[0], values[-1]), np.maximum(values[0], values[-1])
         np.minimum.at(low, rows, turning)
         np.maximum.at(high, rows, turning)
@@ -289,6 +296,8 @@ def refined(pieces: Pieces, sample: Sample) -> tuple[Pieces, Array]:
         np.maximum.at(top, (slice(None), todo.machine), np.abs(values).max(axis=1))
         size = np.maximum(size, top)
         rough = _rough(todo, values, size)
+        if not (done or rough.any()):
+            return pieces, values
         done.append(todo.taken(~rough))
         found.append(values[..., ~rough])
         if not rough.any():
@@ -326,33 +335,50 @@ def _first_summits(
     """Return the angles (q, machines) of the first summits that reach the best values but for the slack."""
     first, level, found = (np.full(best.shape, empty) for empty in (np.inf, -np.inf, np.inf))
     reached = value >= (best - slack)[quantity, machine]
-    quantity, machine, degrees, value = (one[reached] for one in (quantity, machine, degrees, value))
+    quantity, machine, degrees, value = quantity[reached], machine[reached], degrees[reached], value[reached]
     np.minimum.at(first, (quantity, machine), degrees)
     own = degrees <= first[quantity, machine] + _SUMMIT
-    quantity, machine, degrees, value = (one[own] for one in (quantity, machine, degrees, value))
+    quantity, machine, degrees, value = quantity[own], machine[own], degrees[own], value[own]
     np.maximum.at(level, (quantity, machine), value)
     top = value >= (level - slack / 100)[quantity, machine]  # of a plateau the beginning
     np.minimum.at(found, (quantity[top], machine[top]), degrees[top])
     return found
 
 
-def _sign_changes(values: Array, of: Rule, scan: Array, series: Array, size: Array) -> tuple[Indices, Array]:
-    """Return columns and places in [−1, 1] where polynomials change sign between scanned places.
+def _turning_points(values: Array, of: Rule) -> tuple[Indices, Array, Array]:
+    """Return columns, places in [−1, 1] and values where polynomials through samples (nodes, n) are level."""
+    slopes = of.scan_slope @ values
+    i, rows = np.nonzero((slopes[1:] < 0) != (slopes[:-1] < 0))
+    series = of.series @ values[:, rows]
+    places = _roots(of.slope @ series, of.places[i], of.places[i + 1], slopes[i, rows], slopes[i + 1, rows])
+    return rows, places, series_at(series, places)
 
-    values: samples (nodes, n); scan, series: matrices for values at the scanned places, and for coefficients; size:
-    (n,), beside which values are zero.
-    """
-    fine = scan @ values
-    below = fine < -ROUNDING * size
+
+def _crossings(values: Array, of: Rule, tiny: Array) -> tuple[Indices, Array]:
+    """Return columns and places in [−1, 1] where polynomials through samples (nodes, n) pass tiny (n,), nearly zero."""
+    fine = of.scan @ values
+    below = fine < tiny
     i, rows = np.nonzero(below[1:] != below[:-1])
-    here, there = np.abs(fine[i, rows]), np.abs(fine[i + 1, rows])
-    start = of.places[i] + (of.places[i + 1] - of.places[i]) * (here / np.maximum(here + there, 1e-300))
-    return rows, _roots(series @ values[:, rows], start, of.places[i], of.places[i + 1], below[i, rows])
+    low, high, first, last = of.places[i], of.places[i + 1], fine[i, rows], fine[i + 1, rows]
+    # between two places of one sign a summit may pass zero and come back
+    near = np.flatnonzero(np.abs(fine).min(axis=0) < _NEAR * np.ptp(fine, axis=0))
+    owner, turns, value = _turning_points(values[:, near], of)
+    owner = near[owner]
+    before = np.clip(np.searchsorted(of.places, turns, side="right") - 1, 0, len(of.places) - 2)
+    there = below[before, owner] & below[before + 1, owner] & (value > -tiny[owner])
+    there |= ~below[before, owner] & ~below[before + 1, owner] & (value < tiny[owner])
+    owner, turns, value, before = owner[there], turns[there], value[there], before[there]
+    rows = np.concatenate((rows, owner, owner))
+    low, high = np.concatenate((low, of.places[before], turns)), np.concatenate((high, turns, of.places[before + 1]))
+    first = np.concatenate((first, fine[before, owner], value))
+    last = np.concatenate((last, value, fine[before + 1, owner]))
+    return rows, _roots(of.series @ values[:, rows], low, high, first, last)
 
 
-def _roots(series: Array, places: Array, low: Array, high: Array, rising: Flags) -> Array:
-    """Return the zeros of series (k, n) between low and high (n,): Newton steps, clipped to the bracket."""
-    slopes = slope_of_series(len(series)) @ series
+def _roots(series: Array, low: Array, high: Array, first: Array, last: Array) -> Array:
+    """Return the zeros of series (k, n) between low and high (n,), where they are first and last: clipped Newton."""
+    slopes, rising = slope_of_series(len(series)) @ series, first < last
+    places = low + (high - low) * (np.abs(first) / np.maximum(np.abs(first) + np.abs(last), 1e-300))
     for _ in range(60):
         value = series_at(series, places)
         below = (value < 0) == rising

@@ -1,19 +1,14 @@
 """From a neutral report to text: the page of the book, one line per angle, CSV, JSON, Markdown, HTML and LaTeX."""
 
-from collections.abc import Iterable
-from importlib import import_module
+from dataclasses import dataclass
 
-from kurbel.frozen import frozen
 from kurbel.render.charset import Charset
-from kurbel.report.tables import Report
 
-_WRITERS = {"csv": "csv_text", "json": "json_text", "markdown": "markdown", "html": "html", "latex": "latex"}
-"""Format -> the function, in the file of its name, that makes its text of a report."""
-FORMATS = ("table", *_WRITERS)
+FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
 LAYOUTS = ("book", "rows")
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Look:
     """How a report is to look.
 
@@ -33,20 +28,3 @@ class Look:
     def charset(self) -> Charset:
         """What the output can show."""
         return Charset(self.encoding)
-
-
-def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
-    """Return the report as text that ends with a newline; the same report gives the same text every time."""
-    return "".join(pieces(report, look))
-
-
-def pieces(report: Report, look: Look) -> Iterable[str]:
-    """Return the text of the report piece by piece, each made when it is asked for: a long table is never held."""
-    if look.format != "table":
-        name = _WRITERS[look.format]
-        text: Iterable[str] = getattr(import_module(f"kurbel.render.{name}"), name)(report, look)
-        return text
-    from kurbel.render.lines import plain
-    from kurbel.render.page import page
-
-    return plain(page(report, look))

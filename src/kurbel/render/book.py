@@ -1,9 +1,8 @@
 """The look of Zusammenstellung 112: quantities down the side, crank angles across, broken as over two pages."""
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from kurbel.frozen import frozen
 from kurbel.render import Look
 from kurbel.render.charset import left, right, width
 from kurbel.render.lines import BLANK, Line, Piece, line
@@ -13,7 +12,7 @@ _NINE = 9  # the book breaks after 80°
 _GAP = 2
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class _Grid:
     """Widths of the columns of a sheet, the same in all its blocks."""
 

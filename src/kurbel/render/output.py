@@ -6,39 +6,17 @@ import stat
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from kurbel.errors import UsageError
-from kurbel.render import Look, pieces
+from kurbel.render import Look
 from kurbel.render.charset import Charset
-from kurbel.report.tables import Report
 
 if TYPE_CHECKING:
     from kurbel.render.lines import Line
 
 _MOST_COLOURED_LINES = 400
-_SAYING_UTF_8 = ("html", "latex")
-"""Formats that are read as UTF-8, whatever the terminal has."""
-
-
-def write_report(report: Report, look: Look, file_name: str | None = None) -> None:
-    """Write the report to a file (as UTF-8), or to standard output in the encoding of that.
-
-    A terminal gets as many angles to a block as fit its width, and colours where they are wanted; a pipe gets plain
-    text, of a width only where it is asked for. Raises UsageError where it cannot be written.
-    """
-    look = replace(look, encoding="utf-8")
-    if file_name is None or file_name == "-":
-        encoding = "utf-8" if look.format in _SAYING_UTF_8 else stdout_charset().encoding
-        look = replace(look, encoding=encoding, width=look.width or stdout_width())
-        if look.format == "table":
-            from kurbel.render.page import page
-
-            if write_coloured(page(report, look), look):
-                return
-    write_out(pieces(report, look), file_name, look.encoding)
 
 
 def write_coloured(page: "Iterable[Line]", look: Look) -> bool:

@@ -1,10 +1,10 @@
 """A table before it is laid out: its columns as cells of text, the parts that share their crank angles side by side."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
 
-from kurbel.frozen import frozen
 from kurbel.render import Look
 from kurbel.render.charset import width
 from kurbel.render.numbers import Scale, angle_scale, cell, decimal, scale_of, whole_if_integral
@@ -44,7 +44,7 @@ class Cells:
         return max(len(self._text(end)) for end in ends) + len(self._pad)
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Row:
     """One quantity as text; in print it runs across the page or down it. words: it is no quantity but names."""
 
@@ -59,7 +59,7 @@ class Row:
         return self.cells.width if isinstance(self.cells, Cells) else max(map(width, self.cells), default=0)
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Band:
     """The rows of one part, with the name over or beside them (empty where there is only one part)."""
 
@@ -67,7 +67,7 @@ class Band:
     rows: tuple[Row, ...]
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Sheet:
     """One table: the crank angles (with those of the return stroke, where the table is mirrored) and its bands.
 

@@ -13,7 +13,8 @@ from kurbel.accuracy.scenes import Loads, Scene, built_in
 from kurbel.accuracy.timing import Patience
 from kurbel.accuracy.trials import Lacking, Row, dominating, examined
 from kurbel.machine import Machine
-from kurbel.report.frame import Frame, report_of
+from kurbel.report.commands import report_of
+from kurbel.report.frame import Frame
 from kurbel.report.provenance import provenance
 from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report, Value
 from kurbel.solver.case import Case

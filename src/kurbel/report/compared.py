@@ -9,7 +9,7 @@ from kurbel.declared.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
-from kurbel.mechanisms import every_quantity
+from kurbel.mechanisms.kinds import every_quantity
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.report.alike import grouped, together
 from kurbel.report.notes import Solved
@@ -199,7 +199,7 @@ def holders(case: "Case", name: str) -> list[Holder]:
 
     Where it is not, of each cylinder that has it, else of the machine.
     """
-    from kurbel.report.frame import subjects_of
+    from kurbel.report.commands import subjects_of
 
     scope, id = scoped(name)
     cylinders = [one.name for one in case.machine.cylinders]

@@ -1,9 +1,11 @@
 """The report of `kurbel flywheel`: turning effort, excess work, flywheel and speed line of the whole machine."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
 
 from kurbel.declared.unit_systems import show
-from kurbel.frozen import frozen
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.frame import Frame, Subject
@@ -11,9 +13,8 @@ from kurbel.report.left_out import flywheel_left_out
 from kurbel.report.notes import of_machine
 from kurbel.report.tables import Report
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
-from kurbel.solver.turning.flywheel import MachineTurning
-from kurbel.solver.turning.machine_effort import dead_centre_force
+from kurbel.solver.flywheel import MachineTurning
+from kurbel.solver.forces import CylinderForces
 
 
 def flywheel_report(case: Case, frame: Frame) -> Report:
@@ -27,7 +28,7 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
     return frame.report(case.machine, "Drehkraftlinie und Schwungrad", having, whole, notes)
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class _DeadCentre:
     """What is to be said of a cylinder alone: the force that its parts before a pump must stand."""
 
@@ -37,7 +38,7 @@ class _DeadCentre:
     @property
     def P_dead_centre(self) -> Extreme | None:
         """Largest force in N in a dead centre, without inertia."""
-        return dead_centre_force(self.forces, self.turning.turned.cycle)
+        return dead_centre_force(self.forces, self.turning.effort.cycle)
 
 
 def subjects(case: Case) -> Iterable[Subject]:
@@ -55,20 +56,36 @@ def subjects(case: Case) -> Iterable[Subject]:
     )
 
 
+def dead_centre_force(forces: CylinderForces, cycle: float) -> Extreme | None:
+    """Return the largest force in N of steam and pump in a dead centre of a cylinder, without inertia (R p. 613).
+
+    At the end of the stroke both oppose the motion, and the parts before the pump must stand their sum. None where
+    the cylinder does not both drive and drive a pump.
+    """
+    if not (forces.work_driving and forces.work_driven):
+        return None
+    drive = forces.drive
+    centres = np.add.outer(np.arange(0.0, drive.cycle, 360.0), drive.mechanism.dead_centres()).ravel()
+    angles = np.repeat(centres, 2)
+    values = drive.at(angles, angles + np.tile([-1e-6, 1e-6], len(centres))).P_gas
+    largest = int(np.argmax(np.abs(values)))
+    return Extreme(float(values[largest]), float(np.mod(angles[largest], cycle)))
+
+
 def _efficiency_notes(turning: MachineTurning) -> Iterable[str]:
-    turned = turning.turned
-    if any(one.lost for one in turned.of_cylinders):
+    effort = turning.effort
+    if any(effort.lost(group) for group in effort.groups):
         yield (
             "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "
             "driven pistons, inertia, weight and friction count in full (R p. 613)."
         )
-    if any(turned.share(mass.drive) != 1 for mass in turned.masses) and turning.speed is not None:
+    if any(term.factor != 1 for term in effort.inertia_terms) and turning.speed is not None:
         yield "As in the book the efficiency takes its share of all of T; in ω the moving masses count in full."
 
 
 def _notes(machine: Machine, turning: MachineTurning) -> Iterable[str]:
     if turning.crank is not None:
-        over = "over" if any(factor > 1 for factor, _ in turning.turned.effort.parts) else "with"
+        over = "over" if any(term.factor > 1 for term in turning.effort.terms) else "with"
         eta = f", {over} the efficiency {machine.efficiency:g}" if machine.efficiency != 1 else ""
         yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
     if turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:

@@ -11,7 +11,7 @@ from kurbel.report.frame import Frame, Subject, refuse_without_cylinder
 from kurbel.report.shown import place_table
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 
 def forces_report(case: Case, frame: Frame) -> Report:
@@ -72,7 +72,7 @@ def _rod_notes(case: Case) -> Iterable[str]:
 
 
 def _rod_load_notes(case: Case) -> Iterable[str]:
-    compressors = [forces for forces in case.cylinders if not forces.rod_load.no_compressor]
+    compressors = [forces for forces in case.cylinders if not forces.no_compressor]
     if compressors:
         yield (
             "Rod load after API 618: P_G at the crosshead pin counts gas, inertia and weight of piston, piston rod, "
@@ -113,7 +113,7 @@ def _subject(case: Case, forces: CylinderForces, notes: Callable[[], dict[str, l
         if forces.friction_work is not None and not forces.work_driving:
             yield LeftOut("friction loss as a share", "no piston drives")
         masses = cylinder.masses
-        if not forces.rod_load.no_compressor and masses and masses.crosshead is None:
+        if not forces.no_compressor and masses and masses.crosshead is None:
             yield LeftOut("load on the piston rod", "no mass of the crosshead given")
         if forces.reversals_in_noise:
             why = "are within the noise of the trace and no Druckwechsel"

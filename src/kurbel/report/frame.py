@@ -1,8 +1,8 @@
 """The frame of every report on a machine: from the results of a command and its declared quantities to tables."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -10,20 +10,16 @@ from kurbel.declared.quantities import COMMON, Lists
 from kurbel.declared.quantity import Quantity, called
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, Nowhere, UsageError
-from kurbel.frozen import frozen
 from kurbel.machine import Machine
-from kurbel.mechanisms import every_quantity
+from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_values
 from kurbel.report.tables import Column, Later, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.figures import answered
 
-if TYPE_CHECKING:
-    from kurbel.solver.case import Case
 
-
-@frozen
+@dataclass(frozen=True, eq=False)
 class Subject:
     """What a command speaks of: one cylinder, or the whole machine.
 
@@ -80,7 +76,7 @@ def _nowhere(parts: Sequence[Part]) -> Iterator[str]:
     return (f"{one}." for one in without)
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Frame:
     """A report to be made: of which command, at which crank angles (n,) in degrees, with which columns, in which units.
 
@@ -194,22 +190,3 @@ def _with_symbol(one: Quantity) -> str:
 
 def _names(quantities: Iterable[Quantity]) -> tuple[str, ...]:
     return tuple(name for one in quantities for name in (one.id, one.symbol))
-
-
-# what every command has in its own file, by its word
-
-
-def report_of(case: "Case", frame: Frame) -> Report:
-    """Return the report of the command that the frame is of."""
-    report: Report = getattr(_room(frame.command), f"{frame.command}_report")(case, frame)
-    return report
-
-
-def subjects_of(case: "Case", command: str) -> Iterable[Subject]:
-    """Return what a command speaks of, with the key values that it has."""
-    subjects: Iterable[Subject] = _room(command).subjects(case)
-    return subjects
-
-
-def _room(command: str) -> Any:
-    return import_module(f"kurbel.report.{command}")

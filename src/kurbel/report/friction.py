@@ -6,7 +6,7 @@ from kurbel.declared.quantity import Quantity
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.report.shown import place_table, shown_key_values
 from kurbel.report.tables import LeftOut, Part, Report
-from kurbel.solver.cylinder.friction import holding_force
+from kurbel.solver.friction import holding_force
 
 _UP = Quantity("P_up", "P_1/Q", "ratio", "Force over the weight that moves the body up")
 _HELD = Quantity("P_held", "P_2/Q", "ratio", "Force over the weight that keeps the body from sliding down")

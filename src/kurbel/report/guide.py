@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from kurbel.report.alike import together
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces
 
 _OTHER = {"over": "under", "under": "over"}
 _MOST = 4

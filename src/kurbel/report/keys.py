@@ -7,9 +7,10 @@ from kurbel.declared.forms import Record
 from kurbel.declared.keys import Form, Key, required
 from kurbel.declared.reading import shown
 from kurbel.errors import UsageError
+from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
 
-_ROOT = Record("kurbel.machine:Machine")
+_ROOT = Record(Machine)
 
 
 class Place(NamedTuple):

@@ -14,9 +14,11 @@ from kurbel.declared.unit_systems import convert, units_of
 from kurbel.errors import KurbelError
 from kurbel.numerics.extreme import number_of, size_of
 from kurbel.report.alike import grouped, together
+from kurbel.report.commands import subjects_of
 from kurbel.report.document import Document, Grid, Pair, Section
-from kurbel.report.frame import Subject, subjects_of
-from kurbel.report.pictures import PICTURES, Wish, pictures_if_any
+from kurbel.report.frame import Subject
+from kurbel.report.pictures import PICTURES, pictures_if_any
+from kurbel.report.pictures.source import Wish
 from kurbel.report.provenance import provenance
 from kurbel.report.whole import COMMANDS, Command, Given, Progress
 from kurbel.solver.case import Case

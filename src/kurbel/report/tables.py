@@ -1,12 +1,12 @@
 """What a report is made of, whatever it will be rendered as."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, TypeVar, Union
 
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.frozen import frozen
 
 Value = Union[float, int, None]
 Item = TypeVar("Item")
@@ -111,7 +111,7 @@ class Part(NamedTuple):
     of: str = ""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Input:
     """A file that was read, and the SHA-256 of its bytes; None where it is gone since."""
 
@@ -119,7 +119,7 @@ class Input:
     sha256: str | None
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Provenance:
     """What results were made from: files, what was set over the machine file, and the versions of the libraries."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from kurbel.numerics.roots import bracketed_roots
 from kurbel.report.notes import LARGEST_PEAK
 from kurbel.report.trace_readings import ENGINE, Reading, in_bar, zero_text
-from kurbel.solver.pressure.exponents import AS_GIVEN, COMPRESSION, Supposed, exponent
+from kurbel.solver.trace import AS_GIVEN, COMPRESSION, Supposed, exponent
 
 _NEAR_AMBIENT = 0.7, 1.3
 _SENSIBLE = 1.2, 1.4

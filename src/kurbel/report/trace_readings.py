@@ -7,8 +7,7 @@ import numpy as np
 
 from kurbel.declared.unit_systems import convert
 from kurbel.numerics.vertex import vertex
-from kurbel.solver.pressure.exponents import COMPRESSION, Exponent, exponent, from_dead_centre
-from kurbel.solver.pressure.trace import TracePressure
+from kurbel.solver.trace import COMPRESSION, Exponent, TracePressure, exponent, from_dead_centre
 
 _LOW = 0.15
 """Share of the cycle below the low level: a noisy sample, or a few, are no level."""

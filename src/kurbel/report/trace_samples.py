@@ -3,7 +3,7 @@
 import numpy as np
 
 from kurbel.report.trace_readings import Reading, in_bar
-from kurbel.solver.pressure.corrected import LAST, drift_of
+from kurbel.solver.trace import LAST, drift_of
 
 _RANGE = 0.06
 """Share of the pressure where the cycle closes, above the low level, that one cycle and the next may differ by."""

@@ -11,12 +11,11 @@ from kurbel.machine import Machine
 from kurbel.report.guide import guide_warnings
 from kurbel.report.notes import LARGEST_PEAK
 from kurbel.solver.case import Case
-from kurbel.solver.cylinder.brake import Brake
-from kurbel.solver.cylinder.forces import CylinderForces
+from kurbel.solver.forces import Brake, CylinderForces
 
 if TYPE_CHECKING:
+    from kurbel.solver.flywheel import MachineTurning
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
-    from kurbel.solver.turning.flywheel import MachineTurning
 
 
 def as_far_as_solved(found: Iterable[str], command: str) -> tuple[str, ...]:
@@ -89,7 +88,7 @@ _LEAST_REVERSAL = 15.0, 0.03
 
 
 def _reversal_warnings(forces: CylinderForces) -> Iterable[str]:
-    load = forces.rod_load
+    load = forces
     if load.no_compressor:
         return
     angle, ratio = load.reversal_longest, load.reversal_ratio

@@ -11,10 +11,12 @@ from kurbel.machine.alike import gathered, work_alike
 from kurbel.report.alike import together
 from kurbel.report.angles import stepped
 from kurbel.report.check import Checked, checked
+from kurbel.report.commands import report_of
 from kurbel.report.document import Document, Grid, Item, Section
-from kurbel.report.frame import Frame, report_of
+from kurbel.report.frame import Frame
 from kurbel.report.keys import every_place, meaning
-from kurbel.report.pictures import PICTURES, Wish, pictures_if_any
+from kurbel.report.pictures import PICTURES, pictures_if_any
+from kurbel.report.pictures.source import Wish
 from kurbel.report.provenance import provenance
 from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.case import Case

@@ -18,10 +18,11 @@ from kurbel.solver.forces import CylinderForces
 if TYPE_CHECKING:
     from kurbel.solver.balance import MachineBalance
     from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+    from kurbel.solver.effort import TurningEffort
+    from kurbel.solver.flywheel import MachineTurning
+    from kurbel.solver.harmonics import MachineOrders
     from kurbel.solver.strength.crankshaft import CrankshaftStrength
-    from kurbel.solver.torsion.vibration import ShaftVibration
-    from kurbel.solver.turning.flywheel import MachineTurning
-    from kurbel.solver.turning.harmonics import MachineOrders
+    from kurbel.solver.torsion import ShaftVibration
 
 
 _WHOLE = ("stress", "flywheel", "balance", "torsion")
@@ -95,15 +96,27 @@ class Case(Shown):
     @cached_property
     def flywheel(self) -> MachineTurning:
         """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
-        from kurbel.solver.turning.flywheel import MachineTurning
+        from kurbel.solver.flywheel import MachineTurning
 
-        return MachineTurning(self.machine, self.old_cylinders)
+        return MachineTurning(self.machine, self.cylinders, self.count)
+
+    @cached_property
+    def effort(self) -> TurningEffort:
+        """Turning effort and load of the whole machine. Raises UsageError where nothing turns it.
+
+        Raises NoSolutionError where the losses leave too little of what drives the machine.
+        """
+        from kurbel.solver.effort import TurningEffort
+
+        found = TurningEffort(self.machine, self.cylinders, self.count)
+        _ = found.excess  # refuses a machine that cannot run
+        return found
 
     def harmonics(self, orders: Array | None = None) -> MachineOrders:
         """Return the orders (n,) of the turning effort, or the usual ones. Raises UsageError where nothing turns it."""
-        from kurbel.solver.turning.harmonics import MachineOrders
+        from kurbel.solver.harmonics import MachineOrders
 
-        return MachineOrders(self.flywheel.turned, orders)
+        return MachineOrders(self.effort, orders)
 
     @cached_property
     def torsion(self) -> ShaftVibration:
@@ -112,6 +125,6 @@ class Case(Shown):
 
     def torsion_of(self, orders: Array | None) -> ShaftVibration:
         """Return the torsional vibration by these orders (k,)."""
-        from kurbel.solver.torsion.vibration import ShaftVibration
+        from kurbel.solver.torsion import ShaftVibration
 
-        return ShaftVibration(self.machine, self.old_cylinders, orders)
+        return ShaftVibration(self.machine, self.cylinders, orders)

@@ -1,27 +1,26 @@
-"""Forces and key values of one cylinder, or of that cylinder of many machines; each is computed when it is asked for.
+"""What `kurbel forces` answers for one cylinder, or for that cylinder of many machines: key values of its forces.
 
-The cycle is cut where something bends or jumps, and halved until all forces are polynomials on every piece. Where the
-crosshead rubs, it is cut also where the guide force changes sides; where pins rub, where their loads turn.
+Rod loads are judged after API 618: unless crosshead pin and bush part once in every turn, no oil comes between them on
+the loaded side. The standard asks for 15° of crank angle and 3 % of the larger load in the other direction; it takes
+both every 5°, kurbel at the roots.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array, Indices
 from kurbel.declared.quantities import Lists
-from kurbel.errors import NoSolutionError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
-from kurbel.numerics.pieces import Pieces, refined
+from kurbel.solver.cycle import SampledCylinder
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, crank_angles
 from kurbel.solver.friction import redtenbacher_loss
@@ -29,18 +28,8 @@ from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
 from kurbel.solver.state import State
 
-_SURE = 4.0
-"""Standard deviations that the noise of thousands of samples does not reach."""
 
-
-class Where(NamedTuple):
-    """The angles in degrees at which a quantity has a value, ascending, and between which values it moves."""
-
-    angles: tuple[float, ...]
-    span: tuple[float, float]
-
-
-class CylinderForces(Results):
+class CylinderForces(SampledCylinder, Results):
     """What `kurbel forces` answers for one cylinder. Attributes are named by the ids of the key values, in SI.
 
     A key value that the machine does not have is None. `at(degrees)` gives the columns. count: of how many machines the
@@ -57,173 +46,21 @@ class CylinderForces(Results):
     def answering(self) -> Iterator[Any]:
         """What answers key values, the first that knows one; the others need not be made for it."""
         yield from (self, self.motion)
-        if self.drive.has_force:
-            yield from (self.rod_load, self.guide_load)
         if self.drive.own_gas:
             yield self.indicated
             if self.drive.machine.brake_power is not None:
                 yield self.brake
 
     @cached_property
-    def rod_load(self) -> RodLoad:
-        """The rod load, as compressors are judged by it."""
-        return RodLoad(self)
-
-    @property
-    def guide_load(self) -> GuideLoad:
-        """How hard the crosshead presses on its guide."""
-        return GuideLoad(self)
-
-    @cached_property
     def indicated(self) -> Indicated:
         """What the traces of the cylinder's own piston tell."""
         return Indicated(self.drive.own_gas)
 
-    @cached_property
+    @property
     def brake(self) -> Brake | None:
         """What the brake tells, where this is the only cylinder."""
         machine = self.drive.machine
         return Brake(machine, (self,)) if len(machine.cylinders) == 1 else None
-
-    # the pieces of the cycle, and what is sampled on them
-
-    def told(self, values: Array) -> Any:
-        """Return what was found of every machine (machines,), or of the only one as a number."""
-        return float(values[0]) if self.drive.count is None else values
-
-    @cached_property
-    def pieces(self) -> Pieces:
-        """The cycle in pieces on which every column is a polynomial."""
-        drive, pieces = self.drive, self.drive.pieces
-        if drive.has_force and (drive.rubs or drive.pin_friction):
-            pieces = self._cut_at_sides(pieces)
-        return refined(pieces, self._smooth)[0]
-
-    def _cut_at_sides(self, pieces: Pieces) -> Pieces:
-        """Return the pieces cut where the guide force changes sides, with and without friction in pins."""
-        drive = self.drive
-        free = refined(
-            pieces, lambda some: self._values_on(some, ("curvature", "P_gas", "P", "guide_sense"), rubs=False)
-        )[0]
-        if drive.rubs:
-            free = free.split(free.zeros(drive.on(free).unrubbed.guide_sense))
-            self._refuse_locking_on(free)
-        if drive.pin_friction is None:
-            return free
-        loaded = refined(free, lambda some: self._values_on(some, ("guide_sense", *_RUBBING)))[0]
-        return loaded.split(loaded.zeros(drive.on(loaded).guide_sense)) if drive.rubs else loaded
-
-    def _values_on(self, pieces: Pieces, names: Iterable[str], rubs: bool = True) -> Array:
-        state = self.drive.on(pieces)
-        state = state if rubs else state.unrubbed
-        values = (_column(state, name) for name in names)
-        return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None])
-
-    def _smooth(self, pieces: Pieces) -> Array:
-        """Return what is to be a polynomial on every piece."""
-        offered = [one.quantity.id for one in self.drive.mechanism.OFFERS if one.quantity.extremes]
-        return self._values_on(pieces, (*(_SMOOTH if self.drive.has_force else _SMOOTH[:1]), *offered))
-
-    def _refuse_locking_on(self, pieces: Pieces) -> None:
-        """Raise NoSolutionError with the exact angle from which on the crosshead of the only machine locks."""
-        if self.drive.count is None and may_lock(self.drive.cylinder):
-            below = self.drive.on(pieces).unrubbed.below
-            if (below <= 0).any():
-                at = pieces.zeros(below).degrees
-                first = float(at[0]) if len(at) else float(pieces.degrees.T[(below <= 0).T][0])
-                raise NoSolutionError(self.drive.locks(first))
-
-    @cached_property
-    def samples(self) -> State:
-        """The state at the nodes of the pieces."""
-        return self.drive.on(self.pieces)
-
-    def sampled(self, column: str) -> Array | None:
-        """Return a column at the nodes of the pieces, (nodes, pieces); None for one that is left out."""
-        found = getattr(self.samples, column)
-        return None if found is None else np.broadcast_to(found, self.pieces.degrees.shape)
-
-    @property
-    def breaks(self) -> Array:
-        """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        return np.append(self.pieces.low, self.pieces.cycle)
-
-    @cached_property
-    def _extremes(self) -> dict[str, Extremes]:
-        """Those of every column that is declared to have extremes, as far as there is one."""
-        declared = quantities_of(self.drive.mechanism).all_columns
-        return self.extremes_over(one.id for one in declared if "forces" in one.extremes)
-
-    def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
-        """Return the extremes in SI of these columns, as far as there are any."""
-        found = {name: values for name in columns if (values := self.sampled(name)) is not None}
-        if not found:
-            return {}
-        each = self.pieces.extremes(np.stack([*found.values()]))
-        high, high_at, low, low_at = (list(map(self.told, part)) for part in each)
-        pairs = zip(map(Extreme, high, high_at), map(Extreme, low, low_at))
-        return dict(zip(found, (Extremes(*pair) for pair in pairs)))
-
-    def extremes_of(self, column: str) -> Extremes | None:
-        """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
-        found = self._extremes.get(column) if self.drive.has_force else None
-        return found or self.motion.extremes_of(column)
-
-    def refuse_locking(self) -> None:
-        """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
-        if may_lock(self.drive.cylinder):
-            self.extremes_of("N")
-
-    def angles_where(self, column: str, value: float) -> Where | None:
-        """Return where in the cycle a column has a value in SI; None for a column that is left out."""
-        values = self.sampled(column)
-        return None if values is None else where_is(self.pieces, values, value)
-
-    # where P changes sides
-
-    @cached_property
-    def phi_reversal(self) -> tuple[Any, ...] | None:
-        """Druckwechsel: crank angles in degrees at which P takes the other sign, through zero or by a jump.
-
-        Of those that are the noise of a trace alone the middle one stands for all. Of many machines one tuple each.
-        """
-        return self.reversals_of("P") if self.drive.has_force else None
-
-    def reversals_of(self, column: str) -> tuple[Any, ...] | None:
-        """Return the crank angles in degrees at which a force takes the other sign for longer than noise."""
-        values = self.sampled(column)
-        if values is None:
-            return None
-        changes = self.pieces.zeros(values)
-        if self.drive.count is not None:
-            return tuple(tuple(one.tolist()) for one in changes.of_each(self.drive.count))
-        return tuple(_lasting(self.pieces, values, changes.degrees, _SURE * self._noise).tolist())
-
-    @property
-    def reversals_in_noise(self) -> int:
-        """How many changes of the sign of P are the noise of a trace alone, and not told."""
-        values = self.sampled("P") if self._noise and self.drive.has_force else None
-        return 0 if values is None else len(self.pieces.zeros(values).degrees) - len(self.phi_reversal or ())
-
-    @property
-    def _noise(self) -> float:
-        """Standard deviation in N of the noise that traces bring into P."""
-        return math.hypot(*(gas.noise for gas in self.drive.gas))
-
-    @cached_property
-    def lifted(self) -> tuple[tuple[float, float], ...]:
-        """Stretches of crank angle in degrees on which N presses on the upper guide, R p. 602.
-
-        Empty, too, where there is no guide, no N, or no inclination that says which guide is the lower one.
-        """
-        down, side = self.drive.down, self.sampled("N") if self.drive.has_force else None
-        if side is None or not down or not (self.drive.mechanism.guided and self.drive.mechanism.has_rod):
-            return ()
-        turns = self.pieces.zeros(side).degrees.tolist() or [0.0]
-        stretches = list(zip(turns, [*turns[1:], turns[0] + self.drive.cycle]))
-        middles = np.array([(start + end) / 2 for start, end in stretches])
-        pressing = self.pieces.at(side, np.zeros(len(middles), dtype=np.intp), middles) * down
-        return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
 
     # key values
 
@@ -478,6 +315,108 @@ class CylinderForces(Results):
         turnover, missed = self._over_cycle(np.abs(torque)), self._over_cycle(torque) - self.work_left
         return where(turnover > 0, missed / where(turnover > 0, turnover, 1.0), 0.0)
 
+    # rod load
+
+    @property
+    def no_compressor(self) -> bool:
+        """Whether nobody asks for the rod load: an engine, also a motored one of four strokes, or no connecting rod."""
+        work, drive = self.work, self.drive
+        return work is None or work >= 0 or drive.revolutions > 1 or not drive.mechanism.has_rod
+
+    @cached_property
+    def _rod_loads(self) -> dict[str, Extremes]:
+        return self.extremes_over(("P_gas", "P_rod", "P_piston_rod")) if self.drive.has_force else {}
+
+    def compression_max(self, column: str) -> Extreme | None:
+        """Return the largest force in N toward the shaft; 0, where it comes nearest, if none."""
+        found = self._rod_loads.get(column)
+        return found and _at_least_zero(found.largest.value, found.largest.degrees)
+
+    def tension_max(self, column: str) -> Extreme | None:
+        """Return the size of the largest force in N away from the shaft; 0, where it comes nearest, if none."""
+        found = self._rod_loads.get(column)
+        return found and _at_least_zero(-found.smallest.value, found.smallest.degrees)
+
+    @cached_property
+    def phi_rod_reversal(self) -> tuple[Any, ...] | None:
+        """Crank angles in degrees at which the rod load takes the other sign; within the noise of a trace, once.
+
+        Of many variants one tuple each.
+        """
+        return self.reversals_of("P_rod") if self.drive.has_force else None
+
+    @cached_property
+    def _reversed(self) -> Array | None:
+        """Degrees of crank angle per cycle on which the rod is pressed, or pulled, whichever is less, (2, machines).
+
+        All of them, and the longest stretch; 0 where the load does not reverse, None without one.
+        """
+        values = self.sampled("P_rod") if self.drive.has_force else None
+        if values is None or self.phi_rod_reversal is None:
+            return None
+        each = [self.phi_rod_reversal] if self.drive.count is None else self.phi_rod_reversal
+        machine = np.repeat(np.arange(len(each)), [len(one) for one in each])
+        start = np.array([angle for one in each for angle in one])
+        first, last = np.flatnonzero(np.diff(machine, prepend=-1)), np.flatnonzero(np.diff(machine, append=-1))
+        end = np.append(start[1:], 0.0)[: len(start)]
+        end[last] = start[first] + self.drive.cycle
+        presses = self.pieces.at(values, machine, (start + end) / 2) > 0
+        pressed, pulled = (_stretches(machine[way], (end - start)[way], len(each)) for way in (presses, ~presses))
+        return np.where(pulled[0] < pressed[0], pulled, pressed)
+
+    @property
+    def reversal_angle(self) -> Any:
+        """Degrees of crank angle per cycle of the reversed load; 0 where it does not reverse."""
+        return None if self._reversed is None else self.told(self._reversed[0])
+
+    @property
+    def reversal_longest(self) -> Any:
+        """The longest of its stretches in degrees."""
+        return None if self._reversed is None else self.told(self._reversed[1])
+
+    @property
+    def reversal_ratio(self) -> Any:
+        """Smaller peak of the rod load over the larger one; 0 where it does not reverse."""
+        angle, peaks = self.reversal_angle, self._rod_loads.get("P_rod")
+        if angle is None or peaks is None or not some(angle > 0):
+            return angle
+        pressed, pulled = (abs(one.value) for one in peaks)
+        ratio = where(pressed < pulled, pressed, pulled) / where(pressed < pulled, pulled, pressed)
+        return where(angle > 0, ratio, 0.0)
+
+    # the shoe of the crosshead
+
+    @property
+    def p_guide_max(self) -> Extreme | None:
+        """Largest pressure of the crosshead's shoe on its guide in Pa."""
+        found = None if self.drive.guide_area is None else self.extremes_of("N")
+        if found is None:
+            return None
+        most = largest(*(Extreme(abs(one.value), one.degrees) for one in found))
+        return Extreme(most.value / self.drive.guide_area, most.degrees)
+
+    @property
+    def p_guide_mean(self) -> Any:
+        """Mean pressure in Pa of the shoe on its guide over the way there and back; None without friction there."""
+        f, lost, area = self.drive.crosshead_friction, self.crosshead_work, self.drive.guide_area
+        if area is None or lost is None or not (self.drive.rubs and some(lost != 0)):
+            return None
+        return lost / (f * area * self.way)
+
+    @property
+    def wear_max(self) -> Extreme | None:
+        """Largest value of the wear line f |N| |c| in W."""
+        found = self.extremes_over(("wear",)) if self.drive.guide_area is not None and self.drive.has_force else {}
+        return found["wear"].largest if found else None
+
+    @property
+    def wear_mean(self) -> Any:
+        """Mean of the wear line over time in W."""
+        speed, lost = self.drive.machine.speed, self.crosshead_work
+        if self.drive.guide_area is None or lost is None or speed is None:
+            return None
+        return lost * speed / self.drive.revolutions
+
 
 class Brake:
     """What the brake has measured against what the indicator shows; None without a brake or an indicated power.
@@ -532,83 +471,6 @@ def _swept_rate(forces: CylinderForces) -> float | None:
     return None if gas is None else gas.swept_volume / forces.drive.revolutions
 
 
-class RodLoad:
-    """Loads of gas and moving parts on one rod. Attributes are named by the ids of the key values, in SI, or None."""
-
-    def __init__(self, forces: CylinderForces) -> None:
-        self._forces = forces
-
-    @property
-    def no_compressor(self) -> bool:
-        """Whether nobody asks for the rod load: an engine, also a motored one of four strokes, or no connecting rod."""
-        work, drive = self._forces.work, self._forces.drive
-        return work is None or work >= 0 or drive.revolutions > 1 or not drive.mechanism.has_rod
-
-    @cached_property
-    def _every(self) -> dict[str, Extremes]:
-        return self._forces.extremes_over(("P_gas", "P_rod", "P_piston_rod"))
-
-    def _extremes(self, column: str) -> Extremes | None:
-        return self._every.get(column)
-
-    def compression_max(self, column: str) -> Extreme | None:
-        """Return the largest force in N toward the shaft; 0, where it comes nearest, if none."""
-        found = self._extremes(column)
-        return found and _at_least_zero(found.largest.value, found.largest.degrees)
-
-    def tension_max(self, column: str) -> Extreme | None:
-        """Return the size of the largest force in N away from the shaft; 0, where it comes nearest, if none."""
-        found = self._extremes(column)
-        return found and _at_least_zero(-found.smallest.value, found.smallest.degrees)
-
-    @cached_property
-    def phi_rod_reversal(self) -> tuple[Any, ...] | None:
-        """Crank angles in degrees at which the rod load takes the other sign; within the noise of a trace, once.
-
-        Of many variants one tuple each.
-        """
-        return self._forces.reversals_of("P_rod")
-
-    @cached_property
-    def _reversed(self) -> Array | None:
-        """Degrees of crank angle per cycle on which the rod is pressed, or pulled, whichever is less, (2, machines).
-
-        All of them, and the longest stretch; 0 where the load does not reverse, None without one.
-        """
-        forces, values = self._forces, self._forces.sampled("P_rod")
-        if values is None or self.phi_rod_reversal is None:
-            return None
-        each = [self.phi_rod_reversal] if forces.drive.count is None else self.phi_rod_reversal
-        machine = np.repeat(np.arange(len(each)), [len(one) for one in each])
-        start = np.array([angle for one in each for angle in one])
-        first, last = np.flatnonzero(np.diff(machine, prepend=-1)), np.flatnonzero(np.diff(machine, append=-1))
-        end = np.append(start[1:], 0.0)[: len(start)]
-        end[last] = start[first] + forces.drive.cycle
-        presses = forces.pieces.at(values, machine, (start + end) / 2) > 0
-        pressed, pulled = (_stretches(machine[way], (end - start)[way], len(each)) for way in (presses, ~presses))
-        return np.where(pulled[0] < pressed[0], pulled, pressed)
-
-    @property
-    def reversal_angle(self) -> Any:
-        """Degrees of crank angle per cycle of the reversed load; 0 where it does not reverse."""
-        return None if self._reversed is None else self._forces.told(self._reversed[0])
-
-    @property
-    def reversal_longest(self) -> Any:
-        """The longest of its stretches in degrees."""
-        return None if self._reversed is None else self._forces.told(self._reversed[1])
-
-    @property
-    def reversal_ratio(self) -> Any:
-        """Smaller peak of the rod load over the larger one; 0 where it does not reverse."""
-        angle, peaks = self.reversal_angle, self._extremes("P_rod")
-        if angle is None or peaks is None or not some(angle > 0):
-            return angle
-        pressed, pulled = (abs(one.value) for one in peaks)
-        ratio = where(pressed < pulled, pressed, pulled) / where(pressed < pulled, pulled, pressed)
-        return where(angle > 0, ratio, 0.0)
-
-
 def _stretches(whose: Indices, degrees: Array, count: int) -> Array:
     """Return the sum of the stretches (n,) of each of so many variants, and the longest, (2, count)."""
     longest = np.zeros(count)
@@ -618,85 +480,3 @@ def _stretches(whose: Indices, degrees: Array, count: int) -> Array:
 
 def _at_least_zero(value: Any, degrees: Any) -> Extreme:
     return Extreme(where(value > 0, value, 0.0), degrees)
-
-
-class GuideLoad:
-    """Loads of one guide. Attributes are named by the ids of the key values, in SI; None without a shoe."""
-
-    def __init__(self, forces: CylinderForces) -> None:
-        self._forces = forces
-        self._area = forces.drive.guide_area
-
-    @property
-    def p_guide_max(self) -> Extreme | None:
-        """Largest pressure of the crosshead's shoe on its guide in Pa."""
-        found = self._forces.extremes_of("N")
-        if self._area is None or found is None:
-            return None
-        most = largest(*(Extreme(abs(one.value), one.degrees) for one in found))
-        return Extreme(most.value / self._area, most.degrees)
-
-    @property
-    def p_guide_mean(self) -> Any:
-        """Mean pressure in Pa of the shoe on its guide over the way there and back; None without friction there."""
-        f, lost = self._forces.drive.crosshead_friction, self._forces.crosshead_work
-        if self._area is None or lost is None or not (self._forces.drive.rubs and some(lost != 0)):
-            return None
-        return lost / (f * self._area * self._forces.way)
-
-    @property
-    def wear_max(self) -> Extreme | None:
-        """Largest value of the wear line f |N| |c| in W."""
-        found = self._forces.extremes_over(("wear",)) if self._area is not None else {}
-        return found["wear"].largest if found else None
-
-    @property
-    def wear_mean(self) -> Any:
-        """Mean of the wear line over time in W."""
-        speed, lost = self._forces.drive.machine.speed, self._forces.crosshead_work
-        if self._area is None or lost is None or speed is None:
-            return None
-        return lost * speed / self._forces.drive.revolutions
-
-
-_RUBBING = ("at_crank", "at_crosshead", "journals")
-_SMOOTH = ("curvature", "P_gas", "P", "N", "T", "D", *_RUBBING)
-
-
-def _column(state: State, name: str) -> Any:
-    """Return a column, or a moment of friction in pins and journals; None for what is left out."""
-    if name not in _RUBBING:
-        return None if name == "guide_sense" and state.rod_angle is None else getattr(state, name)
-    rubbing = state.rubbing
-    return None if rubbing is None else getattr(rubbing, name)
-
-
-def where_is(pieces: Pieces, values: Array, value: float) -> Where:
-    """Return the angles of the cycle at which samples pass a value, or reach it as their extreme, of one machine.
-
-    At a jump over the value it is the angle of the jump.
-    """
-    passed = pieces.zeros(values - value, np.maximum(pieces.largest(values), abs(value)))
-    high, high_at, low, low_at = (float(one[0, 0]) for one in pieces.extremes(values[None]))
-    ends = ((high, high_at), (low, low_at))
-    reached = [degrees for end, degrees in ends if math.isclose(end, value, rel_tol=1e-14)]
-    return Where(tuple(sorted({*passed.degrees.tolist(), *reached})), (low, high))
-
-
-def _lasting(pieces: Pieces, values: Array, changes: Array, noise: float) -> Array:
-    """Return those of the changes of sign (n,) of samples between which they leave a band of noise beside 0.
-
-    Of several that follow one another within the band, the middle one stands for a change that lasts beyond it, and
-    none where they lead back to the sign before.
-    """
-    if not noise or not len(changes):
-        return changes
-    # which change each value follows: at a jump the side of the piece decides
-    beside = pieces.degrees + 1e-9 * (pieces.middle - pieces.degrees)
-    reach = np.zeros(len(changes))
-    np.maximum.at(reach, np.searchsorted(changes, beside) - 1, np.abs(values))
-    clear = np.flatnonzero(reach > noise)
-    if not len(clear):
-        return changes[:0]
-    groups = np.split(np.roll(changes, -clear[0] - 1), clear[1:] - clear[0])
-    return np.sort([group[len(group) // 2] for group in groups if len(group) % 2])

@@ -29,7 +29,7 @@ from kurbel.machine.indicator import STROKES, Card
 from kurbel.machine.piston import Piston
 from kurbel.machine.rectangle import Rectangle
 from kurbel.machine.trace import Trace
-from kurbel.machine.variants import Chambers, taken
+from kurbel.machine.variants import Chambers, count_of, taken
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import total
 from kurbel.numerics.extreme import Extreme
@@ -38,6 +38,8 @@ from kurbel.solver.trace import Setting, TracePressure, spread
 
 _NO_WIDTH = 1e-10
 """Degrees of crank angle; over less a line cannot be followed, and its segment is a jump."""
+_STEEP = 1e-3
+"""Of the stroke: a line over less is so steep that the rounding of z counts."""
 _ROUNDING = 3e-13
 """Degrees of crank angle by which the angle of a corner may be off: a few units in the last place of 720."""
 
@@ -83,7 +85,7 @@ class Process:
     def _polytropic_area(self, segment: Segment) -> tuple[float, float]:
         """Return P V ln(V′/V) (e^u − 1)/u with P absolute, and what the lift takes off."""
         volume, way = segment.z + self.clearance, segment.next_z - segment.z
-        grown = float(growth(segment.z, segment.next_z, self.clearance))
+        grown = float(growth(segment.z, way, self.clearance))
         u = (1 - segment.exponent) * grown
         mean = math.expm1(u) / u if u else 1.0
         return (segment.p + self.lift) * volume * grown * mean, -self.lift * way
@@ -94,16 +96,15 @@ def _straight_area(segment: Segment) -> Fraction:
     return (p + next_p) * (next_z - z) / 2
 
 
-def growth(z: Any, next_z: Any, clearance: Any) -> Any:
-    """Return ln(V′/V) between stroke fractions z and z′.
+def growth(z: Any, way: Any, clearance: Any) -> Any:
+    """Return ln(V′/V) between stroke fractions z and z + way.
 
     Only ln(1 + what is more than the smaller volume) has its digits both for steep lines and for small clearances.
 
-    >>> round(float(growth(1.0, 0.0, 1.0)), 9)
+    >>> round(float(growth(1.0, -1.0, 1.0)), 9)
     -0.693147181
     """
-    sense = np.where(next_z < z, -1.0, 1.0)
-    return sense * np.log1p(np.abs(next_z - z) / (np.minimum(z, next_z) + clearance))
+    return np.where(way < 0, -1.0, 1.0) * np.log1p(np.abs(way) / (np.minimum(z, z + way) + clearance))
 
 
 def polytropic_exponent(z: float, p: float, next_z: float, next_p: float, clearance: float) -> float:
@@ -112,7 +113,7 @@ def polytropic_exponent(z: float, p: float, next_z: float, next_p: float, cleara
     >>> polytropic_exponent(0.0, 8.0, 1.0, 4.0, 1.0)
     1.0
     """
-    return math.log(p / next_p) / float(growth(z, next_z, clearance))
+    return math.log(p / next_p) / float(growth(z, next_z - z, clearance))
 
 
 def process_in(chamber: Any, lift: float = 0.0, cycle: float = 360.0, base: float = 0.0) -> Process:
@@ -254,61 +255,70 @@ class CardPressure:
     """
 
     def __init__(self, chamber: Any, setting: Setting, count: int | None) -> None:
-        self.setting = setting
+        self.setting, self._count = setting, count
         self.processes = _processes(chamber, setting, count)
-        self._machine, self._begins, self._ends, self._table = _over_the_angle(self.processes, setting, count)
+        self._alike = len(self.processes) == 1 and count_of(setting.mechanism) is None
+        own = None if self._alike else count
+        self._machine, self._begins, self._ends, self._table = _over_the_angle(self.processes, setting, own)
         self._keys = self._machine * (2 * setting.cycle) + self._begins
-        self._first = np.searchsorted(self._machine, np.arange(count or 1))
+        self._first = np.searchsorted(self._machine, np.arange(own or 1))
         z, p, next_z, next_p, exponent = self._table
         self._rows = np.stack((z, p, next_z, exponent, (next_p - p) / (next_z - z), self._begins, self._ends))
         self.straight = not exponent.any()
+        self.steep = bool((np.abs(next_z - z) < _STEEP).any())
 
     @property
     def starts(self) -> Angles:
         """Where segments begin, of one machine those of machine 0."""
-        return Angles(self._machine, self._begins)
+        if not (self._alike and self._count):
+            return Angles(self._machine, self._begins)
+        return Angles(np.repeat(np.arange(self._count), len(self._begins)), np.tile(self._begins, self._count))
 
-    def _of_machines(self, name: str) -> Number:
+    def _of_machines(self, name: str) -> Any:
         values = [getattr(one, name) for one in self.processes]
         return values[0] if len(set(values)) == 1 else np.array(values)
 
     @cached_property
-    def _clearance(self) -> Number:
+    def _clearance(self) -> Any:
         return self._of_machines("clearance")
 
     def held(self, within: Array, machine: Indices | None) -> Held:
         """Return the segments that hold angles (n,) in degrees, of these machines."""
         turned = within_cycle(within, self.setting.cycle)
-        own = np.zeros(1, dtype=np.intp) if machine is None else machine
+        own = np.zeros(1, dtype=np.intp) if machine is None or self._alike else machine
         row = np.searchsorted(self._keys, own * (2 * self.setting.cycle) + turned, side="right") - 1
         last = np.append(self._first[1:], len(self._keys))[own] - 1
         row = np.where(row < self._first[own], last, row)
         numbers = self._clearance, self.setting.lift, self.setting.base
         return Held(*self._rows[:, row], *(spread(one, machine) for one in numbers))
 
-    def at(self, z: Array, degrees: Array, held: Held) -> Array:
+    def at(self, z: Array, degrees: Array, held: Held, remaining: Array | None = None) -> Array:
         """Return the gauge pressure in Pa where z of the stroke is passed, on the segments that are held.
 
-        z, degrees: (n,), or (nodes, n) of pieces, each of which one segment holds.
+        z, degrees: (n,), or (nodes, n) of pieces, each of which one segment holds; remaining: 1 − z with all its
+        digits, of which steep lines beside the outer dead centre need every one.
         """
-        share = z + 0.0 if self.setting.head_end else 1 - z  # a new one
-        self._put_corners(share, degrees, held)
-        straight = (held.p - held.base) + held.rise * (share - held.z)
+        way = self._from_corner(z, degrees, held, remaining)
+        straight = (held.p - held.base) + held.rise * way
         if self.straight:
             return straight
         curved = held.exponent != 0
         clearance = np.where(curved, held.clearance, 1.0)  # what is straight may begin without any volume
-        power = (held.p + held.lift) * np.exp(growth(held.z, share, clearance) * -held.exponent)
+        power = (held.p + held.lift) * np.exp(growth(held.z, way, clearance) * -held.exponent)
         return np.where(curved, power - held.lift - held.base, straight)
 
-    def _put_corners(self, share: Array, degrees: Array, held: Held) -> None:
-        """Make stroke fractions at corners those of the card: their angles are rounded, lines may be steep."""
-        # of a piece only the first and the last node may stand at a corner
-        at = np.s_[:: len(share) - 1] if share.ndim > 1 else np.s_[:]
+    def _from_corner(self, z: Array, degrees: Array, held: Held, remaining: Array | None) -> Array:
+        """Return the way over the stroke since the corner where the segment begins; at corners exactly the card's."""
+        share = z if self.setting.head_end else 1 - z if remaining is None else remaining
+        way = share - held.z
+        if remaining is not None:
+            way = np.where(held.z > 0.5, (1 - held.z) - (remaining if self.setting.head_end else z), way)
+        # angles of corners are rounded, lines may be steep; of a piece only the first and the last node may stand there
+        at = np.s_[:: len(way) - 1] if way.ndim > 1 else np.s_[:]
         turned = within_cycle(degrees[at], self.setting.cycle)
-        for corner, z in ((held.ends, held.next_z), (held.begins, held.z)):
-            met = np.abs(turned - corner) <= _ROUNDING
-            share[at] = np.where(met, z, share[at])
+        for corner, whole in ((held.ends, held.next_z - held.z), (held.begins, 0.0)):
+            way[at] = np.where(np.abs(turned - corner) <= _ROUNDING, whole, way[at])
+        return way
 
     @cached_property
     def highest(self) -> Extreme:
@@ -318,10 +328,14 @@ class CardPressure:
         until = np.where(self._ends > self._begins, self._ends, self._ends + self.setting.cycle)
         level = best[self._machine]
         angles = np.where(p == level, self._begins, np.where(next_p == level, until, np.inf))
-        return Extreme.of(best - self.setting.base, np.minimum.reduceat(angles, self._first))
+        highest, first = best - self.setting.base, np.minimum.reduceat(angles, self._first)
+        if self._count is None:
+            return Extreme(float(highest[0]), float(first[0]))
+        pair: Any = np.broadcast_arrays(highest, first, np.empty(self._count))[:2]
+        return Extreme(*pair)
 
     @cached_property
-    def area(self) -> Number:
+    def area(self) -> Any:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
         return self._of_machines("area")
 
@@ -405,7 +419,7 @@ class PistonGas:
     """
 
     def __init__(
-        self, piston: Piston, mechanism: Mechanism, cycle: float, ambient: Number, repeats: int, count: int | None
+        self, piston: Piston, mechanism: Mechanism, cycle: float, ambient: float, repeats: int, count: int | None
     ) -> None:
         indicator = piston.indicator
         assert indicator is not None
@@ -418,7 +432,7 @@ class PistonGas:
         self.crank = _pressure_in(indicator.crank_end, at_crank, count)
 
     @property
-    def ends(self) -> tuple[tuple[Pressure, Number], ...]:
+    def ends(self) -> tuple[tuple[Pressure, float], ...]:
         """The chambers that have pressures, with their areas in m²."""
         both = ((self.head, self.piston.head_area), (self.crank, self.piston.crank_area))
         return tuple((end, area) for end, area in both if end is not None)
@@ -432,7 +446,7 @@ class PistonGas:
         ]
 
     @cached_property
-    def works(self) -> tuple[Number, ...]:
+    def works(self) -> tuple[Any, ...]:
         """Indicated work in J per cycle of the cylinder of head end and crank end: A s ∮ p dz."""
         return tuple(area * self.stroke * self.repeats * end.area for end, area in self.ends)
 

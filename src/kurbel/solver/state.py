@@ -24,8 +24,8 @@ from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
 from kurbel.errors import NoSolutionError
-from kurbel.mechanisms import every_quantity
 from kurbel.mechanisms.coupler import PointMotion, point_motion
+from kurbel.mechanisms.kinds import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.lobatto import rule
 from kurbel.solver.gas import Pressure
@@ -154,7 +154,11 @@ class State:
 
     def pressure(self, end: Pressure) -> Array:
         """Return the gauge pressure in Pa at an end of a piston."""
-        return end.at(self.z, self.phi, end.held(self.within, self.drive.index))
+        if isinstance(end, TracePressure):
+            return end.at(self.phi, end.held(self.within))
+        mechanism = self.drive.mechanism
+        left = mechanism.remaining(self._posed) / mechanism.stroke if end.steep else None
+        return end.at(self.z, self.phi, end.held(self.within, self.drive.index), left)
 
     def _counted(self, end: Pressure | None) -> Any:
         """Return a pressure as the machine file counts it."""

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices, Number
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.trace import Pegging, Trace
 from kurbel.mechanisms import Mechanism
@@ -18,7 +18,7 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles, Pieces
 
 
-def spread(number: Number, machine: Indices | None) -> Number:
+def spread(number: Any, machine: Indices | None) -> Any:
     """Return numbers of machines (machines,) for those of an index; one number stays one."""
     return number[machine] if isinstance(number, np.ndarray) and number.ndim and machine is not None else number
 
@@ -27,23 +27,24 @@ class Setting(NamedTuple):
     """Where a chamber stands and what its pressures count from.
 
     cycle: degrees of crank angle, 360 or 720; ambient: absolute pressure in Pa; absolute: whether the chamber's own
-    figures are; mirrored: the crank end repeats the head end's figures one stroke later.
+    figures are; mirrored: the crank end repeats the head end's figures one stroke later. Of many machines numbers are
+    arrays (machines,), which type checkers are not told.
     """
 
     mechanism: Mechanism
     cycle: float
     head_end: bool
-    ambient: Number
+    ambient: float
     absolute: bool
     mirrored: bool = False
 
     @property
-    def base(self) -> Number:
+    def base(self) -> float:
         """What the chamber's figures less this are gauge pressures, in Pa."""
         return self.ambient if self.absolute else 0.0
 
     @property
-    def lift(self) -> Number:
+    def lift(self) -> float:
         """What the chamber's figures plus this are absolute pressures, in Pa."""
         return 0.0 if self.absolute else self.ambient
 
@@ -52,6 +53,8 @@ _OF_MEDIAN = 1.4826
 """Standard deviation over the median of the magnitude, of what is normally distributed."""
 _CHORD = 1.0
 """Degrees over which a rise of pressure is told: between two samples it would be their noise."""
+_DENSE = 600
+"""Breaks of a cycle from which on its pieces are short enough for few nodes."""
 _ENOUGH = 72
 """Samples in a cycle below which differences show its shape instead of the noise."""
 
@@ -108,14 +111,14 @@ class TracePressure:
         """Where the segments begin; a trace is of one machine."""
         return Angles(np.zeros(len(self._starts), dtype=np.intp), self._starts)
 
-    def held(self, within: Array, machine: Indices | None = None) -> HeldSamples:
+    def held(self, within: Array) -> HeldSamples:
         """Return what holds on the segments in which angles (n,) in degrees lie."""
         turned = np.mod(within, self.setting.cycle)
         segment = np.searchsorted(self._starts, turned, side="right") - 1
         since = np.mod(turned - self._starts[segment], self.setting.cycle)
         return HeldSamples(within, since, self._segments.p[segment], self._gradients[segment])
 
-    def at(self, z: Any, degrees: Array, held: HeldSamples) -> Array:
+    def at(self, degrees: Array, held: HeldSamples) -> Array:
         """Return the gauge pressure in Pa at crank angles in degrees, on the segments that are held."""
         return held.p + held.gradient * (held.since + (degrees - held.within))
 
@@ -129,7 +132,7 @@ class TracePressure:
 
     def rise(self, degrees: Array) -> Array:
         """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each."""
-        ahead, behind = (self.at(None, at, self.held(at)) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2))
+        ahead, behind = (self.at(at, self.held(at)) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2))
         return np.asarray((ahead - behind) / _CHORD)
 
     @cached_property
@@ -210,7 +213,8 @@ class TracePressure:
         mechanism, cycle = self.setting.mechanism, self.setting.cycle
         turns = np.add.outer(mechanism.cuts(), np.arange(0.0, cycle, 360.0)).ravel()
         breaks = np.append(self._starts, turns)
-        pieces = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, 10)
+        nodes = 16 if len(breaks) < _DENSE else 10
+        pieces = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
         number = np.searchsorted(self._starts, pieces.middle, side="right") - 1
         since = np.mod(pieces.middle - self._starts[number], cycle) + (pieces.degrees - pieces.middle)
         share = since / (self._segments.end - self._segments.start)[number]

@@ -4,7 +4,7 @@ import re
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from kurbel.declared.forms.scalars import Number, Physical
@@ -14,7 +14,6 @@ from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import REFUSED, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
-from kurbel.frozen import frozen
 from kurbel.near_words import did_you_mean
 
 Known = Callable[[], dict[str, "Quantity"]]
@@ -34,7 +33,7 @@ class Bound(float):
         return bound
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Expected:
     """The smallest and the largest value that meet an expectation, in the base; unit, text and name as written."""
 

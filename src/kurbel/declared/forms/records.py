@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator
+from importlib import import_module
 from typing import Any, NoReturn
 
 from kurbel.declared.forms.scalars import Choice, reference
@@ -15,25 +16,22 @@ _TOO_EXTREME = "these numbers are too large or too small to compute with"
 
 
 class Record(Form):
-    """A mapping that becomes a record; `target` names it as `module:Class`, so that it is imported only when needed.
+    """A mapping that becomes a record; one of a module above that which declares the key is named as `module:Class`.
 
     inline_too: its keys also stand inline elsewhere, and are looked for there.
     """
 
     shape = dict
 
-    def __init__(self, target: str, inline_too: bool = False) -> None:
-        self.target, self.inline_too = target, inline_too
-        self._class: type[Described] | None = None
+    def __init__(self, record: type[Described] | str, inline_too: bool = False) -> None:
+        self._record, self.inline_too = record, inline_too
 
     def load(self) -> type[Described]:
-        """Import and return the class."""
-        if self._class is None:
-            from importlib import import_module
-
-            module, name = self.target.split(":")
-            self._class = getattr(import_module(module), name)
-        return self._class
+        """Return the class, imported where it is named."""
+        if isinstance(self._record, str):
+            module, name = self._record.split(":")
+            self._record = getattr(import_module(module), name)
+        return self._record  # type: ignore[return-value]
 
     @property
     def keys(self) -> Keys:
@@ -160,7 +158,7 @@ class Record(Form):
         return words
 
     def schema(self, definitions: Schema) -> Schema:
-        name = self.target.split(":")[1]
+        name = self.load().__name__
         if name not in definitions:
             definitions[name] = self.object_schema(definitions)
         return reference(name)

@@ -1,12 +1,11 @@
 """Scales: from the values of an axis to places on paper or in a terminal, and where its ticks stand."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from kurbel.frozen import frozen
 from kurbel.render.numbers import decimal
 from kurbel.report.pictures.picture import Axis, Panel
 
@@ -16,7 +15,7 @@ _AIR = 0.12
 """Share of its height that a panel leaves free above and below its curves."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Scale:
     """What values `low` and `high` stand for on an axis: the places `start` and `end`; log: by powers of ten."""
 

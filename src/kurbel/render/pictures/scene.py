@@ -1,12 +1,12 @@
 """A picture laid out on paper: lines, areas and texts at places in points from the upper left corner."""
 
 import re
+from dataclasses import dataclass
 from typing import Union
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
-from kurbel.frozen import frozen
 
 Places = tuple[tuple[float, float], ...]
 
@@ -16,7 +16,7 @@ _DOTS = "[\u0307\u0308]"
 _SUBSCRIPT = re.compile(rf"(?:(?<=\b\w)|(?<=\b\w{_DOTS})|(?<=Δ\w))_([^\s|]+?)(?=,?\s|,?$|\|)")
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Line:
     """A line through places, of a class of the style; `parts`: several lines of one look; frames: how it moves."""
 
@@ -26,7 +26,7 @@ class Line:
     frames: tuple[tuple[Places, ...], ...] = ()
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Text:
     """A text at a place, by its start, middle or end; halo: it may stand on lines; frames: where it moves to.
 
@@ -58,7 +58,7 @@ class Text:
         return [self.text] if self.plain else _SUBSCRIPT.split(self.text)
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Dots:
     """Small figures at places, of a class of the style; corners: of the figure, none for a circle."""
 
@@ -72,7 +72,7 @@ class Dots:
 Item = Union[Line, Text, Dots]
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Scene:
     """A laid out picture: its size, what stands on it, the later over the earlier, and what it says in words."""
 

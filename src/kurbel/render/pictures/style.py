@@ -1,10 +1,11 @@
 """How pictures look: the colours and strokes of their curves, in light and dark, told apart without colour, too."""
 
-from kurbel.frozen import frozen
+from dataclasses import dataclass
+
 from kurbel.report.pictures.picture import Panel
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Look:
     """A curve's colour on a light and on a dark ground, and its stroke: lengths of dash and gap, none for a full line.
 

@@ -2,8 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
-from importlib import import_module
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,45 +10,39 @@ import numpy as np
 from kurbel.declared.reading import shown
 from kurbel.declared.shaft import SHAFT_PARTS
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.frozen import frozen
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.near_words import did_you_mean
 from kurbel.report.alike import together
+from kurbel.report.pictures import cylinder, mechanism, vectors, whole_machine
 from kurbel.report.pictures.picture import Panel, Picture
+from kurbel.report.pictures.source import Source, Wish
 from kurbel.report.tables import cylinder_meant
 
 if TYPE_CHECKING:
-    from kurbel.report.pictures.source import Source
     from kurbel.solver.case import Case
 
-FILE, TERMINAL = 1 / 2000, 1 / 250
-"""By what of its height a line of points may miss a curve: less than can be seen on paper, or in a terminal."""
 
-
-@frozen
+@dataclass(frozen=True, eq=False)
 class Declared:
     """A picture: its word, its German title, and a sentence; command: whose results it shows.
 
-    panels: the function that yields its panels from a source, as `module:function` below this package. rows: instead of
-    that, columns over `over`, one panel for each group of those that the machine has. across: how many panels
-    stand side by side.
+    panels: the function that yields its panels from a source. rows: instead of that, columns over `over`, one panel for
+    each group of those that the machine has. across: how many panels stand side by side.
     """
 
     id: str
     title: str
     text: str
     command: str
-    panels: str = ""
+    panels: Callable[[Source], Iterable[Panel]] | None = None
     rows: tuple[tuple[str, ...], ...] = ()
     over: str = "phi"
     across: int = 1
 
-    def drawn(self, source: "Source") -> Iterable[Panel]:
+    def drawn(self, source: Source) -> Iterable[Panel]:
         """Return the panels; none where the machine does not have what they show."""
         if self.panels:
-            module, name = self.panels.split(":")
-            function: Callable[[Source], Iterable[Panel]] = getattr(import_module(f"{__name__}.{module}"), name)
-            return function(source)
+            return self.panels(source)
         if not source.having((self.over,)) and self.over != "phi":
             return ()
         return (source.panel(ids, self.over) for row in self.rows if (ids := source.having(row)))
@@ -62,42 +55,42 @@ PICTURES = (
         "Force P_0 of gas, weight and resistance against the line of the inertia forces over the crank angle; what "
         "lies between is the piston force P, below alone. It turns over where both lines cross (Druckwechsel).",
         "forces",
-        "cylinder:piston_force",
+        cylinder.piston_force,
     ),
     Declared(
         "piston-force-way",
         "Kolbenüberdrucklinie über dem Weg",
         "The same over the way of the piston, stroke by stroke (R Abb. 1055).",
         "forces",
-        "cylinder:piston_force_over_way",
+        cylinder.piston_force_over_way,
     ),
     Declared(
         "card",
         "Indikatordiagramm",
         "Pressure at both ends of the pistons over the way from the inner dead centre (R Abb. 1051).",
         "forces",
-        "cylinder:cards",
+        cylinder.cards,
     ),
     Declared(
         "card-volume",
         "Indikatordiagramm über dem Raum",
         "Pressure over the volume swept in each chamber, with the clearance where that is known.",
         "forces",
-        "cylinder:cards_over_volume",
+        cylinder.cards_over_volume,
     ),
     Declared(
         "forces",
         "Kräfte im Kurbeltrieb",
         "Forces in the rod, on the guide and at the crank pin over the crank angle (R Abb. 1061, 1062).",
         "forces",
-        "cylinder:forces",
+        cylinder.forces,
     ),
     Declared(
         "effort-polar",
         "Tangentialdruck in polarer Darstellung",
         "Tangential force T drawn outward from the circle of the crank pin (R Abb. 1063).",
         "forces",
-        "cylinder:polar_effort",
+        cylinder.polar_effort,
     ),
     Declared(
         "effort",
@@ -105,7 +98,7 @@ PICTURES = (
         "Turning effort of the whole machine and the resistance, its lobes numbered with their work; below the excess "
         "work and the speed (R Abb. 1064 to 1067).",
         "flywheel",
-        "whole_machine:effort",
+        whole_machine.effort,
     ),
     Declared(
         "throw-stress",
@@ -119,7 +112,7 @@ PICTURES = (
         "Lagerkräfte in polarer Darstellung",
         "The way of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod.",
         "bearings",
-        "vectors:polar_loads",
+        vectors.polar_loads,
         across=2,
     ),
     Declared(
@@ -127,21 +120,21 @@ PICTURES = (
         "Drehkraft nach Ordnungen",
         "Amplitudes of the turning effort by order, periods per turn of the shaft.",
         "harmonics",
-        "whole_machine:torque_orders",
+        whole_machine.torque_orders,
     ),
     Declared(
         "modes",
         "Eigenschwingungen der Welle",
         "How far the masses of the shaft line turn in its first natural vibrations.",
         "torsion",
-        "whole_machine:shaft_modes",
+        whole_machine.shaft_modes,
     ),
     Declared(
         "free-vectors",
         "Massenausgleich: freie Kräfte und Momente",
         "The way that the tip of the free force, and of the free moment, runs over a turn.",
         "balance",
-        "vectors:free_vectors",
+        vectors.free_vectors,
     ),
     Declared(
         "free-angle",
@@ -155,7 +148,7 @@ PICTURES = (
         "Ordnungen der freien Kräfte und Momente",
         "The circles of each order, with the rotation and against it.",
         "balance",
-        "whole_machine:free_orders",
+        whole_machine.free_orders,
     ),
     Declared(
         "motion",
@@ -177,24 +170,11 @@ PICTURES = (
         "Getriebe",
         "The mechanism to scale, with the forces on it.",
         "motion",
-        "mechanism:mechanism",
+        mechanism.mechanism,
         across=2,
     ),
 )
 """The pictures, the one that says most of a machine first."""
-
-
-@frozen
-class Wish:
-    """How pictures are wanted: in which system of units, how finely (FILE or TERMINAL), of which cylinder alone.
-
-    angles: crank angles in degrees at which a mechanism is drawn, None where it moves.
-    """
-
-    system: str = "metric"
-    fineness: float = FILE
-    cylinder: str | None = None
-    angles: Sequence[float] | None = None
 
 
 def pictures(case: "Case", names: Sequence[str], wish: Wish) -> Iterator[Picture]:
@@ -280,10 +260,8 @@ def _drawn(case: "Case", declared: Declared, wish: Wish) -> list[Picture]:
     return found
 
 
-def _sources(case: "Case", declared: Declared, wish: Wish) -> "Iterator[tuple[Source, str]]":
+def _sources(case: "Case", declared: Declared, wish: Wish) -> Iterator[tuple[Source, str]]:
     """Yield what a picture is drawn from, each with the name of its cylinder; equal ones are drawn once."""
-    from kurbel.report.pictures.source import Source
-
     if declared.command in _OF_MACHINE:
         yield Source(_OF_MACHINE[declared.command](case), wish), ""
     elif declared.command == "bearings":

@@ -16,7 +16,7 @@ from kurbel.report.pictures.sampling import Samples, pieces
 from kurbel.report.pictures.source import PHI, Source, level, mark
 
 if TYPE_CHECKING:
-    from kurbel.solver.cylinder.gas import PistonGas
+    from kurbel.solver.gas import PistonGas
 
 _V, _P, _P_0 = Words("V"), Words("P"), Words("P_0")
 _INERTIA_LINE = Words("−P_b")

@@ -1,9 +1,9 @@
 """What a picture is made of, whatever draws it: curves, shades and marks on panels with two axes, in units as shown."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from kurbel.arrays import Array
-from kurbel.frozen import frozen
 
 
 class Words(NamedTuple):
@@ -13,7 +13,7 @@ class Words(NamedTuple):
     ascii_symbol: str = ""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Axis:
     """What runs along an axis, and its unit; log: by powers of ten; names: what stands at 0, 1, … instead of numbers.
 
@@ -29,7 +29,7 @@ class Axis:
     names: tuple[str, ...] = ()
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Piece:
     """Points of a curve without a jump, in the units of the axes, (n,).
 
@@ -42,7 +42,7 @@ class Piece:
     within: Array | None = None
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Curve:
     """A curve: pieces that follow one another, a jump between two of them.
 
@@ -57,7 +57,7 @@ class Curve:
     look: int | None = None
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Figure:
     """A figure that is written into a picture: symbol, value and unit, and the crank angle at which it stands."""
 
@@ -67,7 +67,7 @@ class Figure:
     at_deg: float | None = None
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Mark:
     """A point with its figure."""
 
@@ -76,7 +76,7 @@ class Mark:
     figure: Figure
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Shade:
     """The surface between two lines over the same places x (n,); `gain`: it counts positive.
 
@@ -90,7 +90,7 @@ class Shade:
     figure: Figure | None = None
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Arrow:
     """A force that acts at a point: its ends, and what it is called."""
 
@@ -118,7 +118,7 @@ class Panel(NamedTuple):
     frames: "tuple[Panel, ...]" = ()
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Picture:
     """A picture: its word on the command line, the printed title, and a sentence that says what is seen.
 

@@ -1,13 +1,12 @@
 """Points of a curve: as many as it takes to look like the curve itself, each computed by the solver, none between."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from kurbel.arrays import Array
-from kurbel.frozen import frozen
-from kurbel.numerics.grid import cut_equally
+from kurbel.arrays import Array, Indices
 from kurbel.report.pictures.picture import Piece
 
 _WIDEST = 7.5  # degrees between two points at first: narrow enough that no wave hides between them
@@ -19,7 +18,7 @@ Values = Callable[["Array", "Array"], "Array"]
 """Several quantities (k, n) in SI at crank angles (n,) in degrees, on the sides of jumps that hold `within` (n,)."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Samples:
     """Quantities (k, n) at crank angles (n,), the pieces between jumps and bends one after the other."""
 
@@ -52,6 +51,12 @@ def sampled(breaks: Array, values: Values, fineness: float) -> Samples:
         )
         within = np.concatenate((within[missed],) * 2)
     return _in_order(*(np.concatenate(parts, axis=-1) for parts in zip(*known)))
+
+
+def cut_equally(breaks: Array, parts: Indices) -> Array:
+    """Return the breaks (n + 1,) of pieces of which each is cut into so many equal parts (n,)."""
+    ends = np.append(0, parts.cumsum())
+    return np.interp(np.arange(ends[-1] + 1), ends, breaks)
 
 
 def _in_order(degrees: Array, within: Array, values: Array) -> Samples:

@@ -1,8 +1,9 @@
 """Where a picture takes its values from: the results of one command, sampled, in the units in which they are shown."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,10 +16,22 @@ from kurbel.report.pictures.sampling import Samples, Values, pieces, sampled
 from kurbel.report.shown import too_large
 from kurbel.solver.figures import answered
 
-if TYPE_CHECKING:
-    from kurbel.report.pictures import Wish
-
 PHI = "phi"
+FILE, TERMINAL = 1 / 2000, 1 / 250
+"""By what of its height a line of points may miss a curve: less than can be seen on paper, or in a terminal."""
+
+
+@dataclass(frozen=True, eq=False)
+class Wish:
+    """How pictures are wanted: in which system of units, how finely (FILE or TERMINAL), of which cylinder alone.
+
+    angles: crank angles in degrees at which a mechanism is drawn, None where it moves.
+    """
+
+    system: str = "metric"
+    fineness: float = FILE
+    cylinder: str | None = None
+    angles: Sequence[float] | None = None
 
 
 class Source:
@@ -27,7 +40,7 @@ class Source:
     results: what answers columns (`at`), key values (`answering`) and where it is smooth (`breaks`).
     """
 
-    def __init__(self, results: Any, wish: "Wish") -> None:
+    def __init__(self, results: Any, wish: Wish) -> None:
         self.results, self.wish = results, wish
 
     @cached_property

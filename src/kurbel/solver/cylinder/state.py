@@ -9,7 +9,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
-from kurbel.mechanisms import every_quantity
+from kurbel.mechanisms.kinds import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.jet import Jet, once_each, value_of
 from kurbel.solver.cylinder import chamber, guide, rod_point

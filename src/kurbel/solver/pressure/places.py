@@ -1,11 +1,11 @@
 """Where the segments of a process lie over the crank angle, of one machine or of many variants."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.frozen import frozen
 from kurbel.machine.variants import taken
 from kurbel.numerics.cycles import Flat, located
 from kurbel.numerics.extreme import Extreme
@@ -16,7 +16,7 @@ _NO_WIDTH = 1e-10
 """Degrees of crank angle; over less a line cannot be followed, and its segment is a jump."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Places:
     """Segments (n,), those of every variant in the order in which they begin: their figures, and the crank angles.
 

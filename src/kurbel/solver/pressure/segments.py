@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Indices
-from kurbel.frozen import frozen
 from kurbel.machine.variants import count_of
 from kurbel.numerics.arithmetic import log1p, where
 from kurbel.solver.pressure import Setting
@@ -31,7 +31,7 @@ Stroke = tuple[Segment, ...]
 """The segments of one line, in the order of the process, vertical jumps left out."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Process:
     """What happens in a chamber during one cycle, stroke by stroke from the (firing) dead centre on.
 
@@ -61,7 +61,7 @@ class Process:
         return (segment.p + self.lift) * volume * grown * mean, -self.lift * way
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Processes:
     """The process of a chamber; of many variants the different ones, and which one each has, (v,), not None."""
 

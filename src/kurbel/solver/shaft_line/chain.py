@@ -5,13 +5,13 @@ larger of two rows first.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
-from kurbel.frozen import frozen
 from kurbel.machine.shaft_line import ShaftLine
 
 _AT_ONCE = 2048
@@ -21,7 +21,7 @@ _STILL = float(np.finfo(float).tiny)
 _ARRAYS = ("inertias", "stiffnesses", "piece_damping", "mass_damping", "loss")
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Chain:
     """n masses with the pieces between them, one more where an end is fixed: `ground` is `before`, `after` or empty.
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -10,7 +11,6 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.frozen import frozen
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.grid import Grid
@@ -27,7 +27,7 @@ _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
 
 
-@frozen
+@dataclass(frozen=True, eq=False)
 class Driving:
     """A cylinder in which a force acts, its torque over the angle of crank 1, and that of its masses, if they move.
 

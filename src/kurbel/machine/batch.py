@@ -1,97 +1,115 @@
-"""Machines of one kind side by side: the same records, in which what differs is an array over the variants.
+"""Many machines of one structure as one machine, whose numbers are arrays (machines,) where they differ.
 
-Each machine has kept its own rules at birth, so that these records, made without them, keep them too.
+Each machine has kept its own rules at birth, so that these records, made without them, keep them too. What formulas
+tell apart is structure: words, whole numbers, whether a number is given, zero or infinite, how throws share their pins.
 """
 
 import math
 from collections.abc import Hashable, Sequence
 from dataclasses import fields, is_dataclass
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Indices
-from kurbel.frozen import values_of
-from kurbel.machine import Cylinder, Machine
+from kurbel.machine import Machine
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.variants import Chambers, Lot, one_of, record_of, varies
+from kurbel.machine.trace import Trace
+from kurbel.machine.turning import Effort, Harmonics
+from kurbel.machine.variants import Chambers, Lot, one_of, record_of, values_of, varies
 from kurbel.numerics.varied import Varied
 
-_SIDE_BY_SIDE = ("slider-crank", "yoke-frame", "scotch-yoke")
-"""Mechanisms whose formulas take numbers of many machines at once."""
+_MECHANISMS = ("slider-crank", "yoke-frame", "scotch-yoke")
+"""Mechanisms whose formulas take arrays."""
 _MOST_LINES = 40
 """Points of a card with more of which a machine is answered alone: its pieces are many enough to fill an array."""
+_SAID = ("name", "limits", "expect", "uncertainty", "origin")
+"""What of a machine no formula asks for."""
 
 
 class _Alone(Exception):
     """A machine has what must be answered alone."""
 
 
-class Kinds:
-    """Tells what machines that can stand side by side have in common; what several of them share is looked at once."""
+class Structures:
+    """Tells the structure that machines of a batch must share; what stands in several of them is looked at once."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Any, Any]] = {}
 
-    def of(self, machine: Machine, cylinder: Cylinder) -> Hashable | None:
-        """Return the kind of one cylinder of a machine; None where it must be answered alone."""
-        if cylinder.mechanism.name not in _SIDE_BY_SIDE:
-            return None
-        cycles = tuple(machine.cycle_of_piston(cylinder, number) for number in range(len(cylinder.pistons)))
-        kind = (_number(machine.speed), _number(machine.ambient), machine.rotation, machine.cycle_of(cylinder), cycles)
+    def of(self, machine: Machine) -> Hashable | None:
+        """Return the structure of a machine, whose numbers may be `Varied`; None where it must be answered alone."""
         try:
-            return (*kind, self._kind(cylinder))
+            parts = {name: one for name, one in values_of(machine).items() if name not in _SAID}
+            return (*(self._part(one) for one in parts.values()), _arrangement(machine))
         except _Alone:
             return None
 
-    def _kind(self, value: Any) -> Any:
-        if value is None or isinstance(value, (str, bool)):
+    def _part(self, value: Any) -> Any:
+        if value is None or isinstance(value, (str, bool, int)):
             return value
-        if isinstance(value, (float, int, Varied)):
-            return _number(value)
+        if isinstance(value, (float, Varied)):
+            return "0" if value == 0 else "inf" if value == math.inf else "number"
         if id(value) not in self._known:  # beside it, so that no other takes its place in memory
             self._known[id(value)] = value, self._looked_at(value)
         return self._known[id(value)][1]
 
     def _looked_at(self, value: Any) -> Any:
         if isinstance(value, tuple):
-            return tuple(map(self._kind, value))
+            return tuple(map(self._part, value))
+        if isinstance(value, (Effort, Harmonics)):
+            return id(value)
         if isinstance(value, Indicator):
             mirrored = value.crank_end is value.head_end
             return Indicator, _chamber(value.head_end), _chamber(value.crank_end), mirrored, value.absolute
-        if getattr(value, "of_pins", ()):  # whose loads bend where they all but vanish
+        if getattr(value, "mechanism", None) is not None and value.mechanism.name not in _MECHANISMS:
             raise _Alone
         if is_dataclass(value):
-            return (type(value), *(self._kind(one) for name, one in values_of(value).items() if name != "name"))
+            return (type(value), *(self._part(one) for name, one in values_of(value).items() if name != "name"))
         return value
-
-
-def _number(value: Any) -> str | None:
-    return None if value is None else "0" if value == 0 else "inf" if value == math.inf else "number"
 
 
 def _chamber(chamber: Any) -> str | None:
     lines = getattr(chamber, "lines", ())
-    measured = hasattr(chamber, "angles")  # over the crank angle, and no process over the stroke
-    if measured or sum(len(one.fractions) for one in lines) > _MOST_LINES:
+    if isinstance(chamber, Trace) or sum(len(one.fractions) for one in lines) > _MOST_LINES:
         raise _Alone
     return None if chamber is None else "process"
 
 
-def side_by_side(lots: Sequence[tuple[Lot, Indices]], name: str) -> tuple[Machine, Cylinder]:
-    """Return the cylinders of a name of machines of one kind as one machine and one cylinder of many variants.
+def _arrangement(machine: Machine) -> Hashable:
+    """Return which cylinders stand at one angle, on one line and at one place; these must be alike in all machines."""
+    return tuple(
+        _same(one.crank_position - one.bank_angle, other.crank_position - other.bank_angle)
+        + 2 * _same(one.bank_angle, other.bank_angle)
+        + 4 * _same(one.axial_position or 0.0, other.axial_position or 0.0)
+        for one, other in combinations(machine.cylinders, 2)
+    )
+
+
+def _same(one: Any, other: Any) -> bool:
+    one, other = (value.values if isinstance(value, Varied) else value for value in (one, other))
+    apart = np.abs(one - other)
+    near = np.minimum(apart, np.abs(apart - 360.0)) < 1e-9
+    if near.any() != near.all():
+        raise _Alone
+    return bool(near.all())
+
+
+def batch(lots: Sequence[tuple[Lot, Indices]]) -> Machine:
+    """Return machines of one structure as one of arrays.
 
     lots: with the places (n,) of the machines that are meant in each.
     """
     stack = _Stack(lots)
     machines = [lot.machine for lot, _ in lots]
-    place = [one.name for one in machines[0].cylinders].index(name)
-    numbers = {name: stack.of([getattr(one, name) for one in machines]) for name in ("speed", "ambient")}
-    return record_of(machines[0], numbers), stack.of([one.cylinders[place] for one in machines])
+    named = [one.name for one in fields(Machine) if one.name not in _SAID]
+    columns = {name: [getattr(one, name) for one in machines] for name in named}
+    return record_of(machines[0], {name: stack.of(column) for name, column in columns.items()})  # type: ignore[no-any-return]
 
 
 class _Stack:
-    """Puts records of lots of one kind together; what is one in many places stays one."""
+    """Puts records of lots of one structure together; what is one in many places stays one."""
 
     def __init__(self, lots: Sequence[tuple[Lot, Indices]]) -> None:
         self._lots = lots

@@ -1,0 +1,436 @@
+"""Flywheel of the whole machine: what `kurbel flywheel` answers, of one machine or of many.
+
+    J_δ = ΔE/(δ ω²)           the flywheel of the books for the wanted δ (R p. 613)
+    GD² = 4 J                 A_K = 4 J/(π ρ D (D² + h²))     section of the rim that has it
+
+The books take J as constant and the load as independent of the speed; the speed line of `speed` or `coupling` does not.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from kurbel.arrays import Array
+from kurbel.declared.unit_systems import show
+from kurbel.errors import NoSolutionError, UsageError
+from kurbel.machine import Machine
+from kurbel.numerics.arithmetic import every, some
+from kurbel.numerics.collocation import Standstill, Unsettled
+from kurbel.numerics.extreme import Extreme, Extremes
+from kurbel.numerics.pieces import Pieces
+from kurbel.numerics.roots import rising_root
+from kurbel.solver.coupling import ElasticCoupling, natural_order
+from kurbel.solver.cycle import Where, where_is
+from kurbel.solver.effort import TurningEffort
+from kurbel.solver.figures import Columns, Results, passed_on
+from kurbel.solver.forces import Brake, CylinderForces
+from kurbel.solver.speed import Course, SpeedLaw, SpeedLine, speed_line
+
+RIGID_ABOVE = 100.0
+"""Natural order from which on a coupling counts as rigid: it transmits what a rigid one would but for 1 in 10⁴."""
+_MISSED = 1e-3
+"""By what δ may miss the wanted one, relatively, before a warning."""
+_LARGEST_EXPONENT = 709.7
+"""Its power of e is all but the largest float."""
+_DOUBLINGS = 30
+"""How many doublings of the flywheel are tried for one that turns."""
+
+
+class MachineTurning(Results):
+    """The key values of the whole machine over its common cycle; `at(degrees)` gives the columns.
+
+    Attributes are named by the ids of the key values, in SI; one that the machine does not have is None. Forces T are
+    referred to the radius of crank 1. count: of how many machines the numbers are, (machines,); then so are all key
+    values, nan for a machine that has no answer.
+    """
+
+    command = "flywheel"
+
+    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], count: int | None = None) -> None:
+        self.machine = machine
+        self.effort = TurningEffort(machine, cylinders, count)
+        self.excess = self.effort.excess
+        self.omega = self.effort.omega
+        self.crank = machine.cylinders[0].mechanism.crank if machine.cylinders else None
+        self.brake = Brake(machine, cylinders)
+        wheel = machine.flywheel
+        self._given, self._wanted, self._rim = (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
+
+    @property
+    def answering(self) -> tuple[Any, ...]:
+        """What answers key values, the first that knows one."""
+        return (self, *((self.elastic,) if self.elastic else ()), self.brake)
+
+    # over the crank angle
+
+    def _columns(self, phi: Array, within: Array) -> Columns:
+        effort = self.effort
+
+        def torque() -> Array:
+            return effort.M_at(phi, within)
+
+        def inertia() -> Array | None:
+            return effort.sum_at(effort.inertia_terms, phi, within) if effort.inertia_terms else None
+
+        def force(of: Callable[[], Array | None]) -> Callable[[], Array | None]:
+            return lambda: None if self.crank is None or (found := of()) is None else found / self.crank
+
+        def of_speed(column: str) -> Callable[[], Array | None]:
+            return lambda: self._speed_at(column, phi, within)
+
+        return Columns(
+            phi,
+            {
+                "M": torque,
+                "M_load": lambda: effort.load_at(phi, within),
+                "T": force(torque),
+                "T_inertia": force(inertia),
+                "E": lambda: self.excess.at(phi),
+                **{column: of_speed(column) for column in ("omega", "alpha", "M_coupling")},
+            },
+        )
+
+    def _speed_at(self, column: str, phi: Array, within: Array) -> Array | None:
+        """Return a column of the speed line at crank angles (k,) of the only machine; None without it."""
+        found = self.speed.samples_of(column) if self.speed else None
+        return None if found is None else found[0].at(found[1], np.zeros(len(phi), dtype=np.intp), phi, within)
+
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees of the only machine between which every quantity is smooth."""
+        return np.append(self.effort.pieces.low, self.effort.cycle)
+
+    def angles_where(self, column: str, value: float) -> Where | None:
+        """Return where in the cycle a column has a value in SI; None for a column that is left out."""
+        found = self._samples_of(column)
+        return None if found is None else where_is(*found, value)
+
+    def _samples_of(self, column: str) -> tuple[Pieces, Array] | None:
+        """Return a column of the only machine at the nodes of pieces; None for one that is left out."""
+        effort, arm = self.effort, self.crank if column.startswith("T") else 1.0
+        if column in ("omega", "alpha", "M_coupling"):
+            return self.speed.samples_of(column) if self.speed else None
+        if arm is None or (column == "T_inertia" and not effort.inertia_terms):
+            return None
+        values = {
+            "E": lambda: self.excess.E,
+            "M_load": lambda: effort.load,
+            "T_inertia": lambda: effort.sampled(effort.inertia_terms),
+        }.get(column, lambda: effort.M)()
+        return effort.pieces, values / arm
+
+    # turning effort
+
+    @property
+    def M_mean(self) -> Any:
+        """Mean torque in N m."""
+        return self.effort.told(self.effort.mean)
+
+    @property
+    def W(self) -> Any:
+        """Mean tangential force in N at the radius of crank 1: the resistance."""
+        return None if self.crank is None else self.M_mean / self.crank
+
+    @property
+    def work_shaft(self) -> Any:
+        """Work of the turning effort in J per cycle."""
+        return self.M_mean * math.radians(self.effort.cycle)
+
+    @property
+    def power_shaft(self) -> Any:
+        """Mean torque times nominal angular velocity in W."""
+        return self.M_mean * self.omega if self._turns else None
+
+    @property
+    def _turns(self) -> bool:
+        """Whether there is a speed."""
+        return self.omega is not None and some(self.omega != 0)
+
+    @property
+    def deficit(self) -> Any:
+        """Mean effort less the mean of a resistance given by points, in N m; None where they agree."""
+        found = self.effort.deficit
+        return self.effort.told(found) if found.any() else None
+
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
+        if column == "alpha":
+            return None if self.speed is None else self.speed.alpha_extremes
+        arm, found = self.crank if column == "T" else 1.0, self.effort.extremes
+        return None if arm is None else Extremes(*(Extreme(one.value / arm, one.degrees) for one in found))
+
+    # excess work
+
+    phi_crossing = passed_on("excess", "phi_crossing", "Crank angles in degrees at which T crosses W.")
+    lobes = passed_on("excess", "lobes", "Work in J of the lobes between the crossings.")
+    _heights = passed_on("excess", "extremes", "Largest and smallest excess work in J; None where there is none.")
+    E_max = passed_on("_heights", "largest", "Largest excess work in J since angle 0; None where there is none.")
+    E_min = passed_on("_heights", "smallest", "Smallest excess work in J since angle 0.")
+
+    @property
+    def dE(self) -> Any:
+        """ΔE in J, the largest swing of the excess work."""
+        return self.effort.told(self.excess.dE)
+
+    @property
+    def energy_fluctuation(self) -> Any:
+        """ΔE over the work of a cycle; None where none is done, nan for such a machine of many."""
+        work = self.work_shaft
+        if not some(work > 0):
+            return None
+        return self.dE / np.where(work > 0, work, np.nan) if isinstance(work, np.ndarray) else self.dE / work
+
+    # flywheel
+
+    @cached_property
+    def _needed_in_all(self) -> Any:
+        """ΔE/(δ ω²) in kg m² for the wanted δ."""
+        return self.dE / (self._wanted * self.omega**2) if self._wanted is not None and self._turns else None
+
+    @property
+    def J_needed(self) -> Any:
+        """Flywheel in kg m² for the wanted δ, J = ΔE/(δ ω²); what a rigid coupling adds comes off."""
+        if self._needed_in_all is None:
+            return None
+        left = self._needed_in_all - self._driven_rigidly
+        return np.maximum(left, 0.0) if isinstance(left, np.ndarray) else max(left, 0.0)
+
+    @property
+    def GD2_needed(self) -> Any:
+        """GD² = 4 J for the wanted δ, in kg m²."""
+        return None if self.J_needed is None else 4 * self.J_needed
+
+    @property
+    def rim_section(self) -> Any:
+        """Section of the rim in m² that has the wanted moment of inertia, or else the given one."""
+        wanted = self.J if self.J_needed is None else self.J_needed
+        return None if self._rim is None or wanted is None else self._rim.section(wanted)
+
+    @property
+    def rim_speed(self) -> Any:
+        """Speed of the middle of the rim in m/s."""
+        return self._rim.speed(self.omega) if self._rim and self._turns else None
+
+    @property
+    def rim_stress(self) -> Any:
+        """Hoop stress ρ v² of the rim in Pa."""
+        return self._rim.stress(self.omega) if self._rim and self._turns else None
+
+    @property
+    def is_the_needed(self) -> bool:
+        """Whether the flywheel is the one for the wanted δ."""
+        return self._given is None or (self.J_needed is not None and every(self.J_needed == self._given))
+
+    @property
+    def J(self) -> Any:
+        """Flywheel in kg m²: the given one, or else the one for the wanted δ."""
+        return self.J_needed if self._given is None else self._given
+
+    @property
+    def GD2(self) -> Any:
+        """GD² = 4 J in kg m²."""
+        return None if self.J is None else 4 * self.J
+
+    @property
+    def delta_book(self) -> Any:
+        """δ ≈ ΔE/(J ω²) of the books: constant J, and a load that does not depend on the speed."""
+        inertia = (0.0 if self.J is None else self.J) + self._driven_rigidly
+        return self.dE / (inertia * self.omega**2) if self._turns and every(inertia != 0) else None
+
+    # coupling
+
+    @cached_property
+    def natural_order(self) -> Any:
+        """Natural frequency of cranks and driven inertia on the coupling, over ω; None where not defined."""
+        flywheel = self._needed_in_all if self._given is None else self._given
+        if self.machine.coupling is None or flywheel is None or not self._turns:
+            return None
+        own = self.effort.J_moving_mean + flywheel
+        return self.effort.told(natural_order(self.machine.coupling, own, self.omega)) if every(own != 0) else None
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the coupling is so stiff that it counts as rigid; that of many machines, whether all do."""
+        return self.natural_order is not None and not some(self.natural_order <= RIGID_ABOVE)
+
+    @property
+    def _driven_rigidly(self) -> Any:
+        return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
+
+    @property
+    def elastic(self) -> ElasticCoupling | None:
+        """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
+
+        Raises NoSolutionError where no motion of it repeats.
+        """
+        return self.speed if isinstance(self.speed, ElasticCoupling) else None
+
+    # speed line
+
+    @cached_property
+    def law(self) -> SpeedLaw | None:
+        """How the load depends on the speed; None where it does not."""
+        return SpeedLaw.of(self.effort)
+
+    @property
+    def load_ignored(self) -> bool:
+        """Whether the load depends on the speed, but is in proportion to a mean torque of zero."""
+        load = self.machine.load
+        return load is not None and (load.slip is not None or bool(load.power)) and self.law is None
+
+    @property
+    def _needs_no_inertia(self) -> bool:
+        """Whether the wanted δ is met by no flywheel at all, the effort being uniform; any inertia then turns alike."""
+        if self.J is None or self._wanted is None or self.effort.inertia_terms:
+            return False
+        return not some(self.J != 0) and not some(self.J_needed != 0) and not self.excess.dE.any()
+
+    @cached_property
+    def speed(self) -> SpeedLine | ElasticCoupling | None:
+        """The speed of the crank shaft over the turn; None without a flywheel or a speed.
+
+        Raises NoSolutionError where the machine stalls.
+        """
+        if self.J is None or not self._turns:
+            return None
+        try:
+            return self._line(1.0 if self._needs_no_inertia else self.J, rigid=self._needs_no_inertia)
+        except Unsettled as stop:
+            raise NoSolutionError(self._refusal(self.J, stop)) from None
+
+    @cached_property
+    def _course(self) -> Course:
+        return Course(self.effort)
+
+    def _line(self, flywheel: Any, rigid: bool = False) -> SpeedLine | ElasticCoupling:
+        """Return the speed line with a flywheel in kg m², by itself or before the coupling.
+
+        Raises Standstill, Unsettled, NoSolutionError, UsageError.
+        """
+        coupling, inertia = self.machine.coupling, np.broadcast_to(flywheel, self.effort.mean.shape).astype(float)
+        own = inertia + self.effort.J_moving_mean
+        if coupling and not rigid and some(own == 0) and self.effort.count is None:
+            raise UsageError("nothing before the coupling has any inertia: give 'flywheel' an inertia")
+        if coupling and not rigid and some(natural_order(coupling, own, self.omega) <= RIGID_ABOVE):
+            line: SpeedLine | ElasticCoupling = ElasticCoupling(self.effort, own, self.law)
+        else:
+            line = speed_line(self._course, self.law, inertia + (coupling.inertia if coupling else 0.0))
+        slowest = line.omega_min
+        if self.effort.count is None and not slowest.value > 0:
+            raise Standstill(slowest.degrees)
+        return line
+
+    def _delta_with(self, flywheel: float) -> float:
+        """Return δ of the speed line with a flywheel in kg m²; inf where it stalls."""
+        try:
+            return float(self._line(flywheel).delta)
+        except (Unsettled, NoSolutionError, UsageError):
+            return math.inf
+
+    def _refusal(self, flywheel: float, stop: Unsettled) -> str:
+        """Return where the machine stands still, if it does, and the flywheel with which it was found to turn."""
+        elastic = self.natural_order is not None and not self.rigid
+        with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
+        message = f"{with_this} no speed line is found that repeats under this load"
+        if isinstance(stop, Standstill):
+            message = (
+                f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy does not carry it over"
+            )
+        enough = self._enough(flywheel, stop.enough)
+        if enough is None:
+            return f"{message}, nor is one with any other flywheel: look at its effort, load and speed"
+        return (
+            f"{message}; it turns with a flywheel from J = {show(enough, 'inertia')} "
+            f"(GD2 = {show(4 * enough, 'gd2')}) on"
+        )
+
+    def _enough(self, flywheel: float, more: float | None) -> float | None:
+        """Return the smallest flywheel, within a fiftieth, with which a machine turns that stalls; None without any.
+
+        more: kinetic energy in J that is known to be just enough.
+        """
+        square: Any = self.omega and self.omega**2
+        least = max(flywheel, 1e-6 * float(self.effort.J_moving_mean[0]), 1e-300)
+        start = flywheel + 2 * more / square if more else least + self.dE / square
+        return _smallest(lambda inertia: math.isfinite(self._delta_with(inertia)), least, start, exact=bool(more))
+
+    delta = passed_on("speed", "delta", "δ = (ω_max − ω_min)/ω_mean of the speed line.")
+    omega_max = passed_on("speed", "omega_max", "Largest angular velocity in rad/s.")
+    omega_min = passed_on("speed", "omega_min", "Smallest angular velocity in rad/s.")
+    omega_mean = passed_on("speed", "omega_mean", "Mean angular velocity over time in rad/s.")
+
+    @property
+    def multiplier(self) -> Any:
+        """Floquet multiplier: what is left of a small disturbance after one cycle; stable below 1.
+
+        μ = exp(−∮ ∂M_load/∂ω/(J ω) dφ), or the largest float; None where the load does not depend on the speed.
+        """
+        if self.law is None or not self.speed:
+            return None
+        found = np.exp(np.minimum(self.speed.growth, _LARGEST_EXPONENT))
+        return float(found) if self.effort.count is None else found
+
+    # the wanted δ, held against the speed line
+
+    @cached_property
+    def delta_needed(self) -> Any:
+        """δ of the speed line with the flywheel of the books for the wanted δ; None where it stalls."""
+        if self.J_needed is None or not self._turns or self._needs_no_inertia:
+            return None
+        if self.is_the_needed:
+            return self.delta
+        if self.effort.count is not None:
+            return self._line(self.J_needed).delta
+        delta = self._delta_with(self.J_needed)
+        return delta if math.isfinite(delta) else None
+
+    @property
+    def misses_the_wish(self) -> bool:
+        """Whether that differs from the wanted δ by what one would notice; of many machines, that of any."""
+        if self._wanted is None or self.delta_needed is None:
+            return False
+        return some((self.delta_needed != 0) & (abs(self.delta_needed / self._wanted - 1) > _MISSED))
+
+    @cached_property
+    def J_exact(self) -> Any:
+        """Flywheel in kg m² with which δ of the speed line is the wanted one, where that of the books misses it.
+
+        Of many machines nan: each is searched by itself.
+        """
+        if not self.misses_the_wish or self._wanted is None or not some(self.J_needed != 0):
+            return None
+        if self.effort.count is not None:
+            return np.full(self.effort.count, np.nan)
+        wanted, known = self._wanted, {self.J_needed: self.delta_needed}
+
+        def surplus(flywheel: float) -> float:
+            delta = known.get(flywheel) or self._delta_with(flywheel)
+            return wanted / delta - 1 if delta else math.inf
+
+        return rising_root(surplus, self.J_needed)
+
+
+def _smallest(turns: Callable[[float], bool], least: float, start: float, exact: bool) -> float | None:
+    """Return the least number of three digits that turns; `least` does not; exact: `start` is all but it."""
+    enough = start
+    for _ in range(_DOUBLINGS):
+        if turns(_rounded_up(enough)):
+            break
+        least, enough = enough, 2 * enough
+    else:
+        return None
+    while not exact and enough > 1.02 * max(least, enough / 1000):
+        middle = math.sqrt(max(least, enough / 4) * enough)
+        least, enough = (least, middle) if turns(_rounded_up(middle)) else (middle, enough)
+    return _rounded_up(enough)
+
+
+def _rounded_up(value: float) -> float:
+    """Return the next larger number of three digits."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return math.ceil(value / digit) * digit
