@@ -220,8 +220,9 @@ def sampled(vectors: Sequence[Circles], count: int | None = None, parts: int = 0
     turn = turn_of(equal.taken(equal.machine == 0))
     waves = np.repeat(turn[..., None], used[-1] + 1, axis=-1).cumprod(axis=-1)[..., used]
     both = np.concatenate((waves, waves.conj()), axis=-1)
-    values = both.reshape(-1, 2 * len(used)) @ orders[:, :, used].reshape(len(vectors), -1, count or 1)
-    return equal, np.swapaxes(values.reshape(-1, *turn.shape, count or 1), 2, 3).reshape(-1, *equal.offsets.shape)
+    # node by node: products of small matrices stay on one core
+    values = both @ orders[:, :, used].reshape(len(vectors), 1, -1, count or 1)
+    return equal, np.swapaxes(values, 2, 3).reshape(-1, *equal.offsets.shape)
 
 
 def _parts(orders: ComplexArray) -> int:
