@@ -22,8 +22,7 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.commands import report_of
 from kurbel.report.forces import forces_report
 from kurbel.report.frame import Frame
-from kurbel.solver.balance.locomotive import LocomotiveBalance
-from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
+from kurbel.solver.balance import BookBalance, LocomotiveBalance, MachineBalance
 from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
 from kurbel.solver.coupling import ElasticCoupling

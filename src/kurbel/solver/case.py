@@ -16,7 +16,7 @@ from kurbel.solver.figures import Figure, Results, Shown
 from kurbel.solver.forces import CylinderForces
 
 if TYPE_CHECKING:
-    from kurbel.solver.balance.machine_balance import MachineBalance
+    from kurbel.solver.balance import MachineBalance
     from kurbel.solver.bearings import ShaftBearings
     from kurbel.solver.effort import TurningEffort
     from kurbel.solver.flywheel import MachineTurning
@@ -89,9 +89,9 @@ class Case(Shown):
     @cached_property
     def balance(self) -> MachineBalance:
         """Free forces and moments of the whole machine. Raises UsageError where no masses move."""
-        from kurbel.solver.balance.machine_balance import MachineBalance
+        from kurbel.solver.balance import MachineBalance
 
-        return MachineBalance(self.machine, self.old_cylinders)
+        return MachineBalance(self.machine, self.cylinders, self.count)
 
     @cached_property
     def flywheel(self) -> MachineTurning:
