@@ -14,9 +14,9 @@ from scipy.integrate import solve_ivp, trapezoid
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.turning import Coupling, Effort, Load
 from kurbel.numerics.cyclic import around
+from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.shaft_line.modes import Modes
 from kurbel.solver.turning.coupling import coupled as chain_of
-from kurbel.solver.flywheel import MachineTurning
 from representative import few
 from turning_machines import of_points
 

@@ -20,13 +20,13 @@ from kurbel.numerics.grid import Cuts
 from kurbel.numerics.jet import Jet
 from kurbel.numerics.waves import crests
 from kurbel.solver.case import Case
+from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.shaft_line.chain import Chain, responding, twisting
 from kurbel.solver.shaft_line.modes import Modes
 from kurbel.solver.shaft_line.periodic import ChainEquation
 from kurbel.solver.torsion.forced import Excitation, Vibration
 from kurbel.solver.torsion.steady import SteadyMotion
 from kurbel.solver.torsion.vibration import ShaftVibration
-from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.turning.harmonics import spectrum
 from turning_machines import of_points
 
