@@ -89,7 +89,7 @@ def test_the_column_has_the_value_there(name: str, condition: str, column: str) 
     assert len(angles) >= 2
     assert case.columns(angles)[column] == pytest.approx([wanted] * len(angles), abs=1e-12 * abs(curve).max())
     crossed = sum((a - wanted) * (b - wanted) < 0 for a, b in pairwise(curve))
-    assert crossed <= len(angles) * (720 / case.turned.cycle) + 1
+    assert crossed <= len(angles) * (720 / case.effort.cycle) + 1
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from kurbel.machine import Machine
 from kurbel.machine.flywheel import Flywheel
 from kurbel.machine.turning import Effort
@@ -35,3 +37,9 @@ def rectangles(areas: Sequence[float], mean: float = 0.0) -> list[Point]:
     width = 360 / len(areas)
     heights = [mean + area / math.radians(width) for area in areas]
     return [(angle, m) for i, m in enumerate(heights) for angle in (i * width, (i + 1) * width)]
+
+
+def moving_inertia(turning: MachineTurning, degrees: np.ndarray) -> np.ndarray:
+    """Return J(φ) in kg m² of the moving masses at crank angles (n,) in degrees."""
+    effort = turning.effort
+    return effort.pieces.at(effort.J_moving, np.zeros(len(degrees), dtype=int), degrees)

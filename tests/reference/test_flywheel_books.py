@@ -12,47 +12,37 @@ import math
 import numpy as np
 import pytest
 
-from kurbel.machine.turning import Effort
-from kurbel.numerics.grid import Cuts
-from kurbel.numerics.jet import Jet
-from kurbel.solver.turning.excess import Excess
-from kurbel.solver.turning.torques import Diagram, Uniform
+from kurbel.machine import Machine
+from kurbel.machine.turning import Harmonics
+from kurbel.solver.case import Case
+from kurbel.solver.flywheel import MachineTurning
 from turning_machines import of_points, rectangles
 
 FOOT, POUND, POUND_FORCE, INCH = 0.3048, 0.45359237, 4.4482216152605, 0.0254
 EXACT = 1e-11
 
 
-class Wave:
-    """M = constant + Σ (a cos kφ + b sin kφ): the torques that some books give as formulas."""
-
-    cuts = Cuts(np.linspace(0, 360, 9))
-
-    def __init__(self, constant: float, *terms: tuple[int, float, float]) -> None:
-        self.constant, self.terms = constant, terms
-
-    def torque(self, degrees: np.ndarray, within: np.ndarray) -> Jet:
-        phi = np.radians(degrees)
-        value = self.constant + sum(a * np.cos(k * phi) + b * np.sin(k * phi) for k, a, b in self.terms)
-        return Jet(value, sum(k * (b * np.cos(k * phi) - a * np.sin(k * phi)) for k, a, b in self.terms))
+def wave(mean: float, *terms: tuple[int, float, float]) -> MachineTurning:
+    """M = mean + Σ (a cos kφ + b sin kφ): the torques that some books give as formulas; of two, one less the other."""
+    return Case(Machine((), effort=Harmonics(mean, terms))).flywheel
 
 
 def test_sarkar_6_10_the_swing_over_all_lobes() -> None:
     """The book prints −1370.28, its companion 19.5 kg m² for an angle taken in degrees; 15125 N m need 1724 kg m²."""
-    excess = Excess(Wave(15000, (2, 0, 8000)), Wave(15000, (1, -6000, 0)))
+    excess = wave(15000, (2, 0, 8000), (1, 6000, 0))
     assert excess.dE == pytest.approx(15125, rel=EXACT)
     omega = 200 * math.pi / 30
     assert excess.dE / (0.02 * omega**2) == pytest.approx(1724.04326541, rel=EXACT)
-    assert excess.mean * omega == pytest.approx(314159.265359, rel=EXACT)
+    assert excess.M_mean * omega == pytest.approx(314159.265359, rel=EXACT)
 
 
 def test_sarkar_6_6() -> None:
     """The companion divides 500/300 as integers: 0.342 % for 1.33 %."""
-    excess = Excess(Wave(1000, (2, -500, 300)), Uniform(1000, 360))
+    excess = wave(1000, (2, -500, 300))
     inertia, omega = 400 * 0.4**2, 250 * math.pi / 30
     assert 1000 * omega == pytest.approx(26179.9387799, rel=EXACT)
     assert 100 * excess.dE / (inertia * omega**2) == pytest.approx(1.32929763243, rel=EXACT)
-    torque = excess.torque.torque(np.array([60.0]), np.array([60.0])).value[0]
+    torque = excess.at([60.0]).M[0] - excess.M_mean
     assert torque / inertia == pytest.approx(7.96574408024, rel=EXACT)
 
 
@@ -71,11 +61,13 @@ def test_khurmi_16_4() -> None:
 
 
 def test_khurmi_16_6_a_cycle_of_three_turns() -> None:
-    """750 N m, rising to 3000 over half a turn, one turn at 3000, falling over half a turn, one turn at 750."""
-    points = Effort((0.0, 180.0, 540.0, 720.0, 1080.0), (750.0, 3000.0, 3000.0, 750.0, 750.0))
-    diagram = Diagram(points, 1080.0)
-    excess, omega = Excess(diagram), 250 * math.pi / 30
-    mean = excess.mean
+    """750 N m, rising to 3000 over half a turn, one turn at 3000, falling over half a turn, one turn at 750.
+
+    Drawn over one turn: angles a third, torques three times as large, works the same.
+    """
+    points = [(0.0, 750.0), (180.0, 3000.0), (540.0, 3000.0), (720.0, 750.0), (1080.0, 750.0)]
+    excess, omega = of_points([(angle / 3, 3 * torque) for angle, torque in points]), 250 * math.pi / 30
+    mean = excess.M_mean / 3
     assert mean == pytest.approx(1875, rel=EXACT)
     assert mean * omega == pytest.approx(49087.3852123, rel=EXACT)
     assert excess.dE == pytest.approx(8835.7293, rel=1e-8)

@@ -26,7 +26,6 @@ from kurbel.machine.resistance import RamForce
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning
-from kurbel.solver.harmonics import amplitudes
 from machines import AT, STEAM_CARD, constant_pressure
 from turning_machines import of_points
 
@@ -202,7 +201,9 @@ def test_orders_are_those_of_the_torque() -> None:
     """Of a sum of parts that lose differently, each at its own place on the shaft."""
     whole = turning(PUMPING, DRIVEN, replace(ENGINE, crank_position=200.0), eta=ETA)
     found = Case(whole.machine).harmonics()
-    wanted = amplitudes(found.effort.pieces, found.effort.M[None], found.orders)[0, :, 0]
+    pieces, torque = whole.effort.pieces, whole.effort.M
+    waves = np.exp(-1j * np.radians(np.multiply.outer(found.orders, pieces.degrees)))
+    wanted = np.array([2 * (pieces.mean(torque * wave.real) + 1j * pieces.mean(torque * wave.imag))[0] for wave in waves])
     size = np.abs(wanted).max()
     assert found.machine.whole.mean == pytest.approx(whole.M_mean, rel=1e-12)
     assert found.machine.whole.amplitudes == pytest.approx(wanted, abs=1e-12 * size)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -23,11 +24,10 @@ from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.numerics.grid import Grid
 from kurbel.report.flywheel import dead_centre_force
 from kurbel.solver.case import Case
+from kurbel.solver.effort import TurningEffort
 from kurbel.solver.flywheel import MachineTurning
-from kurbel.solver.turning.excess import Excess
 from machines import STEAM_CARD, constant_pressure
 from representative import few, law_of_each
 from turning_machines import of_points
@@ -57,7 +57,7 @@ def test_cylinders_that_work_alike_give_what_each_gives_by_itself() -> None:
     heavier = replace(ENGINE, masses=Masses(900.0), crank_position=200.0)
     across = replace(ENGINE, bank_angle=60.0, crank_position=260.0)
     machine = turning(ENGINE, replace(ENGINE, crank_position=90.0), heavier, across, efficiency=0.9)
-    each = (part.effort.torque(ANGLES, ANGLES).value for part in machine.turned.of_cylinders)
+    each = (turning(one).at(ANGLES).M for one in machine.machine.cylinders)
     np.testing.assert_allclose(machine.at(ANGLES).M, 0.9 * sum(each), rtol=1e-13, atol=1e-9)
 
 
@@ -137,12 +137,18 @@ ROD = ConnectingRod(220.0, center_of_gravity=1.3, inertia=90.0)
 )
 def test_the_excess_work_is_the_integral_of_the_torque(cylinder: Cylinder) -> None:
     machine = turning(cylinder, replace(cylinder, crank_position=77.0))
-    excess = machine.excess
-    turnover = excess.grid.integral(np.abs(excess.torque.torque(excess.grid.degrees, excess.grid.within).value))
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+
+    def quadrature(upto: float, change: Callable[[np.ndarray], np.ndarray]) -> float:
+        breaks = np.append(machine.breaks[machine.breaks < upto], upto)
+        middles, halves = (breaks[1:] + breaks[:-1]) / 2, np.diff(breaks) / 2
+        degrees = middles + halves * nodes[:, None]
+        torque = machine.at(degrees.ravel(), np.broadcast_to(middles, degrees.shape).ravel()).M - machine.M_mean
+        return math.fsum(np.radians(halves) * (weights @ change(torque.reshape(degrees.shape))))
+
+    turnover = quadrature(360.0, np.abs)
     for angle in (13.0, 100.0, 181.5, 300.0, 360.0):
-        part = Grid(np.append(excess.grid.breaks[excess.grid.breaks < angle], angle))
-        quadrature = part.integral(excess.torque.torque(part.degrees, part.within).value)
-        assert excess.at(np.array([angle]))[0] == pytest.approx(quadrature, abs=2e-14 * turnover)
+        assert machine.at([angle]).E[0] == pytest.approx(quadrature(angle, np.asarray), abs=2e-14 * turnover)
 
 
 def test_the_work_of_the_masses_is_what_their_energy_loses() -> None:
@@ -214,7 +220,7 @@ PUMP_BESIDE = Cylinder(SliderCrank(0.05, 0.3), pistons=(replace(PUMP, bore=0.1),
 def test_a_pump_of_one_turn_beside_an_engine_of_two() -> None:
     machine = turning(GAS, replace(PUMP_BESIDE, cycle="two-stroke"), rpm=300, cycle="four-stroke")
     engine, pump = Case(machine.machine).cylinders
-    assert machine.turned.cycle == 720
+    assert machine.effort.cycle == 720
     assert (engine.drive.cycle, pump.drive.cycle) == (720, 360)
     assert machine.work_shaft == pytest.approx(engine.work + 2 * pump.work, rel=1e-13)
     at = machine.at(ANGLES + 360).M - machine.at(ANGLES).M
@@ -252,7 +258,7 @@ def test_parts_before_a_pump_stand_steam_and_pump_together() -> None:
         Indicator(constant_pressure_pair(-0.45 * at, 5.4 * at), constant_pressure_pair(-0.45 * at, 5.4 * at)),
     )
     machine = turning(replace(ENGINE, pistons=(STEAM, pump)))
-    force = dead_centre_force(Case(machine.machine).cylinders[0], machine.turned.cycle)
+    force = dead_centre_force(Case(machine.machine).cylinders[0], machine.effort.cycle)
     head, crank = STEAM.head_area, STEAM.crank_area
     steam = 9.5 * at * head - 2.2 * at * crank
     assert force.value == pytest.approx(steam + 3710 * at / 1e4, rel=1e-3)  # the book rounds the pump's 3710 kgf
@@ -379,8 +385,8 @@ def test_the_swing_agrees_with_forty_digits(name: str) -> None:
 def test_the_last_digit_of_the_mean_does_not_move_the_swing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Balanced cranks pass on 25 times their swing: a unit in the last place of the mean moved it by some 3e-15."""
     cylinders, rpm = CASES["leading"]
-    swing, mean_of = turning(*cylinders, rpm=rpm).dE, Excess._mean_of
-    monkeypatch.setattr(Excess, "_mean_of", lambda self, sampled: math.nextafter(mean_of(self, sampled), math.inf))
+    swing, mean_of = turning(*cylinders, rpm=rpm).dE, TurningEffort._mean_of
+    monkeypatch.setattr(TurningEffort, "_mean_of", lambda self, torque: np.nextafter(mean_of(self, torque), np.inf))
     assert turning(*cylinders, rpm=rpm).dE == pytest.approx(swing, rel=5e-16)
 
 
@@ -421,12 +427,11 @@ def random_machine(random: np.random.Generator) -> MachineTurning:
 
 def missed(machine: MachineTurning, samples: int = 200) -> int:
     """Count changes of sign of M − M_mean on a fine mesh beside no crossing, and extremes that the mesh beats."""
-    breaks = machine.excess.grid.breaks
-    low, high = breaks[:-1, None], breaks[1:, None]
+    low, high = machine.breaks[:-1, None], machine.breaks[1:, None]
     degrees = low + (high - low) * np.linspace(0, 1, samples)
     within = np.broadcast_to((low + high) / 2, degrees.shape)
-    values = machine.excess.torque.torque(degrees, within).value.ravel()
-    total = machine.turned.effort.torque(degrees, within).value
+    total = machine.at(degrees.ravel(), within.ravel()).M
+    values = total - machine.M_mean
     size = np.abs(total).max()
     changes = np.flatnonzero(values[:-1] * values[1:] < 0)
     crossings = np.array(machine.phi_crossing)

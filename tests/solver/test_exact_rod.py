@@ -22,9 +22,9 @@ from kurbel.machine_file import loads
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.effort import reduced_inertia
 from kurbel.solver.forces import CylinderForces
 from machines import STEAM_CARD, one_cylinder
+from turning_machines import moving_inertia
 
 CRANK, LENGTH, RPM = 0.3, 1.3, 140.0
 OMEGA = RPM * 2 * np.pi / 60
@@ -81,8 +81,7 @@ def test_the_reduced_inertia_is_that_of_the_kinetic_energy(offset: float) -> Non
     phi = np.radians(degrees)
     energy = kinetic_energy(phi, 250.0, 0.9, 70.0, offset) + kinetic_energy(phi, 40.0, 0.0, 0.0, offset)
     reduced = 2 * energy / OMEGA**2
-    found = reduced_inertia(turning.effort.cylinders[0].drive.at(degrees))
-    assert found == pytest.approx(reduced, rel=1e-12)
+    assert moving_inertia(turning, degrees) == pytest.approx(reduced, rel=1e-12)
     held = (wheel + reduced) * turning.at(degrees).omega ** 2
     assert held == pytest.approx(held[0], rel=1e-12)
 

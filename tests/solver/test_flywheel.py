@@ -229,12 +229,12 @@ def test_tafel_i_low_pressure_leads_and_evens_the_effort() -> None:
     assert [c.drive.cylinder.crank_position for c in both.cylinders] == [0, -90]
     each = [c.W * c.drive.mechanism.crank for c in both.cylinders]
     assert both.flywheel.M_mean == pytest.approx(sum(each), rel=1e-13)
-    assert dead_centre_force(both.cylinders[0], both.flywheel.turned.cycle).degrees == 0
+    assert dead_centre_force(both.cylinders[0], both.flywheel.effort.cycle).degrees == 0
 
 
 def test_four_cylinders_fire_every_180_degrees() -> None:
     turning = Case(load(CONFIGS / "four-cylinder-generator.yaml")).flywheel
-    assert turning.turned.cycle == 720
+    assert turning.effort.cycle == 720
     assert len(turning.phi_crossing) == 16
     assert turning.multiplier < 1
 
@@ -260,7 +260,7 @@ def test_a_cylinder_has_a_cycle_of_its_own() -> None:
     """A pump beside a four-stroke engine: both of its turns are alike, and its card is held against its own cycle."""
     case = Case(loads(MIXED))
     assert [cylinder.drive.cycle for cylinder in case.cylinders] == [720, 360]
-    assert case.flywheel.turned.cycle == 720
+    assert case.flywheel.effort.cycle == 720
     assert case.flywheel.work_shaft == pytest.approx(2 * case.cylinders[1].work, rel=1e-12)
     with pytest.raises(MachineFileError, match=r"cylinders\[1\]\.indicator\.head_end: a four-stroke cycle needs"):
         loads(MIXED.replace("two-stroke", "four-stroke"))

@@ -76,7 +76,7 @@ SCANNED = ["constant", "power law", "slip", "coupled-blower.yaml", "waterworks-t
 @pytest.mark.parametrize("name", few(SCANNED, SCANNED[::2]))
 def test_its_extremes_are_those_of_a_fine_scan(name: str) -> None:
     turning = _solved(name)
-    cycle = turning.turned.cycle
+    cycle = turning.effort.cycle
     scan = turning.at(np.linspace(0.0, cycle, 20001)).alpha
     assert scan is not None
     for extreme, reached, sign in ((turning.alpha_max, scan.max(), 1), (turning.alpha_min, scan.min(), -1)):
