@@ -11,7 +11,6 @@ from kurbel.declared.quantity import called
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import quantities_of
-from kurbel.solver.cylinder.forces import CylinderForces as OldForces
 from kurbel.solver.figures import Figure, Results, Shown
 from kurbel.solver.forces import CylinderForces
 
@@ -66,11 +65,6 @@ class Case(Shown):
     def cylinders(self) -> tuple[CylinderForces, ...]:
         """Motion, forces and key values of every cylinder, in the order of the machine file."""
         return tuple(CylinderForces(self.machine, cylinder, self.count) for cylinder in self.machine.cylinders)
-
-    @cached_property
-    def old_cylinders(self) -> tuple[OldForces, ...]:
-        """The same of the old solver, for the chapters that are not yet moved: scaffolding that goes with the last."""
-        return tuple(OldForces(self.machine, cylinder) for cylinder in self.machine.cylinders)
 
     @cached_property
     def stress(self) -> CrankshaftStrength:
