@@ -26,13 +26,13 @@ from kurbel.solver.balance.locomotive import LocomotiveBalance
 from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
 from kurbel.solver.bearings.bearing import Bearing
 from kurbel.solver.case import Case
+from kurbel.solver.coupling import ElasticCoupling
+from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
 from kurbel.solver.state import State
 from kurbel.solver.strength.crankshaft import CrankshaftStrength
-from kurbel.solver.coupling import ElasticCoupling
-from kurbel.solver.flywheel import MachineTurning
 from representative import case_of
 from toy_mechanism import HarmonicCam
 

@@ -7,7 +7,6 @@ from kurbel.numerics.arithmetic import where
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-    from kurbel.numerics.grid import Pieces
 
 _RADIANS_PER_DEGREE = math.pi / 180
 

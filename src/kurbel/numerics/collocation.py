@@ -282,7 +282,7 @@ class _Chain:
         response, gain = self.answers(stiffness, lack)
         more = response[-1] + jump[:, self.after].T
         ends, unit = self.padded(gain[-1], np.eye(len(jump))), np.eye(len(jump))
-        start = _around(-ends, np.broadcast_to(unit, ends.shape), self.padded(more, np.zeros(len(jump))))
+        start = joined_around(-ends, np.broadcast_to(unit, ends.shape), self.padded(more, np.zeros(len(jump))))
         start = start[self._row, self._place]
         inside = response + (gain @ start[:, :, None])[..., 0]
         return np.concatenate((start[None], inside)).transpose(2, 0, 1)
@@ -323,7 +323,7 @@ def _solved(systems: Array, sides: Array) -> Array:
         return np.concatenate([_solved(systems[k : k + 1], sides[k : k + 1]) for k in range(len(systems))])
 
 
-def _around(before: Array, after: Array, sides: Array) -> Array:
+def joined_around(before: Array, after: Array, sides: Array) -> Array:
     """Return x (n, k, m) with before_i x_i + after_i x_{i+1} = sides_i, x_k being x_0; matrices (n, k, m, m).
 
     Every second x is eliminated by rotations, which do not mind whether a solution grows or dies on its way, until one

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Number
+from kurbel.numerics.arithmetic import lost
 from kurbel.numerics.lobatto import Rule, rule, series_at, slope_of_series
 
 ROUNDING = 1e-14
@@ -23,6 +24,8 @@ TAIL = 1e-13
 """Of the largest value: a piece whose last two coefficients are larger is halved."""
 NARROWEST = 1e-5
 """Degrees of a piece that is halved no more: only the rounding of angles is rough there."""
+_STRAIGHT = 1e-15
+"""Of the largest value: by what a polynomial exceeds its samples where only rounding bends it."""
 _REPEATED = 1e-12
 """Of the largest value: by what equal summits of a curve differ that is summed over cylinders, or solved for."""
 _SUMMIT = 0.5
@@ -188,7 +191,9 @@ class Pieces:
     def running(self, values: Array) -> Array:
         """Return ∫ value dφ (φ in radians) from the angle 0 to every node, (nodes, pieces)."""
         inside = (self.rule.area @ values) * np.radians(self.half)
-        before = np.cumsum(inside[-1]) - inside[-1]
+        after = np.cumsum(inside[-1])
+        before = np.append(0.0, after[:-1])
+        before[1:] += np.cumsum(lost(before, inside[-1], after))[:-1]
         return inside + (before - before[self.first][self.machine])
 
     def carried(self, values: Array, source: Pieces, later: Number = 0.0) -> Array:
@@ -262,6 +267,10 @@ class Pieces:
         rows, places, turning = _turning_points(samples, self.rule)
         inside = np.abs(places) < _INSIDE
         rows, places, turning = rows[inside], places[inside], turning[inside]
+        top = samples.max(axis=0)[rows]  # by the rounding of a straight line nothing exceeds its ends
+        turning = np.where(
+            turning > top + _STRAIGHT * size[which, self.machine[piece]][rows], turning, np.minimum(turning, top)
+        )
         value = np.concatenate((samples[0], samples[-1], turning))
         ends = self.low[piece], self.high[piece], self._at(piece[rows], places)
         quantity, owner = (

@@ -14,8 +14,8 @@ from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
 
 if TYPE_CHECKING:
-    from kurbel.solver.strength.crankshaft import CrankshaftStrength
     from kurbel.solver.flywheel import MachineTurning
+    from kurbel.solver.strength.crankshaft import CrankshaftStrength
 
 
 def as_far_as_solved(found: Iterable[str], command: str) -> tuple[str, ...]:

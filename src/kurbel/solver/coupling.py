@@ -267,7 +267,7 @@ class ElasticCoupling:
         return np.sqrt(2 * self.effort.pieces.mean(self._torques**2)).sum(axis=0)
 
     @property
-    def _load_slope(self) -> Array:
+    def load_slope(self) -> Array:
         """Slope of the load over the speed at the nominal one in N m s/rad, (n,)."""
         if self.law is None:
             return np.zeros_like(self.own)
@@ -276,7 +276,7 @@ class ElasticCoupling:
 
     def _refuse_resonance(self) -> None:
         """Raise NoSolutionError where a harmonic that is there meets the natural order and nothing damps it."""
-        for machine in np.flatnonzero((self.damping == 0) & (self._load_slope == 0)):
+        for machine in np.flatnonzero((self.damping == 0) & (self.load_slope == 0)):
             size = self._size[machine]
             orders, effort, load, passed = self._harmonics(machine, 0.0)
             stuck = ~(passed < _ENDLESS * size) & (np.maximum(effort, load) > _PRESENT * size)
@@ -290,7 +290,7 @@ class ElasticCoupling:
     @property
     def resonances(self) -> tuple[Harmonic, ...]:
         """Harmonics of the only machine that are present in the torque and near the natural order."""
-        orders, effort, load, passed = self._harmonics(0, float(self._load_slope[0]))
+        orders, effort, load, passed = self._harmonics(0, float(self.load_slope[0]))
         amplitudes, distance = effort + load, orders / self._order[0] - 1
         rigid = (effort * self.driven + load * self.own) / (self.own + self.driven)
         gain = passed / np.where(rigid > 0, rigid, np.inf)

@@ -154,7 +154,7 @@ class TurningEffort:
         for factor, cylinders, torque in terms:
             own = cylinders[0].pieces
             values = np.broadcast_to(torque(cylinders[0].samples), own.degrees.shape) * own.of(factor)
-            if own is pieces:
+            if own is pieces and len(terms) == 1:
                 return values
             size = size + len(cylinders) * own.largest(values)
             for forces in cylinders:
