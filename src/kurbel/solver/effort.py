@@ -37,6 +37,8 @@ _ROUNDING = 1e-13
 """Of the largest torque: a smaller mean, as that of masses without gas, is rounding."""
 _CANCELLED = 4e-14
 """Of the terms of a sum: where nothing larger is left over the whole cycle, they cancel."""
+_UNIFORM = 1e-14
+"""Of the largest torque: where the load differs from the effort by no more all over the cycle, they are equal."""
 _BALANCED = 1e-9
 """Means of effort and load that differ by less, relatively, are equal."""
 _LEVEL = 16 * float(np.finfo(float).eps)
@@ -331,7 +333,9 @@ class ExcessWork:
     """The works between the crossings of effort and load; torque: M − M_load in N m, (nodes, pieces)."""
 
     def __init__(self, effort: TurningEffort, torque: Array) -> None:
-        self._effort, self.pieces, self.torque = effort, effort.pieces, torque
+        self._effort, self.pieces = effort, effort.pieces
+        uneven = self.pieces.largest(torque) > _UNIFORM * self.pieces.largest(effort.M)
+        self.torque = np.where(self.pieces.of(uneven), torque, 0.0)
 
     @cached_property
     def E(self) -> Array:
