@@ -21,10 +21,9 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solver"))
 
 from test_shaft_modes import at_random, eigenvalues
 
-from kurbel.solver.shaft_line.chain import Chain
-from kurbel.solver.shaft_line.modes import Modes
-from kurbel.solver.torsion.forced import Excitation, Vibration
-from kurbel.solver.torsion.vibration import ShaftLine, ShaftMass, ShaftPiece
+from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
+from kurbel.solver.chain import Chain, Modes
+from kurbel.solver.torsion import Excitation, Vibration
 
 
 def seconds(work: Callable[[], object]) -> float:

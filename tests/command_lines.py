@@ -10,6 +10,7 @@ _CONFIGS = Path(__file__).parent.parent / "configs"
 _WITHOUT_FILE = ("table", "friction", "example", "keys", "units", "schema")
 _MACHINES = {"stress": "gas-engine", "torsion": "marine-diesel"}
 _OPTIONS = {
+    "accuracy": ["--quick"],
     "forces": ["--key-values"],
     "sweep": ["--vary", "rod_ratio=4,5", "--columns", "T_max", "--jobs", "2"],
     "friction": ["--incline", "10", "--coefficient", "0.1"],

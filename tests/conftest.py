@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-# random examples are the same at every run, and no clock is asked; .ci/run draws twelve times as many. Others every
+# random examples are the same at every run, and no clock is asked; .ci/run draws four times as many. Others every
 # time: --hypothesis-profile=other
 EVERY = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("brief", EVERY, max_examples=8, derandomize=True)
-settings.register_profile("thorough", EVERY, max_examples=100, derandomize=True)
+settings.register_profile("thorough", EVERY, max_examples=32, derandomize=True)
 settings.register_profile("other", EVERY, max_examples=100, derandomize=False)
 settings.load_profile("brief")
 
@@ -23,6 +23,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # what pytest rewrites of the tests is kept for the next run, too: it takes most of the collection
 sys.dont_write_bytecode = False
+
+# as on the command line, where a thread for each core would only get in the way of the others
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # a width in the environment (pytest-xdist sets one) is asked of every output, by contract
 os.environ.pop("COLUMNS", None)

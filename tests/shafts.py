@@ -12,9 +12,8 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.shaft.statics import FreeBody, Vector
-from kurbel.solver.strength.crankshaft import CrankshaftStrength
-from kurbel.solver.strength.places import Place, places
+from kurbel.solver.shaft import FreeBody, Vector
+from kurbel.solver.stress import CrankshaftStrength, Place, places
 from machines import constant_pressure
 
 SHAFT: dict[str, Any] = {
@@ -41,9 +40,9 @@ def body(D: float, T: float, weight: tuple[float, float] = (0.0, 0.0), **changed
     return FreeBody(shaft(**changed), 0.3, pin, turned)
 
 
-def place_at(crankshaft: Crankshaft, part: str, name: str) -> Place:
-    """The place of this name."""
-    return next(place for place in places(crankshaft) if (place.part, place.name) == (part, name))
+def place_at(body: FreeBody, part: str, name: str) -> Place:
+    """The place of this name with its stresses."""
+    return next(place for place in places(body) if (place.part, place.name) == (part, name))
 
 
 def strength(

@@ -96,11 +96,11 @@ def test_of_thousands_of_orders_the_lowest_are_told_and_the_rest_together() -> N
     result = run(short, "--orders", "--width", "200")
     rows = [line.split() for line in result.stdout.splitlines()]
     assert [row[0] for row in rows if len(row) > 4 and row[0].isdigit()][:24] == ["1", *map(str, range(2, 48, 2))]
-    (note,) = (line for line in result.stdout.splitlines() if "more orders follow, n = 48 to" in line)
+    (note,) = (line for line in result.stdout.splitlines() if "More orders follow, from n = 48 on" in line)
     assert "of the force they are at most " in note
     assert note.endswith(" kN, of the moment 0 N m, together.")
     assert len(result.stdout.splitlines()) < 100
-    assert "more orders" not in run(short.replace("1.00001", "3"), "--orders").stdout
+    assert "More orders" not in run(short.replace("1.00001", "3"), "--orders").stdout
 
 
 def test_a_column_by_name() -> None:

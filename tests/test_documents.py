@@ -9,6 +9,7 @@ from __future__ import annotations
 import doctest
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -17,9 +18,11 @@ from functools import lru_cache
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import from_declarations  # docs/from_declarations.py
 import shipped  # docs/shipped.py
+from kurbel.cli import kurbel
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
@@ -75,18 +78,37 @@ def workshop(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]
     return folder_of
 
 
+SHELL = re.compile(r"[|<>;&$*\\`\n]")
+"""What only a shell does."""
+
+
 def output_of(command: str, folder: Path) -> str:
+    """Return what a line of the shell prints in a folder.
+
+    A kurbel at its beginning is called in this process, which has imported it already; the rest is left to the shell.
+    """
+    line, given, heard = command.removeprefix("$ "), None, ""
+    first, _, rest = line.partition(" | ")
+    words = [] if SHELL.search(first) or first.count("'") % 2 else shlex.split(first)
+    if words[:1] == ["kurbel"]:
+        with pytest.MonkeyPatch.context() as place:
+            place.chdir(folder)
+            ran = CliRunner().invoke(kurbel, words[1:])
+        if not rest:
+            return ran.output
+        line, given, heard = rest, ran.stdout_bytes, ran.stderr
     environment = {k: v for k, v in os.environ.items() if k not in ("FORCE_COLOR", "COLUMNS")}
     environment |= {"PATH": f"{folder / 'bin'}{os.pathsep}{environment['PATH']}", "PYTHONIOENCODING": "utf-8"}
     done = subprocess.run(
-        ["bash", "-c", command.removeprefix("$ ")],
+        ["bash", "-c", line],
         cwd=folder,
         env=environment,
+        input=given,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         check=False,
     )
-    return done.stdout.decode()
+    return heard + done.stdout.decode()
 
 
 @pytest.mark.skipif(NO_SHELL, reason="the pages speak to a shell")

@@ -17,7 +17,7 @@ PARTS = 60
 kept = cache(lambda: read(KEPT))
 
 
-@pytest.mark.parametrize("part", range(5, PARTS, 12))
+@pytest.mark.parametrize("part", [5, 29])
 def test_answers_are_those_frozen(part: int) -> None:
     runs = [(machine, line) for machine, one in kept().items() for line in one["answers"]][part::PARTS]
     old: Record = {}

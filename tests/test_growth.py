@@ -136,10 +136,10 @@ def test_a_picture_has_no_piece_for_every_crossing_in_the_noise() -> None:
 
 @pytest.mark.slow
 @pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="600 calls a sample: each crossing in the noise is a root to be found"
+    strict=True, raises=AssertionError, reason="360 calls a sample: each crossing in the noise is a root to be found"
 )
 def test_a_report_finds_no_root_for_every_crossing_in_the_noise() -> None:
-    assert per_sample(lambda file: ("report", file, "-o", "m.html"), lambda n: traced(n, 3.0), 500, 1000) < 20
+    assert per_sample(lambda file: ("report", file, "-o", "m.html"), lambda n: traced(n, 1.0), 100, 200) < 20
 
 
 @pytest.mark.slow
@@ -150,23 +150,18 @@ def test_a_report_finds_no_root_for_every_crossing_in_the_noise() -> None:
 )
 def test_a_report_of_a_smooth_trace_takes_a_few_times_its_reading() -> None:
     run("report", traced(500), "-o", "m.html")
-    found = [cpu(lambda n=samples: run("report", traced(n), "-o", "m.html")) for samples in (1000, 6000)]
+    found = [cpu(lambda n=samples: run("report", traced(n), "-o", "m.html")) for samples in (500, 2000)]
     traced(100_000)
-    reading = cpu(lambda: np.loadtxt("p.csv", delimiter=",")) / 20
+    reading = 1500 / 100_000 * cpu(lambda: np.loadtxt("p.csv", delimiter=","))
     assert found[1] - found[0] < 50 * reading
 
 
 # mechanisms and cylinders
 
 
-@pytest.mark.xfail(
-    strict=True,
-    raises=AssertionError,
-    reason="50 MB at L/R = 1.00001 and 478 MB at 1.0000001, 17 at 1.001: Fourier sums of millions of nodes, 4 to 26 s",
-)
 def test_a_rod_hardly_longer_than_the_crank_is_no_larger_a_problem() -> None:
     """Its forces bend sharply within √(2(L/R − 1)) of 90°, and nowhere else: few more nodes if they stand there."""
-    for name, one in (("m.yaml", "1.001"), ("n.yaml", "1.00001")):
+    for name, one in (("m.yaml", "1.001"), ("n.yaml", "1.0000001")):
         Path(name).write_text(f"speed: 1 rpm\nstroke: 1 m\nrod_ratio: {one}\nmasses: {{reciprocating: 10 kg}}\n")
     run("balance", "m.yaml")
     assert peak("balance", "n.yaml") < 2 * peak("balance", "m.yaml")
@@ -179,7 +174,7 @@ def test_a_rod_hardly_longer_than_the_crank_is_no_larger_a_problem() -> None:
 )
 def test_check_grows_with_the_cylinders_not_with_their_square() -> None:
     run("check", in_line(2))
-    found = [peak("check", in_line(count)) for count in (16, 32)]
+    found = [peak("check", in_line(count)) for count in (12, 24)]
     assert found[1] < 2.5 * found[0]
 
 
@@ -192,8 +187,8 @@ def test_check_grows_with_the_cylinders_not_with_their_square() -> None:
 def test_a_report_solves_equal_cylinders_once() -> None:
     """5 s for 100 cylinders leave a tenth of today's work to each."""
     run("report", in_line(2), "-o", "m.html")
-    found = [calls("report", in_line(count), "-o", "m.html") for count in (4, 8)]
-    assert (found[1] - found[0]) / 4 < 40_000
+    found = [calls("report", in_line(count), "-o", "m.html") for count in (2, 3)]
+    assert found[1] - found[0] < 40_000
 
 
 # sweeps
@@ -230,9 +225,9 @@ def test_resume_reads_a_row_faster_than_it_is_computed() -> None:
     strict=True, raises=AssertionError, reason="the whole file in memory, four times: 25 MB for one of 6.7 MB, else 17"
 )
 def test_resume_does_not_hold_the_whole_file() -> None:
-    wide = ("--vary", f"name={'x' * 150}")
+    wide = ("--vary", f"name={'x' * 200}", "--vary", f"tandem.0.name={'x' * 200}")
     found = []
-    for rows in (500, 40_000):
+    for rows in (500, 16_000):
         run(*swept(rows, *wide, "-o", f"{rows}.csv"))
         found.append(peak(*swept(rows, *wide, "-o", f"{rows}.csv", "--resume")))
     assert found[1] < 1.2 * found[0]

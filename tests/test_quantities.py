@@ -22,9 +22,8 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.commands import report_of
 from kurbel.report.forces import forces_report
 from kurbel.report.frame import Frame
-from kurbel.solver.balance.locomotive import LocomotiveBalance
-from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
-from kurbel.solver.bearings.bearing import Bearing
+from kurbel.solver.balance import BookBalance, LocomotiveBalance, MachineBalance
+from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
 from kurbel.solver.coupling import ElasticCoupling
 from kurbel.solver.flywheel import MachineTurning
@@ -32,7 +31,7 @@ from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
 from kurbel.solver.state import State
-from kurbel.solver.strength.crankshaft import CrankshaftStrength
+from kurbel.solver.stress import CrankshaftStrength
 from representative import case_of
 from toy_mechanism import HarmonicCam
 

@@ -20,8 +20,8 @@ NEEDLESS = (
     (["--help"], ("cli.table", "cli.output_options", "render", "report", "declared")),
     (["example"], ("report.check", "machine", "mechanisms", "declared.quantities")),
     (["table"], ("mechanisms", "declared.quantities", "declared.units", "declared.keys", "machine", "solver")),
-    (["forces", WATERWORKS, "-f", "csv"], ("report.notes", "report.guide", "solver.strength", "solver.torsion")),
-    (["balance", WATERWORKS], ("solver.strength", "solver.torsion", "solver.pressure.trace")),
+    (["forces", WATERWORKS, "-f", "csv"], ("report.notes", "report.guide", "solver.stress", "solver.torsion")),
+    (["balance", WATERWORKS], ("solver.stress", "solver.torsion")),
 )
 
 
@@ -53,13 +53,3 @@ def test_no_reversal_of_the_rod_load_of_an_engine_is_searched() -> None:
     forces = Case(load(WATERWORKS)).cylinders[0]
     assert list(cylinder_warnings(forces)) == []
     assert "phi_rod_reversal" not in vars(forces)
-
-
-def test_what_no_flywheel_changes_is_found_once_for_all() -> None:
-    flywheel = Case(load(BOTH_CRANKS)).flywheel
-    lines = flywheel._lines
-    assert lines is not None
-    light, heavy = lines.rigid(1e4), lines.rigid(2e4)
-    assert light.delta > heavy.delta
-    assert light.course is heavy.course
-    assert light.grid is heavy.grid

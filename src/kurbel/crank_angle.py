@@ -15,7 +15,7 @@ class CrankAngle(NamedTuple):
     """A crank angle, or an array of them, with its sine and cosine.
 
     degrees: angle in degrees, any size; sin, cos: of the same shape. The formulas of the mechanisms need only
-    `sin` and `cos`, which may be floats, arrays, jets or numbers of higher precision alike. rod: (sin ψ, cos ψ) of the
+    `sin` and `cos`, which may be floats, arrays or numbers of higher precision alike. rod: (sin ψ, cos ψ) of the
     one mechanism that is asked about these angles, where they are known: most of its formulas need them.
     """
 
@@ -38,17 +38,9 @@ class CrankAngle(NamedTuple):
         return cls(degrees, *_sin_cos_array(degrees))
 
     @classmethod
-    def at_nodes(cls, pieces: Any) -> "CrankAngle":
-        """Return the angles of the nodes of pieces of a cycle, (pieces, nodes)."""
-        offsets: Any = getattr(pieces, "offsets", pieces.offset)  # of the old grid the offsets
-        return cls(pieces.degrees, *_turned(pieces.right_angle, offsets))
-
-    @property
-    def jets(self) -> "CrankAngle":
-        """The same with sine and cosine as jets."""
-        from kurbel.numerics.jet import Jet
-
-        return CrankAngle(self.degrees, Jet(self.sin, self.cos), Jet(self.cos, -self.sin))
+    def at_nodes(cls, pieces: "Pieces") -> "CrankAngle":
+        """Return the angles of the nodes of pieces of a cycle, (nodes, pieces)."""
+        return cls(pieces.degrees, *_turned(pieces.right_angle, pieces.offsets))
 
     @property
     def versine(self) -> Any:

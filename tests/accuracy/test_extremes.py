@@ -40,7 +40,8 @@ KEPT = {
 """One of each of the dear ones by default."""
 
 
-DEAR = [case for case in CASES if not quick(case)]
+DEAR = {(case.name, case.asked.partition("@")[0]): case for case in CASES if not quick(case)}.values()
+"""At one angle each: `kurbel accuracy --extremes` asks at all."""
 
 
 def told(case: Probe) -> str:

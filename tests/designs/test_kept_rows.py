@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel as command
+from kurbel.designs import workers
 from kurbel.designs.sweep import Row, Sweep
 from kurbel.errors import KurbelError
 
@@ -144,6 +145,7 @@ def files(folder: Path) -> dict[str, str]:
 def test_what_cannot_begin_leaves_the_old_file(
     name: str, refused: str, machine: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(workers, "_ANSWERS_WITHIN", 0.5)
     if refused == "--dask=tcp://127.0.0.1:1":
         monkeypatch.setitem(sys.modules, "distributed", None)
     if name == "rows.parquet" and refused.startswith("--set"):

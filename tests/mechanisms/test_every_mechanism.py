@@ -26,6 +26,8 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
+from kurbel.numerics.lobatto import chebyshev
+from kurbel.numerics.pieces import Angles, Pieces, refined
 from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
@@ -328,11 +330,18 @@ def test_every_answer_grows_with_the_lengths_as_its_unit_says(machine, command):
 
 
 @every()
-def test_jets_pass_through_and_carry_the_derivatives(machine):
-    angles = np.linspace(-30.0, 400.0, 87)
-    plain, jets = CrankAngle.of(angles), CrankAngle.of(angles).jets
-    size = machine.stroke + abs(machine.curvature(plain)).max()
-    if machine.slides:
-        assert machine.coordinate(jets).slope == pytest.approx(machine.slope(plain), abs=1e-13 * size)
-    assert machine.slope(jets).slope == pytest.approx(machine.curvature(plain), abs=1e-12 * size)
-    assert np.isfinite(machine.curvature(jets).slope).all()
+def test_each_function_is_the_derivative_of_the_one_before(machine):
+    """By the polynomials through values at Lobatto nodes, on pieces that are halved until these are exact."""
+
+    def sampled(pieces: Pieces) -> np.ndarray:
+        angle = CrankAngle.at_nodes(pieces)
+        return np.stack([one(angle) + 0 * angle.sin for one in (machine.coordinate, machine.slope, machine.curvature)])
+
+    nowhere = Angles(np.zeros(0, dtype=np.intp), np.zeros(0))
+    pieces, values = refined(Pieces.between(nowhere, 1, 360.0), sampled)
+    order = len(pieces.rule.nodes)
+    reading = chebyshev(pieces.rule.nodes, order - 1) @ pieces.rule.slope @ pieces.rule.series
+    slopes = reading @ values[:-1] / np.radians(pieces.half)
+    wide = pieces.half > 0.1  # a difference over less has no digits left
+    size = machine.stroke + abs(values[2]).max()
+    assert slopes[:, :, wide] == pytest.approx(values[1:][:, :, wide], abs=1e-10 * size)

@@ -49,6 +49,9 @@ def contrast(one: str, other: str) -> float:
 def test_files_are_small_and_whole(name: str) -> None:
     for id in ids_of(name):
         for picture in drawn(name, id):
+            for piece in (piece for panel in picture.panels for curve in panel.curves for piece in curve.pieces):
+                assert np.isfinite(piece.x).all()
+                assert np.isfinite(piece.y).all()
             text = "".join(svg_file([picture], Look()))
             assert len(text.encode()) <= LARGEST
             root = ElementTree.fromstring(text)
@@ -150,8 +153,6 @@ def test_the_same_picture_every_time(suffix: str, begin: bytes, tmp_path: Path) 
 
 
 def test_thinning_leaves_out_only_what_lies_on_a_line() -> None:
-    import numpy as np
-
     x = np.linspace(0, 100, 401)
     y = np.abs(x - 50)
     assert thinned(x, y) == ((0.0, 50.0), (50.0, 0.0), (100.0, 50.0))

@@ -73,11 +73,12 @@ def test_a_check_of_a_file_with_faults_keeps_it(validator: Draft7Validator) -> N
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", _of_machines())
-def test_every_answer_of_every_machine_keeps_it(command: str, validator: Draft7Validator) -> None:
+@pytest.mark.parametrize(("turn", "command"), list(enumerate(_of_machines())))
+def test_answers_of_every_machine_keep_it(turn: int, command: str, validator: Draft7Validator) -> None:
+    """A third of the machines with each command, other ones with the next."""
     answered = 0
     quick = ["--quick"] if command == "accuracy" else []
-    for file in sorted(CONFIGS.glob("waterworks.yaml" if quick else "*.yaml")):
+    for file in [CONFIGS / "waterworks.yaml"] if quick else sorted(CONFIGS.glob("*.yaml"))[turn % 3 :: 3]:
         ran = CliRunner().invoke(kurbel, [command, str(file), *quick, "-f", "json"])
         if ran.exit_code in (0, 1):
             validator.validate(json.loads(ran.stdout))

@@ -13,9 +13,10 @@ from scipy.integrate import fixed_quad
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.machine.batch import batch
+from kurbel.machine.variants import Lot
 from kurbel.machine_file import loads
-from kurbel.solver.bearings.bearing import Bearing
-from kurbel.solver.bearings.directions import unloaded
+from kurbel.solver.bearings import Bearing, unreached
 from kurbel.solver.case import Case
 from representative import few
 
@@ -233,27 +234,32 @@ def test_unloaded_arcs_against_many_samples() -> None:
             assert arc == pytest.approx(sum(max(gap / 100 - 120, 0.0) for gap in edges), abs=0.1)
 
 
+def free(*arcs: tuple[float, float]) -> tuple[float, float]:
+    """What these arcs leave free of the circle of one machine, and the middle of its widest stretch."""
+    start, end = np.array(arcs).T
+    (arc,), (middle,) = unreached(np.zeros(len(arcs), int), start, end, 1)
+    return arc, middle
+
+
 def test_arcs_join_round_the_circle() -> None:
-    joined = np.array([True, False])
-    found = unloaded(np.array([350.0, 20.0, 200.0]), joined)
-    assert found.arc == pytest.approx(360 - (30 + 120) - 120)
-    assert found.middle == pytest.approx(math.remainder((80 + 140) / 2, 360))
-    assert unloaded(np.array([0.0, 100.0, 200.0, 300.0]), np.zeros(3, bool)).arc == 0
+    assert free((290.0, 440.0), (140.0, 260.0)) == pytest.approx((360 - 150 - 120, math.remainder((80 + 140) / 2, 360)))
+    arc, middle = free(*((degrees - 60, degrees + 60) for degrees in (0.0, 100.0, 200.0, 300.0)))
+    assert arc == 0
+    assert math.isnan(middle)
 
 
 def test_rounding_does_not_choose_between_equal_arcs() -> None:
     """Loads to and fro leave 60° on either side; a thousand-millionth of a degree decides nothing."""
     for tilt in (-1e-9, 0.0, 1e-9):
-        assert unloaded(np.array([0.0, 180.0 + tilt]), np.array([False])).middle == pytest.approx(90)
+        assert free((-60.0, 60.0), (120.0 + tilt, 240.0 + tilt))[1] == pytest.approx(90)
 
 
 def test_means_against_scipy() -> None:
     pin = Case(loads(ENGINE)).bearings.parts[0]
-    bends = sorted({float(one) for one in pin._grid.breaks})
-    pieces = list(itertools.pairwise(bends))
+    pieces = list(itertools.pairwise(pin.breaks))
 
     def load(degrees: np.ndarray, within: float) -> np.ndarray:
-        return pin._evaluate(degrees, np.full_like(degrees, within))["load"].value
+        return pin.at(degrees, np.full_like(degrees, within)).load
 
     whole = sum(fixed_quad(load, low, high, args=((low + high) / 2,), n=60)[0] for low, high in pieces)
     assert pin.load_mean == pytest.approx(whole / 720, rel=1e-12)
@@ -286,6 +292,21 @@ def test_work_of_friction_is_that_of_the_energy_balance() -> None:
     assert pin.work_rubbing == work_of("crank_pin")
     assert crosshead.work_rubbing == work_of("crosshead_pin")
     assert A.work_rubbing + B.work_rubbing == pytest.approx(work_of("journals"), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["one, a share", "four in line, planes", "vee", "two overhung"])
+def test_many_machines_have_what_each_has_alone(name: str) -> None:
+    texts = [MACHINES[name].replace("1800 rpm", f"{speed} rpm") for speed in (1500, 1800, 2400)]
+    alone = [loads(text.replace("a: 60 mm", f"a: {a} mm")) for text, a in zip(texts, (60, 58, 64))]
+    together = Case(batch([(Lot(machine, (0,)), np.array([0])) for machine in alone]), len(alone))
+    for number, machine in enumerate(alone):
+        for part, one in zip(together.bearings.parts, Case(machine).bearings.parts, strict=True):
+            found = part.key_values()
+            for id, figure in one.key_values().items():
+                value = np.broadcast_to(found[id].value, len(alone))[number]
+                assert value == pytest.approx(figure.value, rel=1e-12, abs=1e-9), (part.name, id)
+                if figure.degrees is not None:
+                    assert found[id].degrees[number] == pytest.approx(figure.degrees, abs=1e-6)
 
 
 def test_every_bearing_has_its_own_key_values() -> None:

@@ -106,7 +106,7 @@ def test_no_angle_is_missing_in_many_cylinders() -> None:
     """benchmarks/random_cylinders.py does the same with thousands, and another seed every day."""
     lost = [
         (number, missing)
-        for number, forces in enumerate(cylinders(77, 100))
+        for number, forces in enumerate(cylinders(77, 40))
         if (missing := missing_reversals(forces) + missing_crossings(forces))
     ]
     assert not lost

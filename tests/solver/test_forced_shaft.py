@@ -16,19 +16,13 @@ from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPart, ShaftPiec
 from kurbel.machine.shaft_list import line_of
 from kurbel.machine.turning import Coupling, Effort, Harmonics, Load
 from kurbel.machine_file import load
-from kurbel.numerics.grid import Cuts
-from kurbel.numerics.jet import Jet
+from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.numerics.waves import crests
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import MachineTurning
-from kurbel.solver.shaft_line.chain import Chain, responding, twisting
-from kurbel.solver.shaft_line.modes import Modes
-from kurbel.solver.shaft_line.periodic import ChainEquation
-from kurbel.solver.torsion.forced import Excitation, Vibration
-from kurbel.solver.torsion.steady import SteadyMotion
-from kurbel.solver.torsion.vibration import ShaftVibration
-from kurbel.solver.turning.harmonics import spectrum
-from turning_machines import of_points
+from kurbel.solver.chain import Chain, Modes, motion, passing, response
+from kurbel.solver.effort import Diagram
+from kurbel.solver.harmonics import amplitudes
+from kurbel.solver.torsion import Excitation, ShaftVibration, Vibration
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
 POINTS = [(0, 100), (60, 900), (60, 500), (180, 100), (240, 700), (360, 100)]
@@ -57,14 +51,16 @@ def test_every_order_solves_its_equations(count: int, ground: str) -> None:
     frequencies = np.array([[0.7, 20.0], [150.0, 900.0]])
     draw = np.random.default_rng(4)
     torques = draw.normal(size=(count, 2, 2)) + 1j * draw.normal(size=(count, 2, 2))
-    found = responding(chain, frequencies, torques).angles
+    found = response(chain, frequencies, torques).angles
     for place, w in np.ndenumerate(frequencies):
-        springs = chain.stiffnesses * (1 + 1j * chain.loss) + 1j * w * chain.piece_damping
-        whole = chain.twists.T @ np.diag(springs) @ chain.twists
-        whole = whole + np.diag(1j * w * chain.mass_damping - w * w * chain.inertias)
         with mpmath.workdps(40):
+            still, dampers = (mpmath.diag(one.tolist()) for one in (chain.stiffnesses, chain.segment_damping))
+            losses, frequency = mpmath.diag((1 + 1j * chain.loss).tolist()), mpmath.mpf(w)
+            twists, jw = mpmath.matrix(chain.twists.tolist()), mpmath.mpc(0, frequency)
+            whole = twists.T * (still * losses + jw * dampers) * twists + jw * mpmath.diag(chain.mass_damping.tolist())
+            whole -= frequency**2 * mpmath.diag(chain.inertias.tolist())
             sides = mpmath.matrix([complex(one) for one in torques[(slice(None), *place)]])
-            exact = mpmath.lu_solve(mpmath.matrix(whole.tolist()), sides)
+            exact = mpmath.lu_solve(whole, sides)
         wanted = np.array([complex(one) for one in exact])
         assert found[(slice(None), *place)] == pytest.approx(wanted, abs=1e-12 * np.abs(wanted).max())
 
@@ -75,7 +71,7 @@ def test_a_piece_of_the_chain_in_resonance_by_itself_is_no_harm() -> None:
     frequencies = np.array([(math.sqrt(5) - 1) / 2, 1.0])
     torques = np.zeros((4, 2), dtype=complex)
     torques[0] = 1.0
-    found = responding(chain, frequencies, torques).angles
+    found = response(chain, frequencies, torques).angles
     for column, w in enumerate(frequencies):
         whole = chain.twists.T @ chain.twists + np.diag(1j * w * chain.mass_damping - w * w)
         assert whole @ found[:, column] == pytest.approx(torques[:, column], abs=1e-14)
@@ -90,15 +86,9 @@ def machine_of(load: Load | None = None, effort: Any = None, damping: float = 60
     return Machine((), effort=effort, speed=1.0, flywheel=Flywheel(60.0), coupling=coupling, load=load)
 
 
-class Passed:
-    """The torque in the coupling, as a torque of which orders can be taken."""
-
-    def __init__(self, turning: MachineTurning) -> None:
-        self._elastic = turning.elastic
-        self.cuts = Cuts(np.append(self._elastic.motion.elements.low, self._elastic.cycle))
-
-    def torque(self, degrees: np.ndarray, within: np.ndarray) -> Jet:
-        return Jet(self._elastic._sampled(degrees, within)["torque"].value, np.zeros_like(degrees))
+def orders_over_the_angle(pieces: Pieces, torques: np.ndarray, orders: np.ndarray) -> np.ndarray:
+    """The complex amplitudes (q, k) of torques (q, nodes, pieces) of one machine."""
+    return amplitudes(pieces, torques, orders)[..., 0]
 
 
 @pytest.mark.parametrize("order", [0.4, 2.4, 7.5])
@@ -107,7 +97,9 @@ def test_the_coupling_of_the_flywheel_order_by_order(load: Load | None, order: f
     """Linear loads, an effort that jumps: what `flywheel` finds over the angle has the orders of `torsion`."""
     case = Case(machine_of(load, order=order))
     orders = case.torsion.orders
-    over_the_angle = spectrum(Passed(case.flywheel), orders).amplitudes
+    pieces = case.torsion.steady.pieces
+    passed = case.flywheel.at(pieces.degrees.ravel()).M_coupling.reshape(1, *pieces.degrees.shape)
+    (over_the_angle,) = orders_over_the_angle(pieces, passed, orders)
     in_orders = case.torsion.vibration.torques[0, 0]
     assert over_the_angle == pytest.approx(in_orders, abs=1e-12 * np.abs(in_orders).max())
 
@@ -144,17 +136,6 @@ def test_the_coupling_of_the_flywheel_where_the_effort_jumps(load: Load | None) 
     assert piece.M_shaft_min == pytest.approx(case.flywheel.elastic.M_coupling_min.value, rel=1e-12)
 
 
-class InSteadyMotion:
-    """The torque in a piece of a shaft line with all its orders, as a torque of which they can be taken."""
-
-    def __init__(self, steady: SteadyMotion, piece: int) -> None:
-        self._steady, self._piece = steady, str(piece)
-        self.cuts = Cuts(np.append(steady.motion.elements.low, steady.cycle))
-
-    def torque(self, degrees: np.ndarray, within: np.ndarray) -> Jet:
-        return Jet(self._steady._sampled(degrees, within)[self._piece].value, np.zeros_like(degrees))
-
-
 PISTONS = """
 name: two cylinders behind a gear
 speed: 300 rpm
@@ -188,9 +169,9 @@ def test_all_orders_of_a_shaft_line_hold_each_of_them(text: str, tmp_path: Path)
     found = Case(load(tmp_path / "machine.yaml")).torsion
     assert found.remainder is None
     size = np.abs(found.vibration.torques).max()
-    for piece, amplitudes in enumerate(found.vibration.torques[:, 0]):
-        over_the_angle = spectrum(InSteadyMotion(found.steady, piece), found.orders).amplitudes
-        assert over_the_angle == pytest.approx(amplitudes, abs=1e-12 * size)
+    ratios = np.array([piece.ratio for piece in found.line.pieces])
+    over_the_angle = orders_over_the_angle(*found.steady, found.orders) / ratios[:, None]
+    assert over_the_angle == pytest.approx(found.vibration.torques[:, 0], abs=1e-12 * size)
 
 
 def test_of_a_loss_factor_the_orders_are_told_with_what_is_left(tmp_path: Path) -> None:
@@ -205,53 +186,25 @@ def test_of_a_loss_factor_the_orders_are_told_with_what_is_left(tmp_path: Path) 
         assert abs(one.M_vibratory - other.M_vibratory) < 1e-3 * few.M_vibratory
 
 
-@pytest.mark.parametrize("load", [None, Load(slip=0.05)], ids=["constant", "slip"])
-def test_a_linear_load_takes_one_step_of_newton(load: Load | None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of each set of elements the equations are solved once: two looks at the rate; one more tells the growth."""
-    case = Case(machine_of(load))
-    rate, looks, sizes = ChainEquation.rate, [0], set()
-
-    def counted(self: ChainEquation, prepared: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        looks[0] += 1
-        sizes.add(y.shape)
-        return rate(self, prepared, y)
-
-    monkeypatch.setattr(ChainEquation, "rate", counted)
-    growth = case.flywheel.elastic.growth
-    assert growth < 0 if load else abs(growth) < 1e-12  # a constant load neither holds nor drives what turns as a whole
-    assert looks[0] == 2 * len(sizes) + 1
-
-
 @pytest.mark.parametrize("ground", ["", "after"])
 def test_longer_chains_over_the_angle_have_the_same_orders(ground: str) -> None:
     """Collocation in 2n − 1 or 2n unknowns, driven at two masses by torques that jump."""
-    chain, omega, cycle = damped(3, ground, 11, loss=0.0), 30.0, 360.0
-    efforts = [of_points(points).excess for points in (POINTS, [(0, 50), (100, 50), (100, 300), (360, 300)])]
-
-    def driving(degrees: np.ndarray, within: np.ndarray) -> np.ndarray:
-        first, last = (one.effort.torque(degrees, within).value - one.mean for one in efforts)
-        return np.stack((first, np.zeros_like(first), last))
-
-    equation = ChainEquation(chain, omega, driving)
-    motion = equation.solved(Cuts.joined([one.effort.cuts for one in efforts]).grid().breaks)
-
-    class InPiece:
-        cuts = Cuts(np.append(motion.elements.low, cycle))
-
-        def __init__(self, piece: int) -> None:
-            self._passing = equation.passing[piece]
-
-        def torque(self, degrees: np.ndarray, within: np.ndarray) -> Jet:
-            return Jet(motion.at(degrees, within) @ self._passing, np.zeros_like(degrees))
+    chain, omega = damped(3, ground, 11, loss=0.0), 30.0
+    efforts = [
+        Diagram(Effort(*(tuple(map(float, one)) for one in zip(*points))), 360.0, 1)
+        for points in (POINTS, [(0, 50), (100, 50), (100, 300), (360, 300)])
+    ]
+    breaks = Angles(*(np.concatenate(one) for one in zip(*(effort.breaks for effort in efforts))))
+    pieces = Pieces.between(breaks, 1, 360.0)
+    torques = np.zeros((3, *pieces.degrees.shape))
+    torques[0], torques[2] = (one.at(pieces.degrees, pieces.middle, pieces.machine) for one in efforts)
+    torques -= pieces.mean(torques)[:, None]
 
     orders = np.arange(1.0, 13.0)
-    torques = np.zeros((3, 12), dtype=complex)
-    torques[0], torques[2] = (spectrum(one.effort, orders).amplitudes for one in efforts)
-    wanted = twisting(chain, orders * omega, responding(chain, orders * omega, torques).angles)
-    for piece, amplitudes in enumerate(wanted):
-        assert spectrum(InPiece(piece), orders).amplitudes == pytest.approx(
-            amplitudes, abs=1e-12 * np.abs(wanted).max()
-        )
+    acting = orders_over_the_angle(pieces, torques, orders)
+    wanted = passing(chain, orders * omega, response(chain, orders * omega, acting).angles)
+    found = orders_over_the_angle(*motion(chain, omega, pieces, torques), orders)
+    assert found == pytest.approx(wanted, abs=1e-12 * np.abs(wanted).max())
 
 
 def test_the_damping_takes_what_the_torques_give() -> None:

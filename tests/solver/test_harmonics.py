@@ -24,8 +24,9 @@ from kurbel.machine.piston import Piston
 from kurbel.machine.turning import Harmonics
 from kurbel.machine_file import load, loads
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.numerics.pieces import Angles
 from kurbel.solver.case import Case
-from kurbel.solver.turning.harmonics import MachineOrders
+from kurbel.solver.harmonics import MachineOrders
 from machines import STEAM_CARD
 from representative import few
 from turning_machines import of_points
@@ -191,10 +192,11 @@ def test_their_sum_is_the_torque(name: str) -> None:
     """Bessel: the mean square of what 24 orders leave is what Parseval says."""
     machine = load(CONFIGS / f"{name}.yaml")
     found = orders_of(machine)
-    turning = Case(machine).flywheel
-    grid = turning.excess.grid.split_at(np.arange(0.0, 360.0 * machine.revolutions, 5.0))
-    left = turning.excess.effort.torque(grid.degrees, grid.within).value - found.machine.whole.at(grid.degrees)
-    square = grid.integral(left**2) / math.radians(360.0 * machine.revolutions)
+    whole = found.effort.pieces
+    every = np.arange(0.0, whole.cycle, 5.0)
+    pieces = whole.split(Angles(np.zeros(len(every), dtype=int), every))
+    left = pieces.carried(found.effort.M, whole) - found.machine.whole.at(pieces.degrees)
+    (square,) = pieces.mean(left**2)
     assert square == pytest.approx((1 - found.orders_share) * found.swing, rel=1e-6)
     assert 0.99 < found.orders_share < 1
 

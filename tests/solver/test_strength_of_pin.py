@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from kurbel.errors import RuleError
 from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.strength.crankshaft import CrankshaftStrength
-from kurbel.solver.strength.places import PARTS, places
+from kurbel.solver.stress import PARTS, CrankshaftStrength, places
 from machines import constant_pressure
 from shafts import body, shaft, strength
 
@@ -36,7 +35,7 @@ def test_heavy_overhung_flywheel_strains_the_pin_most_at_web_B() -> None:
     end = largest(at.A_D * (0.4 + u) - at.D * u, at.A_T * (0.4 + u) - at.T * u)
     assert end > 1.1 * middle
     assert solved.sigma_max("pin").value == pytest.approx(end, rel=1e-6)
-    by_name = {one.place.name: one.combined for one in solved.at_worst if one.place.part == "pin"}
+    by_name = {one.name: one.combined for one in solved.at_worst if one.part == "pin"}
     assert by_name["middle"] == pytest.approx(middle, rel=1e-6)
     assert by_name["at web A"] < by_name["middle"]
 
@@ -48,7 +47,7 @@ def test_no_section_of_the_pin_is_strained_more_than_its_places(
     found = body(D, T, (G_D, G_T), flywheel_position=f)
     u = 0.11 * along
     before, beyond = (float(np.hypot(*moments)[0]) for moments in (found.moments_at(-u), found.moments_at(u)))
-    worst = max(place.stresses(found).normal[0] for place in places(found.shaft) if place.part == "pin")
+    worst = max(place.normal[0] for place in places(found) if place.part == "pin")
     assert max(before, beyond) <= worst * math.pi * 0.18**3 / 32 * (1 + 1e-12) + 1e-9
 
 

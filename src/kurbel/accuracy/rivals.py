@@ -14,7 +14,6 @@ from kurbel.accuracy.textbook import Moved, TextbookCylinder, TextbookMachine
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import CYCLES, Machine
-from kurbel.numerics.gauss import LOBATTO_9
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
@@ -129,8 +128,7 @@ def work_methods(machine: Machine, quick: bool) -> Iterator[Method]:
 
 def friction_methods(machine: Machine, quick: bool) -> Iterator[Method]:
     """Yield methods for its work of friction in J per cycle."""
-    own = f"Lobatto {len(LOBATTO_9[0])}"
-    yield Method(OWN, own, lambda: CylinderForces(machine, machine.cylinders[0]).friction_work)
+    yield Method(OWN, "Lobatto 16", lambda: CylinderForces(machine, machine.cylinders[0]).friction_work)
     yield from _quadratures(machine, quick, "friction_power")
 
 

@@ -13,8 +13,8 @@ from kurbel.machine.batch import Structures, batch
 from kurbel.machine.variants import Lot
 from kurbel.solver.case import Case
 
-_ALONE = ("torsion", "flywheel", "harmonics", "stress", "bearings", "balance")
-"""Commands that answer one machine at a time: torsion turns matrices of its own size, the others are not moved yet."""
+_ALONE = ("torsion",)
+"""Commands that answer one machine at a time: they turn matrices of its own size."""
 _FEWEST = 3
 """Machines of one structure; fewer are answered as quickly alone."""
 AT_ONCE = 1000

@@ -12,7 +12,8 @@ class Rule:
 
     weights (n,): of its integral; series (n, n): turns values into Chebyshev coefficients; slope: those into the
     coefficients of the derivative, (n − 1, n); area (n, n): values into integrals from −1 to every node; places (m,):
-    where a scan for changes of sign looks; scan, scan_slope (m, n): values into values and slopes there.
+    where a scan for changes of sign looks; scan, scan_slope (m, n): values into values and slopes there; halving (2n,
+    n): into values at the nodes of both halves.
     """
 
     def __init__(self, count: int) -> None:
@@ -20,6 +21,7 @@ class Rule:
         self.series = np.linalg.inv(chebyshev(self.nodes, count))
         self.slope = slope_of_series(count)
         self.area = chebyshev(self.nodes, count + 1) @ integral_of_series(count) @ self.series
+        self.halving = chebyshev(np.concatenate((self.nodes - 1, self.nodes + 1)) / 2, count) @ self.series
         self.places = np.sin(np.pi / 2 * np.linspace(-1, 1, 2 * count + 1))
         self.scan = chebyshev(self.places, count) @ self.series
         self.scan_slope = chebyshev(self.places, count - 1) @ self.slope @ self.series

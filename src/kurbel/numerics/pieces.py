@@ -7,7 +7,7 @@ polynomial yet, by the tail of its Chebyshev coefficients, is halved: no other k
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -162,7 +162,9 @@ class Pieces:
     @cached_property
     def high(self) -> Array:
         """The angles in degrees at which they end, the last of a machine with the cycle."""
-        return np.where(self.after == self.first[self.machine], self.cycle, self.low[self.after])
+        own, following = self.low + 2 * self.half, self.low[self.after]
+        following = np.where(self.after == self.first[self.machine], self.cycle, following)
+        return np.where(np.abs(following - own) < _SAME, following, own)
 
     def of(self, numbers: Number) -> Number:
         """Return numbers of the machines, (machines,), at their pieces; one number stays one."""
@@ -208,13 +210,16 @@ class Pieces:
         # differences of right angles are exact
         from_low = (self.right_angle - source.right_angle[row] - behind) + (self.offset - source.offset[row])
         from_low = from_low - source.cycle * np.rint((from_low + self.half - source.half[row]) / source.cycle)
-        places = np.clip((from_low + self.half * (1 + self.rule.nodes[:, None])) / source.half[row] - 1, -1, 1)
-        series = np.moveaxis(source.rule.series @ values, -2, 0)[..., None, :]
-        found = np.empty(values.shape[:-2] + places.shape)
-        for start in range(0, len(row), _AT_ONCE):
-            some = np.s_[..., start : start + _AT_ONCE]
-            own = np.broadcast_to(places[some], found[some].shape)
-            found[some] = series_at(series[..., row[some[-1]]], own)
+        width = source.half[row]
+        whole = (np.abs(from_low) < _NO_WIDTH) & (np.abs(self.half - width) < _NO_WIDTH) & (self.rule is source.rule)
+        found = np.empty((*values.shape[:-2], *self.degrees.shape))
+        if whole.any():
+            found[..., whole] = values[..., row[whole]]
+        places = (from_low + self.half * (1 + self.rule.nodes[:, None])) / width - 1
+        for part in np.split(np.flatnonzero(~whole), range(_AT_ONCE, np.count_nonzero(~whole), _AT_ONCE)):
+            series = np.moveaxis(source.rule.series @ values[..., row[part]], -2, 0)[..., None, :]
+            own = np.broadcast_to(np.clip(places[:, part], -1, 1), (*values.shape[:-2], len(places), len(part)))
+            found[..., part] = series_at(series, own)
         return found
 
     def at(self, values: Array, machine: Indices, degrees: Array, within: Array | None = None) -> Array:
@@ -252,13 +257,16 @@ class Pieces:
         """
         largest = self.largest(values)
         size = largest if size is None else np.maximum(size, largest)
-        (high, high_at), (low, low_at) = (self._highest(sign * values, size) for sign in (1, -1))
+        (high, high_at), (low, low_at) = (self.highest(sign * values, size) for sign in (1, -1))
         # beside the values of the other sign this is the rounding of a dead centre, which is no float
         high, low = (np.where(np.abs(one) > ROUNDING * size, one, 0.0) for one in (high, low))
         return Extremes(high + 0.0, high_at, 0.0 - low, low_at)
 
-    def _highest(self, values: Array, size: Array) -> tuple[Array, Array]:
-        """Return the largest values, and the angles of the first summits that reach them, each (q, machines)."""
+    def highest(self, values: Array, size: Array) -> tuple[Array, Array]:
+        """Return the largest values, and the angles of the first summits that reach them, each (q, machines).
+
+        values: (q, nodes, pieces); size: (q, machines), of the terms of which they are sums.
+        """
         tops, bottoms = values.max(axis=1), values.min(axis=1)
         best = np.maximum.reduceat(tops, self.first, axis=-1)
         # a piece exceeds its samples by less than they differ
@@ -293,23 +301,86 @@ class Pieces:
         return low, high
 
 
+def common(parts: Sequence[tuple[Pieces, Number]], cycle: float) -> Pieces:
+    """Return the pieces of a cycle in degrees, as long as those of the parts or several times, within all of theirs.
+
+    parts: each with the degrees, (machines,), by which its own angle is behind that of the common pieces.
+    """
+    first = parts[0][0]
+    if len(parts) == 1 and not np.any(parts[0][1]) and first.cycle == cycle:
+        return first
+    machine: list[Indices] = []
+    degrees: list[Array] = []
+    for one, later in parts:
+        starts = np.mod(one.low + one.of(later), one.cycle)
+        degrees += [starts + turn for turn in np.arange(0.0, cycle, one.cycle)]
+        machine += [one.machine] * (len(degrees) - len(machine))
+    nodes = min(len(one.rule.nodes) for one, _ in parts)
+    return Pieces.between(Angles(np.concatenate(machine), np.concatenate(degrees)), first.count, cycle, nodes)
+
+
+def resolved(
+    pieces: Pieces, parts: Array, kinks: Array, size: Array, function: Callable[[Pieces, Array], Array]
+) -> tuple[Pieces, Array, Array]:
+    """Return pieces cut where kinks vanish, and halved until functions of the parts are polynomials: magnitudes.
+
+    Returns with them the values of the functions (q, nodes, pieces) and the parts (p, nodes, pieces) there. parts: have
+    polynomials on the pieces; kinks: (k, nodes, pieces); size: (k, machines), beside which a kink is zero.
+    """
+    cuts = [pieces.zeros(one, beside) for one, beside in zip(kinks, size)]
+    cut = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*cuts))))
+    return _halved_until_smooth(cut, function, cut.carried(parts, pieces))
+
+
 def refined(pieces: Pieces, sample: Sample) -> tuple[Pieces, Array]:
     """Return pieces halved until the samples are polynomials on them, and the samples there, (q, nodes, pieces)."""
-    todo, size, done, found = pieces, np.zeros(()), [], []
+    nothing = np.zeros((0, *pieces.degrees.shape))
+    return _halved_until_smooth(pieces, lambda some, _: sample(some), nothing)[:2]
+
+
+def highest(pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Array]) -> tuple[Array, Array]:
+    """Return the largest values of functions ≥ 0 of the parts, and the first angles in degrees, each (q, machines).
+
+    parts: (p, nodes, pieces), with polynomials on the pieces. Only pieces that may hold the largest value are halved.
+    """
+    fine, values, _ = _halved_until_smooth(pieces, function, parts, only_highest=True)
+    return fine.highest(values, fine.largest(values))
+
+
+def _halved_until_smooth(
+    pieces: Pieces, function: Callable[[Pieces, Array], Array], parts: Array, only_highest: bool = False
+) -> tuple[Pieces, Array, Array]:
+    """Return pieces halved until the functions of parts are polynomials on them, the functions, and the parts there.
+
+    only_highest: where they may have their largest values; the other pieces are left out.
+    """
+    todo, size = pieces, np.zeros(())
+    done: list[Pieces] = []
+    found: list[Array] = []
     while True:
-        values = sample(todo)
+        values = function(todo, parts)
         top = np.zeros((len(values), pieces.count))
         np.maximum.at(top, (slice(None), todo.machine), np.abs(values).max(axis=1))
         size = np.maximum(size, top)
-        rough = _rough(todo, values, size)
+        judged = values
+        if only_highest:
+            may = ~(2 * values.max(axis=1) - values.min(axis=1) < (1 - _REPEATED) * size[:, todo.machine])
+            some = may.any(axis=0)
+            todo, values, parts = todo.taken(some), values[..., some], parts[..., some]
+            judged = values * may[:, None, some]
+        rough = _rough(todo, judged, size)
         if not (done or rough.any()):
-            return pieces, values
+            return todo, values, parts
         done.append(todo.taken(~rough))
-        found.append(values[..., ~rough])
+        found.append(np.concatenate((values[..., ~rough], parts[..., ~rough])))
         if not rough.any():
             break
+        nodes, halved = len(pieces.rule.nodes), 2 * np.count_nonzero(rough)
+        halves = (pieces.rule.halving @ parts[..., rough]).reshape(len(parts), 2, nodes, halved // 2)
+        parts = halves.transpose(0, 2, 3, 1).reshape(len(parts), nodes, halved)
         todo = todo.halved(rough)
-    return joined(done, found)
+    whole, both = joined(done, found)
+    return whole, both[: len(values)], both[len(values) :]
 
 
 def _rough(pieces: Pieces, values: Array, size: Array) -> Flags:

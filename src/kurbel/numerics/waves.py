@@ -1,10 +1,10 @@
-"""Sums of waves A_h cos hx …, as complex amplitudes: Re Σ A_h e^{ihx}, h whole numbers."""
+"""Extremes of sums of waves, Re Σ A_h e^{ihx}, h whole numbers."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray, Indices
+from kurbel.arrays import Array, ComplexArray
 
 _PER_WAVE = 10
 """Samples at least to a period of the shortest wave, …"""
@@ -21,57 +21,27 @@ def crests(waves: Sequence[int], amplitudes: ComplexArray) -> tuple[Array, Array
     array([1.29903811])
     """
     count = 2 * (_PER_WAVE // 2) * max(waves)
-    rows, step = max(1, _AT_ONCE // count), 2 * np.pi / count
-    # above the sample next to it a crest lies by no more than the largest bend makes over half a step
-    above = np.abs(amplitudes) @ np.square(np.array(waves, dtype=float)) * step**2 / 8
-    found: list[list[Indices]] = [[], []]
+    found, rows = np.empty((2, len(amplitudes))), max(1, _AT_ONCE // count)
     for start in range(0, len(amplitudes), rows):
         part = slice(start, start + rows)
         spectrum = np.zeros((len(amplitudes[part]), count // 2 + 1), dtype=complex)
         spectrum[:, list(waves)] = amplitudes[part] * (count / 2)
         samples = np.fft.irfft(spectrum, count, axis=1)
-        found[0].append(_near(samples, above[part]) + start * count)
-        found[1].append(_near(-samples, above[part]) + start * count)
-    highest, lowest = (np.divmod(np.concatenate(places), count) for places in found)
-    return _largest(waves, amplitudes, *highest, step), -_largest(waves, -amplitudes, *lowest, step)
+        found[:, part] = [sign * _highest(np.array(waves), sign * amplitudes[part], sign * samples) for sign in (1, -1)]
+    return found[0], found[1]
 
 
-def _near(samples: Array, above: Array) -> Indices:
-    """Return the places in the raveled samples (m, n) that may stand beside the largest crests of their rows.
-
-    Of two crests that are all but equal, the samples do not tell which is the larger one.
-    """
-    count, rows, top = samples.shape[1], np.arange(len(samples)), samples.argmax(axis=1)
-    near = samples >= (samples[rows, top] - above)[:, None]
-    for beside in (-1, 1):  # two crests do not stand so close
-        near[rows, (top + beside) % count] = False
-    return np.flatnonzero(near)
-
-
-def _largest(waves: Sequence[int], amplitudes: ComplexArray, rows: Indices, places: Indices, step: float) -> Array:
-    """Return the largest values (m,): those of the crests near these places in these rows (n,)."""
-    best = np.full(len(amplitudes), -np.inf)
-    np.maximum.at(best, rows, _crest(waves, amplitudes[rows], np.asarray(places * step, dtype=float), step))
-    return best
-
-
-def _crest(waves: Sequence[int], amplitudes: ComplexArray, at: Array, step: float) -> Array:
-    """Return the crests (m,) near these places (m,)."""
-    best = np.full(len(at), -np.inf)
-    for _ in range(_STEPS):
-        value, slope, bend = _at(waves, amplitudes, at)
-        best = np.maximum(best, value)
+def _highest(waves: Array, amplitudes: ComplexArray, samples: Array) -> Array:
+    """Return the largest value (m,) near equally spaced samples (m, n), of which the highest do not tell it apart."""
+    step = 2 * np.pi / samples.shape[1]
+    # a crest is above the sample next to it by no more than the largest curvature makes over half a step
+    above = np.abs(amplitudes) @ waves.astype(float) ** 2 * step**2 / 8
+    high = (samples >= (samples.max(axis=1) - above)[:, None]) & (samples > np.roll(samples, 1, axis=1))
+    row, place = np.nonzero(high & (samples >= np.roll(samples, -1, axis=1)))
+    at, best = place * step, samples.max(axis=1)
+    for _ in range(_STEPS + 1):
+        terms = amplitudes[row] * np.exp(1j * np.multiply.outer(at, waves))
+        slope, bend = -(terms.imag @ waves), -(terms.real @ waves**2)
+        np.maximum.at(best, row, terms.real.sum(axis=1))
         at = at + np.clip(slope / np.where(bend < 0, -bend, np.inf), -step / 2, step / 2)
-    return np.asarray(np.maximum(best, _at(waves, amplitudes, at)[0]))
-
-
-def _at(waves: Sequence[int], amplitudes: ComplexArray, at: Array) -> tuple[Array, Array, Array]:
-    """Return the sums at one place each (m,), with their first two derivatives."""
-    turn, power, reached = np.exp(1j * at), np.ones(len(at), dtype=complex), 0
-    value, slope, bend = np.zeros_like(at), np.zeros_like(at), np.zeros_like(at)
-    for wave, amplitude in zip(waves, amplitudes.T):
-        power = power * (turn if wave == reached + 1 else turn ** (wave - reached))
-        reached = wave
-        term = amplitude * power
-        value, slope, bend = value + term.real, slope - wave * term.imag, bend - wave * wave * term.real
-    return value, slope, bend
+    return np.asarray(best)

@@ -13,11 +13,10 @@ from kurbel.report.frame import Frame, Subject
 from kurbel.report.pin_notes import pin_notes
 from kurbel.report.shown import place_table, shown_column
 from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
-from kurbel.solver.balance.circles import Circles
-from kurbel.solver.balance.free import Free
-from kurbel.solver.balance.machine_balance import BookBalance, MachineBalance
+from kurbel.solver.balance import BookBalance, MachineBalance
 from kurbel.solver.case import Case
-from kurbel.solver.shaft.weights import Weight
+from kurbel.solver.unbalanced import Circles, Free, power
+from kurbel.solver.weights import Weight
 
 _Entry = tuple[Quantity, "list[float | None]"]
 _DIGITS = 4
@@ -75,22 +74,22 @@ def _notes(balance: MachineBalance) -> Iterable[str]:
     yield "φ is the angle of crank 1; F_x and M_x count along the stroke line of cylinder 1, F_y and M_y across it."
     if balance.free.moment is not None and balance.z_0 is not None:
         yield f"Moments are taken about z = {show(balance.z_0, 'length')}."
-    if balance.free.higher and balance.omega is not None:
+    if balance.free.next_order and balance.omega is not None:
         yield _higher(balance.free, balance.omega * balance.omega)
     if balance.counterweights or balance.machine.balance_shafts:
         yield "Counterweights and shafts of the file count in all that is free; the best weights stand in their place."
-    if balance.roll:
+    if balance.rolls:
         yield "M_roll is −M of kurbel flywheel, less what turns the masses themselves about the shaft."
 
 
 def _higher(free: Free, square: float) -> str:
-    """Say what the orders are together that no table tells; square: ω²."""
+    """Say what the orders are together that no table lists; square: ω²."""
     most = show(free.at_most(free.force) * square, "force")
     if free.moment is not None:
         most += f", of the moment {show(free.at_most(free.moment) * square, 'torque')}"
     return (
-        f"{len(free.higher)} more orders follow, n = {free.higher[0]} to {free.higher[-1]}, which the rod brings, "
-        f"hardly longer than the crank: of the force they are at most {most}, together."
+        f"More orders follow, from n = {free.next_order} on, which the rod brings, hardly longer than the crank: "
+        f"of the force they are at most {most}, together."
     )
 
 
@@ -134,14 +133,13 @@ def _circles(balance: MachineBalance, square: float, compare: bool) -> Iterator[
 
 def _pair(vector: Circles, order: int) -> tuple[complex, complex]:
     """Return the circles of an order, with their directions at φ = 0; 0 of one that there is not."""
-    forward, backward = ((one[order - 1] if order <= len(one) else 0.0) for one in (vector.forward, vector.backward))
-    return complex(forward), complex(backward)
+    return complex(vector.of(order)), complex(vector.of(-order))
 
 
 def _shares(vector: Circles, orders: Iterable[int]) -> list[float | None]:
-    squares = abs(vector.forward) ** 2 + abs(vector.backward) ** 2
-    whole = float(squares.sum())
-    return [float(squares[order - 1]) / whole if whole else None for order in orders]
+    whole = power(vector)
+    squares = (sum(abs(circle) ** 2 for circle in _pair(vector, order)) for order in orders)
+    return [one / whole if whole else None for one in squares]
 
 
 def _ellipses(free: Free, square: float) -> Iterator[_Entry]:

@@ -8,8 +8,7 @@ from kurbel.report.frame import Frame, Subject
 from kurbel.report.notes import of_machine
 from kurbel.report.tables import LeftOut, Report
 from kurbel.report.warnings import as_far_as_solved
-from kurbel.solver.bearings.bearing import Bearing
-from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+from kurbel.solver.bearings import Bearing, ShaftBearings
 from kurbel.solver.case import Case
 
 
@@ -33,7 +32,7 @@ def subjects(case: Case) -> Iterable[Subject]:
     for forces in case.cylinders:
         forces.refuse_locking()
     for part in case.bearings.parts:
-        of = part.followed[0].drive.name if part.of_rod else ""
+        of = part.followed[0].cylinder.name if part.of_rod else ""
         yield Subject(part.name, (part,), part.at, left_out=partial(_left_out, part), of=of)
 
 

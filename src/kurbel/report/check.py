@@ -184,7 +184,7 @@ def _crankshaft_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
         return
     from kurbel.report.bearings import bearing_warnings
     from kurbel.report.warnings import as_far_as_solved
-    from kurbel.solver.shaft.line import shaft_obstacle
+    from kurbel.solver.shaft import shaft_obstacle
 
     yield from (
         Entry("bearings", text, "warning", ("crankshaft",))

@@ -17,7 +17,7 @@ from kurbel.report.notes import of_machine
 from kurbel.report.shown import place_table
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
-from kurbel.solver.turning.harmonics import CylinderOrders, MachineOrders, Orders, Spectrum
+from kurbel.solver.harmonics import CylinderOrders, MachineOrders, Orders, Spectrum
 
 _HIGHEST = 1000
 

@@ -15,13 +15,14 @@ from kurbel.errors import Nowhere, UnitError, UsageError
 from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
-from kurbel.numerics.grid import ascending
 from kurbel.report.angles import stepped
 
 if TYPE_CHECKING:
     from kurbel.report.frame import Subject
 
 
+_SAME = 1e-9
+"""Degrees by which angles differ by rounding only."""
 _OF_SPEED = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
 
 
@@ -86,7 +87,9 @@ class Place(NamedTuple):
                 f"{subject.name}: {column.id} is nowhere {show(value, column.kind)}: it goes from {low} to {high}"
             )
         # a table over one turn has what a cycle of two has in either
-        return ascending(np.mod(found.angles, self.end), 1e-9).tolist()  # type: ignore[no-any-return]
+        angles = np.sort(np.mod(found.angles, self.end))
+        apart = np.diff(angles, prepend=-1.0) > _SAME
+        return angles[apart].tolist()  # type: ignore[no-any-return]
 
     def _why(self, subject: "Subject", column: Quantity | None) -> str:
         """Return why a column is left out, as far as the speed is the reason."""

@@ -15,7 +15,7 @@ from kurbel.report.shown import place_table
 from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import shell_verdict
 from kurbel.solver.case import Case
-from kurbel.solver.strength.crankshaft import CrankshaftStrength, Strained
+from kurbel.solver.stress import CrankshaftStrength, Place
 
 _TITLES = {
     "dead_centre": "Dead centre, full piston force without inertia",
@@ -66,11 +66,11 @@ _TURNING_ROD = (
 def _place_tables(strength: CrankshaftStrength, system: str) -> Iterable[PlaceTable]:
     found = (strength.at_dead_centre, strength.at_largest_torque, strength.at_worst)
     for (id, title), strained in zip(_TITLES.items(), found):
-        names = ((one.place.part, one.place.name.replace(" ", "_")) for one in strained)
+        names = ((one.part, one.name.replace(" ", "_")) for one in strained)
         yield place_table(id, title, ("part", "place"), names, _place_columns(strained), system)
 
 
-def _place_columns(strained: tuple[Strained, ...]) -> Iterable[tuple[Quantity, list[float]]]:
+def _place_columns(strained: tuple[Place, ...]) -> Iterable[tuple[Quantity, list[float]]]:
     yield PHI, [one.degrees for one in strained]
     for name, quantity in STRESSES.items():
-        yield quantity, [getattr(one if name in ("combined", "von_mises") else one.stresses, name) for one in strained]
+        yield quantity, [getattr(one, name) for one in strained]

@@ -17,8 +17,7 @@ from kurbel.report.notes import of_machine
 from kurbel.report.shown import place_table
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.solver.case import Case
-from kurbel.solver.torsion.forced import Vibration, stress
-from kurbel.solver.torsion.vibration import RUN_UP, Critical, ShaftVibration
+from kurbel.solver.torsion import RUN_UP, Critical, ShaftVibration, Vibration, stress
 
 _Values = dict[Quantity, Sequence[Any]]
 _Borne = tuple[float | None, float | None]

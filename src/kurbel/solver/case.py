@@ -11,17 +11,17 @@ from kurbel.declared.quantity import called
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.mechanisms import quantities_of
-from kurbel.solver.cylinder.forces import CylinderForces as OldForces
 from kurbel.solver.figures import Figure, Results, Shown
 from kurbel.solver.forces import CylinderForces
 
 if TYPE_CHECKING:
-    from kurbel.solver.balance.machine_balance import MachineBalance
-    from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+    from kurbel.solver.balance import MachineBalance
+    from kurbel.solver.bearings import ShaftBearings
+    from kurbel.solver.effort import TurningEffort
     from kurbel.solver.flywheel import MachineTurning
-    from kurbel.solver.strength.crankshaft import CrankshaftStrength
-    from kurbel.solver.torsion.vibration import ShaftVibration
-    from kurbel.solver.turning.harmonics import MachineOrders
+    from kurbel.solver.harmonics import MachineOrders
+    from kurbel.solver.stress import CrankshaftStrength
+    from kurbel.solver.torsion import ShaftVibration
 
 
 _WHOLE = ("stress", "flywheel", "balance", "torsion")
@@ -67,30 +67,25 @@ class Case(Shown):
         return tuple(CylinderForces(self.machine, cylinder, self.count) for cylinder in self.machine.cylinders)
 
     @cached_property
-    def old_cylinders(self) -> tuple[OldForces, ...]:
-        """The same of the old solver, for the chapters that are not yet moved: scaffolding that goes with the last."""
-        return tuple(OldForces(self.machine, cylinder) for cylinder in self.machine.cylinders)
-
-    @cached_property
     def stress(self) -> CrankshaftStrength:
         """Strength of the crankshaft. Raises UsageError where the machine has none that can be examined."""
-        from kurbel.solver.strength.crankshaft import CrankshaftStrength
+        from kurbel.solver.stress import CrankshaftStrength
 
-        return CrankshaftStrength(self.machine, self.old_cylinders)
+        return CrankshaftStrength(self.machine, self.cylinders)
 
     @cached_property
     def bearings(self) -> ShaftBearings:
         """Loads on pins and main bearings. Raises UsageError where nothing loads them."""
-        from kurbel.solver.bearings.shaft_bearings import ShaftBearings
+        from kurbel.solver.bearings import ShaftBearings
 
-        return ShaftBearings(self.machine, self.old_cylinders)
+        return ShaftBearings(self.machine, self.cylinders)
 
     @cached_property
     def balance(self) -> MachineBalance:
         """Free forces and moments of the whole machine. Raises UsageError where no masses move."""
-        from kurbel.solver.balance.machine_balance import MachineBalance
+        from kurbel.solver.balance import MachineBalance
 
-        return MachineBalance(self.machine, self.old_cylinders)
+        return MachineBalance(self.machine, self.cylinders, self.count)
 
     @cached_property
     def flywheel(self) -> MachineTurning:
@@ -99,12 +94,23 @@ class Case(Shown):
 
         return MachineTurning(self.machine, self.cylinders, self.count)
 
+    @cached_property
+    def effort(self) -> TurningEffort:
+        """Turning effort and load of the whole machine. Raises UsageError where nothing turns it.
+
+        Raises NoSolutionError where the losses leave too little of what drives the machine.
+        """
+        from kurbel.solver.effort import TurningEffort
+
+        found = TurningEffort(self.machine, self.cylinders, self.count)
+        _ = found.excess  # refuses a machine that cannot run
+        return found
+
     def harmonics(self, orders: Array | None = None) -> MachineOrders:
         """Return the orders (n,) of the turning effort, or the usual ones. Raises UsageError where nothing turns it."""
-        from kurbel.solver.turning.harmonics import MachineOrders
-        from kurbel.solver.turning.machine_effort import MachineEffort
+        from kurbel.solver.harmonics import MachineOrders
 
-        return MachineOrders(MachineEffort(self.machine, self.old_cylinders), orders)
+        return MachineOrders(self.effort, orders)
 
     @cached_property
     def torsion(self) -> ShaftVibration:
@@ -113,6 +119,6 @@ class Case(Shown):
 
     def torsion_of(self, orders: Array | None) -> ShaftVibration:
         """Return the torsional vibration by these orders (k,)."""
-        from kurbel.solver.torsion.vibration import ShaftVibration
+        from kurbel.solver.torsion import ShaftVibration
 
-        return ShaftVibration(self.machine, self.old_cylinders, orders)
+        return ShaftVibration(self.machine, self.cylinders, orders)

@@ -18,9 +18,10 @@ from kurbel.errors import NoSolutionError
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import Pieces, refined
+from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.motion import Motion
+from kurbel.solver.pins import on_crosshead_pin, on_pin
 from kurbel.solver.state import State
 
 _SURE = 4.0
@@ -70,6 +71,10 @@ class SampledCylinder:
         if drive.pin_friction is None:
             return pieces
         self._refuse_locking_on(pieces)
+        # where the load of a pin passes through zero, its magnitude has a kink
+        unrubbed = drive.on(pieces).unrubbed
+        passed = [pieces.zeros(load) for load in (on_pin(unrubbed).T, on_crosshead_pin(unrubbed).D)]
+        pieces = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*passed))))
         pieces, (sense, *_) = refined(pieces, lambda some: self._values_on(some, ("guide_sense", *_RUBBING)))
         return pieces.split(pieces.zeros(sense)) if drive.rubs else pieces
 
@@ -93,6 +98,14 @@ class SampledCylinder:
                 at = pieces.zeros(below).degrees
                 first = float(at[0]) if len(at) else float(pieces.degrees.T[(below <= 0).T][0])
                 raise NoSolutionError(self.drive.locks(first))
+
+    @property
+    def tail(self) -> float:
+        """What is left of the series on a piece that could be halved, over the largest value of its quantity."""
+        values = self._smooth(self.pieces)
+        size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
+        tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
+        return float((tails.max(axis=1) / size).max())
 
     @cached_property
     def samples(self) -> State:

@@ -12,11 +12,11 @@ from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
-from kurbel.machine.friction import Rings
 from kurbel.machine.resistance import RamForce
 from kurbel.machine.variants import taken
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
+from kurbel.solver.friction import ring_force
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.pins import PinFriction
 from kurbel.solver.rod import ExactRod
@@ -259,8 +259,3 @@ def any_of(conditions: Any) -> Any:
     for one in conditions:
         found = found | one
     return found
-
-
-def ring_force(rings: Rings, bore: Any) -> Any:
-    """Return the friction force n π d h p_r f of n piston rings in N (D, Kolbenreibung); bore d in m."""
-    return rings.count * math.pi * bore * rings.height * rings.pressure * rings.coefficient

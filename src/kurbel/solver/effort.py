@@ -60,8 +60,9 @@ def inertia_torque(state: State) -> Any:
 
     Of an exact rod it has the couple times −ψ′ besides.
     """
-    rod = state.drive.rod
-    torque = state.slope * state.curvature * (-state.drive.mass * (state.drive.omega or 0.0) ** 2)
+    rod, omega = state.drive.rod, state.drive.omega
+    assert omega is not None
+    torque = state.slope * state.curvature * (-state.drive.mass * omega * omega)
     if rod is None:
         return torque
     return torque - rod.couple(state.rod_angle, state.angle) * rod.swing_slope(state.rod_angle, state.angle)
@@ -156,11 +157,14 @@ class TurningEffort:
         for factor, cylinders, torque in terms:
             own = cylinders[0].pieces
             values = np.broadcast_to(torque(cylinders[0].samples), own.degrees.shape) * own.of(factor)
+<<<<<<< HEAD
             if own is pieces and len(terms) == 1:
                 return values
+=======
+>>>>>>> numbers
             size = size + len(cylinders) * own.largest(values)
             for forces in cylinders:
-                whole += pieces.carried(values, own, position(forces))
+                whole += values if own is pieces else pieces.carried(values, own, position(forces))
         return np.where(pieces.of(pieces.largest(whole) > _CANCELLED * size), whole, 0.0)
 
     def sum_at(self, terms: Sequence[Term], degrees: Array, within: Array) -> Array:
@@ -274,11 +278,15 @@ class TurningEffort:
 
     # the masses
 
+    def moves(self, forces: CylinderForces) -> bool:
+        """Return whether masses of a cylinder move at a known speed."""
+        drive = forces.drive
+        return bool(drive.has_inertia and (some(drive.mass != 0) or some(drive.pin_inertia != 0)))
+
     @cached_property
     def _moving(self) -> list[list[CylinderForces]]:
         """The cylinders whose masses move at a known speed, those together that work alike."""
-        moving = [some(one[0].drive.mass != 0) or some(one[0].drive.pin_inertia != 0) for one in self.groups]
-        return [one for one, moves in zip(self.groups, moving) if moves and one[0].drive.has_inertia]
+        return [one for one in self.groups if self.moves(one[0])]
 
     @property
     def inertia_terms(self) -> list[Term]:

@@ -1,17 +1,26 @@
 """Friction of a crosshead and of piston rings, after Redtenbacher 1862 (D) and with signs for every quadrant."""
 
 import math
-from typing import TYPE_CHECKING
+from typing import Any
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.numerics.gauss import HALF_RULE
+from kurbel.machine.friction import Rings
 
-if TYPE_CHECKING:
-    from kurbel.machine.friction import Rings
+_HALF_RULE = (
+    (0.09501250983763744, 0.1894506104550685),
+    (0.2816035507792589, 0.1826034150449236),
+    (0.45801677765722737, 0.16915651939500254),
+    (0.6178762444026438, 0.14959598881657674),
+    (0.755404408355003, 0.12462897125553388),
+    (0.8656312023878318, 0.09515851168249279),
+    (0.9445750230732326, 0.062253523938647894),
+    (0.9894009349916499, 0.027152459411754096),
+)
+"""Nodes and weights of 16 Gauss points on (−1, 1), the positive half; the rule is symmetric."""
 
 
-def ring_force(rings: "Rings", bore: float) -> float:
+def ring_force(rings: Rings, bore: Any) -> Any:
     """Return the friction force n π d h p_r f of n piston rings in N (D, Kolbenreibung); bore d in m."""
     return rings.count * math.pi * bore * rings.height * rings.pressure * rings.coefficient
 
@@ -45,7 +54,7 @@ def mean_friction_over_rod_angle(gamma: float, friction: float) -> float:
         half = gamma / 2
         return math.fsum(
             weight / 2 * _friction_share(half * (1 + side * node), friction)
-            for node, weight in HALF_RULE
+            for node, weight in _HALF_RULE
             for side in (-1, 1)
         )
     change = friction * math.sin(gamma) - 2 * math.sin(gamma / 2) ** 2

@@ -16,8 +16,7 @@ from kurbel import crank_formulas as formulas
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.friction import Friction
 from kurbel.numerics.arithmetic import some
-from kurbel.solver.shaft.line import ShaftLine, shaft_obstacle
-from kurbel.solver.shaft.statics import Vector
+from kurbel.solver.shaft import ShaftLine, Vector, shaft_obstacle
 
 if TYPE_CHECKING:
     from kurbel.machine import Cylinder, Machine
@@ -69,9 +68,9 @@ class PinFriction:
         shaft: Crankshaft | None = machine.crankshaft
         self._line = ShaftLine(machine, shaft) if shaft and not shaft_obstacle(machine) else None
         pin, journal = (shaft.pin_diameter, shaft.journal_diameter) if shaft else (None, None)
-        self.crank_pin = _arm(friction.crank_pin, friction.crank_pin_diameter or pin)
+        self.crank_pin = _arm(friction.crank_pin, friction.crank_pin_diameter, pin)
         self.crosshead_pin = _arm(friction.crosshead_pin, friction.crosshead_pin_diameter)
-        self.journals = _arm(friction.journals, friction.journal_diameter or journal)
+        self.journals = _arm(friction.journals, friction.journal_diameter, journal)
 
     def moments(self, state: State) -> Rubbing:
         """Return the moments under the forces of a state without this friction."""
@@ -123,6 +122,7 @@ def _size(force: Vector) -> Any:
     return np.hypot(force.D, force.T)
 
 
-def _arm(coefficient: Any, diameter: Any) -> Any:
-    """Return f times the radius in m; 0 where either is not given."""
+def _arm(coefficient: Any, diameter: Any, otherwise: Any = None) -> Any:
+    """Return f times the radius in m, of one diameter or the other; 0 where either f or both are not given."""
+    diameter = otherwise if diameter is None else diameter
     return 0.0 if coefficient is None or diameter is None else coefficient * diameter / 2

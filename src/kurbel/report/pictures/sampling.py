@@ -6,8 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from kurbel.arrays import Array
-from kurbel.numerics.grid import cut_equally
+from kurbel.arrays import Array, Indices
 from kurbel.report.pictures.picture import Piece
 
 _WIDEST = 7.5  # degrees between two points at first: narrow enough that no wave hides between them
@@ -52,6 +51,12 @@ def sampled(breaks: Array, values: Values, fineness: float) -> Samples:
         )
         within = np.concatenate((within[missed],) * 2)
     return _in_order(*(np.concatenate(parts, axis=-1) for parts in zip(*known)))
+
+
+def cut_equally(breaks: Array, parts: Indices) -> Array:
+    """Return the breaks (n + 1,) of pieces of which each is cut into so many equal parts (n,)."""
+    ends = np.append(0, parts.cumsum())
+    return np.interp(np.arange(ends[-1] + 1), ends, breaks)
 
 
 def _in_order(degrees: Array, within: Array, values: Array) -> Samples:

@@ -92,9 +92,7 @@ def free_orders(source: Source) -> Iterator[Panel]:
     omega, free = source.results.omega, source.results.free
     for name, kind, vector in (("F", "force", free.force), ("M", "torque", free.moment)):
         if vector is not None and free.orders:
-            sizes = [
-                [abs(side[n - 1]) * omega * omega for n in free.orders] for side in (vector.forward, vector.backward)
-            ]
+            sizes = [[abs(vector.of(sense * n)) * omega * omega for n in free.orders] for sense in (1, -1)]
             yield _bars(source, free.orders, sizes, name, kind, _SENSES)
 
 

@@ -1,11 +1,13 @@
 """What turns with the crank or on balance shafts: the masses of the cylinders, and the weights against them."""
 
 from collections.abc import Iterator, Sequence
+from functools import reduce
 from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
+from kurbel.numerics.arithmetic import where
 
 if TYPE_CHECKING:
     from kurbel.machine.balance import Counterweight, SharedCounterweights
@@ -55,7 +57,11 @@ def middle_of(machine: Machine) -> float | None:
     """Return from where moments are taken in m: the place given, or the middle of the outer cylinders."""
     places = [one.axial_position for one in machine.cylinders if one.axial_position is not None]
     given = machine.moment_reference
-    return given if given is not None or not places else (min(places) + max(places)) / 2
+    if given is not None or not places:
+        return given
+    lowest = reduce(lambda one, other: where(other < one, other, one), places)
+    highest = reduce(lambda one, other: where(other > one, other, one), places)
+    return (lowest + highest) / 2  # type: ignore[no-any-return]
 
 
 def wheels_of(machine: Machine) -> tuple[float, ...]:

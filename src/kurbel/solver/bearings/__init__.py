@@ -1,1 +1,0 @@
-"""What pins and main bearings carry over the cycle, and in which directions."""

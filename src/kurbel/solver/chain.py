@@ -1,0 +1,320 @@
+"""A shaft line as a chain of masses on segments of shaft: natural vibrations, response to torques, periodic motion.
+
+          k₀, d₀        k₁, d₁                    T_i = k_i (θ_i − θ_{i+1}) + d_i (θ̇_i − θ̇_{i+1})
+    J₀ ═══════════ J₁ ═══════════ J₂              J_i θ̈_i = M_i − c_i θ̇_i + T_{i−1} − T_i
+    │      T₀      │      T₁      │
+    c₀             c₁             c₂              θ: vibration about uniform rotation, all referred to one shaft
+
+A segment carries the torque T from the mass before it to the mass behind it. Where an end is fixed, a segment leads
+from there to the first mass, or from the last mass there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array, ComplexArray
+from kurbel.machine.shaft_line import ShaftLine
+from kurbel.numerics.collocation import Unsettled, periodic
+from kurbel.numerics.pieces import Angles, Pieces
+
+_AT_ONCE = 2048
+"""Systems of equations that are solved together: what the nearest memory holds."""
+_NOTHING = 1e-40
+"""In place of a quotient of Holzer's table that is exactly zero: there a mass stands still."""
+_STILL = 1e-6
+"""A first mass that moves less than this, over the largest motion, is not what the others are referred to."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """n masses and the segments between them, one more where an end is fixed: `ground` is `before`, `after` or empty.
+
+    inertias in kg m² (n,), stiffnesses in N m/rad; segment_damping, mass_damping in N m s/rad, of a twist and against
+    uniform rotation; loss: loss factors η of the segments, with k (1 + iη).
+    """
+
+    inertias: Array
+    stiffnesses: Array
+    segment_damping: Array
+    mass_damping: Array
+    loss: Array
+    ground: str = ""
+
+    @classmethod
+    def of(cls, line: ShaftLine, inertias: Sequence[float]) -> Chain:
+        """Return the chain of a shaft line; inertias: those of its masses in kg m², with all that turns there."""
+        each = np.array([(piece.stiffness, piece.damping, piece.loss_factor) for piece in line.pieces]).T
+        damping = np.array([mass.damping for mass in line.masses])
+        return cls(np.array(inertias), each[0], each[1], damping, each[2], line.ground)
+
+    @cached_property
+    def twists(self) -> Array:
+        """The matrix (segments, n) that turns angles of the masses into twists, that before less that behind."""
+        first, last = self.ground == "before", self.ground == "after"
+        held = np.eye(len(self.inertias) + first + last)
+        return np.asarray((held[:-1] - held[1:])[:, int(first) : len(held) - last])
+
+    @property
+    def damped(self) -> bool:
+        """Whether anything damps it."""
+        return bool(self.segment_damping.any() or self.mass_damping.any() or self.loss.any())
+
+    def reversed(self) -> Chain:
+        """Return the same chain read from its other end."""
+        names = ("inertias", "stiffnesses", "segment_damping", "mass_damping", "loss")
+        turned: dict[str, Any] = {name: vars(self)[name][::-1] for name in names}
+        return replace(self, **turned, ground={"before": "after", "after": "before"}.get(self.ground, ""))
+
+    def springs(self, frequencies: Array) -> ComplexArray:
+        """Return k (1 + iη) + iΩ d of the segments at angular frequencies Ω (…) in rad/s, (segments, …)."""
+        still = (self.stiffnesses * (1 + 1j * self.loss)).reshape(-1, *(1,) * frequencies.ndim)
+        return np.asarray(still + 1j * np.multiply.outer(self.segment_damping, frequencies))
+
+
+# response to torques of one frequency
+
+
+class Response(NamedTuple):
+    """The complex amplitudes of the masses in rad, (n, …), and about how far rounding moves them.
+
+    A θ = M is solved for a chain and torques whose last digits are unsure: A δθ = δM − δA θ, all of it taken in phase
+    with the angles, as it is where they meet a natural vibration.
+    """
+
+    angles: ComplexArray
+    moved: ComplexArray
+
+
+def response(chain: Chain, frequencies: Array, torques: ComplexArray, load_damping: Array | float = 0.0) -> Response:
+    """Return the answer to torques (n, …) in N m at angular frequencies Ω (…) in rad/s.
+
+    (K (1 + iη) + iΩ C − Ω² J) θ = M; load_damping: of the masses in addition to their own, (n, …) in N m s/rad. A
+    resonance that nothing damps has no answer: it is not finite.
+    """
+    flat, damping = frequencies.ravel(), np.broadcast_to(load_damping, torques.shape).reshape(len(torques), -1)
+    sides = torques.reshape(len(torques), -1)
+    parts = [slice(start, start + _AT_ONCE) for start in range(0, max(1, len(flat)), _AT_ONCE)]
+    found = [_response(chain, flat[part], sides[:, part], damping[:, part]) for part in parts]
+    return Response(*(np.concatenate(each, axis=1).reshape(torques.shape) for each in zip(*found)))
+
+
+def _response(chain: Chain, frequencies: Array, torques: ComplexArray, load_damping: Array) -> Response:
+    """Return it at frequencies (m,)."""
+    twists, springs = chain.twists, chain.springs(frequencies)
+    own = 1j * (chain.mass_damping[:, None] + load_damping) * frequencies - np.outer(chain.inertias, frequencies**2)
+    matrix, places = (twists.T * springs.T[:, None]) @ twists.astype(complex), np.arange(len(own))
+    matrix[:, places, places] += own.T + np.finfo(float).tiny * 1j  # a pivot of exactly zero is none: it ends as inf
+    angles = np.linalg.solve(matrix, torques.T[..., None])[..., 0].T
+    # of soft masses on stiff springs the matrix has lost digits, what is left over by the masses and the twists has not
+    left = torques - own * angles - twists.T @ (springs * (twists @ angles))
+    phases = angles / np.maximum(np.abs(angles), np.finfo(float).tiny)
+    sizes = np.abs(own) + 2 * np.abs(twists.T) @ np.abs(springs)
+    unsure = np.finfo(float).eps * (sizes * angles + np.abs(torques) * phases)
+    more, moved = np.linalg.solve(matrix, np.stack((left.T, unsure.T), axis=2)).T
+    return Response(angles + more, moved)
+
+
+def passing(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
+    """Return the torques (segments, …) in N m in springs and dampers of the segments; angles (n, …): see `response`."""
+    return np.asarray(chain.springs(frequencies) * np.tensordot(chain.twists, angles, 1))
+
+
+# natural vibrations
+
+
+class Holzer(NamedTuple):
+    """Holzer's table of a mode: amplitudes Θ (n,), and torques (segments,) in N m per radian of the first mass.
+
+    residual: what is left of the torque behind the last mass, over the largest one.
+    """
+
+    angles: Array
+    torques: Array
+    residual: float
+
+
+class Modes:
+    """The natural vibrations of a chain, the lowest first; of a free one the first is the rotation of the whole.
+
+    Along the chain at ω, θ_{i+1}/θ_i = s = 1 − r/k and r_{i+1} = r_i/s_i + ω² J_{i+1}, where r θ is the torque behind a
+    mass: Holzer's table as quotients. No step loses digits by cancellation but through the figures of its own mass and
+    segment, so that the sign of s, of which the negative ones count the modes below ω (Sturm), is that of a chain whose
+    J and k differ by rounding. A symmetric eigenproblem would lose the low modes of a chain of very unequal masses.
+    """
+
+    def __init__(self, chain: Chain) -> None:
+        self.chain = chain
+        self._line = chain.reversed() if chain.ground == "before" else chain  # read toward the fixed end
+
+    @cached_property
+    def omegas(self) -> Array:
+        """Natural angular frequencies in rad/s (n,), of a free chain the first exactly 0.
+
+        Those of the elastic modes by bisection of the number of modes below, to the last digit.
+        """
+        wanted, springs = np.arange(len(self.chain.stiffnesses)), np.abs(self.chain.twists.T) @ self.chain.stiffnesses
+        high = np.full(len(wanted), 1.01 * np.sqrt(2 * (springs / self.chain.inertias).max()))  # Gershgorin, J⁻¹ K
+        low = high * 1e-3
+        while self._below(low[:1])[0]:
+            low = low * 1e-3
+        while True:
+            # exponents are halved first, then digits
+            middle = np.where(high > 2 * low, np.sqrt(low) * np.sqrt(high), low + (high - low) / 2)
+            inside = (low < middle) & (middle < high)
+            if not inside.any():
+                return high if self.chain.ground else np.append(0.0, high)
+            more = self._below(middle) > wanted
+            high, low = np.where(inside & more, middle, high), np.where(inside & ~more, middle, low)
+
+    def _below(self, omegas: Array) -> Array:
+        """Return how many elastic modes are below each ω (m,)."""
+        stiffnesses, behind = self._line.stiffnesses, _behind(self._line, omegas)
+        negative = (behind[: len(stiffnesses)] > stiffnesses[:, None]).sum(axis=0)
+        return np.asarray(negative if self.chain.ground else negative + (behind[-1] > 0) - 1)
+
+    def holzer(self, mode: int) -> Holzer:
+        """Return the table of a mode, counted from 0.
+
+        From the mass at which the tables from both ends meet best it is computed outward both ways, where no error
+        grows.
+        """
+        omega = self.omegas[mode : mode + 1]
+        inertias, stiffnesses = self._line.inertias, self._line.stiffnesses
+        behind, before = _behind(self._line, omega)[:, 0], _behind(self._line.reversed(), omega)[::-1, 0]
+        own = omega[0] ** 2 * inertias
+        gap = behind + before - own
+        meet, count = int(np.argmin(np.abs(gap) / inertias)), len(inertias)
+        angles = np.ones(count)
+        for i in range(meet - 1, -1, -1):
+            angles[i] = angles[i + 1] / _not_zero(1 - behind[i] / stiffnesses[i])
+        for i in range(meet + 1, count):
+            angles[i] = angles[i - 1] / _not_zero(1 - before[i] / stiffnesses[i - 1])
+        torques = np.concatenate((behind[:meet] * angles[:meet], -(before * angles)[meet + 1 :]))
+        if self.chain.ground:
+            torques = np.append(torques, stiffnesses[-1] * angles[-1])
+        if self.chain.ground == "before":
+            angles, torques = angles[::-1], -torques[::-1]
+        left = abs(float(gap[meet])) / max(float(np.abs(torques).max(initial=0.0)), float(own[meet]), 1e-300)
+        unit = angles[0] if abs(angles[0]) > _STILL * np.abs(angles).max() else angles[np.argmax(np.abs(angles))]
+        return Holzer(angles / unit, torques / unit, left)
+
+    def nodes(self, mode: int) -> tuple[tuple[int, float], ...]:
+        """Return where a mode has no motion: the mass before, and the share of the segment up to there."""
+        neighbours = enumerate(pairwise(self.holzer(mode).angles.tolist()))
+        return tuple((mass, a / (a - b)) for mass, (a, b) in neighbours if a * b < 0 or a == 0 != b)
+
+
+def _behind(chain: Chain, omegas: Array) -> Array:
+    """Return r (n, m): the torque behind a mass over its angle, ω² J of it included, along the chain at ω (m,)."""
+    first, found = int(chain.ground == "before"), np.empty((len(chain.inertias), len(omegas)))
+    carried = np.full(len(omegas), -chain.stiffnesses[0] if first else 0.0)
+    for i, inertia in enumerate(chain.inertias):
+        found[i] = carried + omegas * omegas * inertia
+        if i + 1 < len(found):
+            carried = found[i] / _not_zero(1 - found[i] / chain.stiffnesses[first + i])
+    return found
+
+
+def _not_zero(quotient: Array) -> Array:
+    return np.where(quotient == 0, _NOTHING, quotient)
+
+
+# periodic motion over the angle, with all its orders
+
+_SWING = 200.0
+"""Degrees of the fastest natural vibration that a piece may hold at first, …"""
+_MOST_PARTS = 8000
+"""… though one is cut into no more parts than these."""
+_MOST_WORK = 3.75e4
+"""Pieces, or _FEWEST, times the cube of the unknowns: what a solution of about a second takes."""
+_FEWEST = 40
+"""Pieces that a cycle is refined to at least."""
+
+
+class Motion(NamedTuple):
+    """The torques in the segments less their means in N m, (segments, nodes, pieces), on pieces of the cycle."""
+
+    pieces: Pieces
+    torques: Array
+
+
+def motion(chain: Chain, omega: float, pieces: Pieces, driving: Array, rise: Rise | None = None) -> Motion:
+    """Return the periodic vibration of a chain without loss factors about uniform rotation at ω_n = omega in rad/s.
+
+    driving: torques on the masses less their means in N m, (n, nodes, pieces), of one machine. Raises Unsettled where
+    no motion is found, or none that is worth its time.
+    """
+    equation = ChainEquation(chain, omega, pieces, driving, rise)
+    parts = np.ceil(2 * pieces.half * equation.order / _SWING).clip(1, _MOST_PARTS).astype(int)
+    if max(parts.sum(), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
+        raise Unsettled
+    row = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[row]
+    found = periodic(
+        equation, pieces.split(Angles(pieces.machine[row], pieces.low[row] + 2 * share * pieces.half[row]))
+    )
+    found.refuse()
+    return Motion(found.pieces, np.tensordot(equation.passing, found.samples, 1))
+
+
+class Rise(NamedTuple):
+    """How the load on one mass rises with the speed: r = (ω/ω_n)² − 1 → the rise in N m and its slope by r."""
+
+    mass: int
+    law: Callable[[Array, Pieces], tuple[Array, Array]]
+
+
+class ChainEquation:
+    """y′ = A y + driving − rise, an equation of `kurbel.numerics.collocation`, of one machine.
+
+    The unknowns are, in N m and of one size: for each segment the torque of its spring less its mean, over the largest
+    natural order, and for each mass J ω_n (ω − ω_n). matrix: A; passing: turns y into torques in the segments.
+    """
+
+    def __init__(self, chain: Chain, omega: float, pieces: Pieces, driving: Array, rise: Rise | None) -> None:
+        self._pieces, self._driving, self._rise = pieces, driving, rise
+        self.order, speeds = float(Modes(chain).omegas[-1]) / omega, 1 / (chain.inertias * omega)
+        segments, twists, self.noise = len(chain.stiffnesses), chain.twists, np.zeros(1)
+        self.passing = np.hstack((np.eye(segments) * self.order, chain.segment_damping[:, None] * twists * speeds))
+        springs = (chain.stiffnesses / (omega * self.order))[:, None] * twists * speeds
+        masses = -twists.T @ self.passing
+        masses[:, segments:] -= np.diag(chain.mass_damping * speeds)
+        self.matrix = np.vstack((np.hstack((np.zeros((segments, segments)), springs)), masses))
+        self.unknowns = len(self.matrix)
+        self._risen = segments + (rise.mass if rise else 0)
+        self._height = float(chain.inertias[rise.mass if rise else 0]) * omega * omega
+
+    def known(self, pieces: Pieces) -> Array:
+        """Return the torques on the masses."""
+        return pieces.carried(self._driving, self._pieces)
+
+    def rate(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> tuple[Array, Array]:
+        """Return y′ and its derivative by y; eased: J ω_n² in N m that the mass under the load has in addition."""
+        rate = np.tensordot(self.matrix, y, 1)
+        rate[-len(known) :] += known
+        slope = np.broadcast_to(self.matrix[..., None, None], (*self.matrix.shape, *y.shape[1:]))
+        if self._rise:
+            # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
+            height, slope = self._height + eased[0], slope.copy()
+            u = y[self._risen] / height
+            more, by_square = self._rise.law(u * (2 + u), pieces)
+            rate[self._risen] -= more
+            slope[self._risen, self._risen] -= by_square * 2 * (1 + u) / height
+        return rate, slope
+
+    def floor(self, known: Array, pieces: Pieces, eased: Array) -> Array:
+        """Return the y at which the mass under the load stands still."""
+        floor = np.full((self.unknowns, *known.shape[1:]), -np.inf)
+        floor[self._risen] = -(self._height + eased[0]) if self._rise else -np.inf
+        return floor
+
+    def also(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> Array:
+        """Return nothing: the torques are sums of the unknowns."""
+        return y[:0]

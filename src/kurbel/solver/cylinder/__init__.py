@@ -1,1 +1,0 @@
-"""One cylinder with its mechanism: motion, forces, work and friction."""

@@ -1,0 +1,349 @@
+"""The throws of a crankshaft on their bearings, cut free: bearing forces, and the forces and moments in its sections.
+
+                      F = (D, T)
+                          │
+                    ┌─────┴─────┐          r   crank radius
+             web A  │           │  web B   e   from the middle of the pin to the middle of a web
+                    │           │
+    ──A─────────────┘           └─────────────B──────── G    flywheel, f outside of B
+      |←────── a ──────→|←─────── b ─────────→|←── f ──→|
+
+Everything counts in the frame that turns with the throw: D from the pin toward the shaft, T in the sense of rotation,
+u along the shaft from the middle of the pin. Forces on bearings count as loads do: between the bearings a load D on the
+pin gives A_D and B_D of its own sign. An overhung crank has nothing before its pin: bearing A is at u = +a, between
+its only web and bearing B.
+
+    between bearings    1──┐ ┌──2──┐ ┌──3            a, b from every pin to its bearings; the flywheel by the last one
+                           └─┘     └─┘
+    overhung            ┌──1────────2──┐             at most two throws, at the ends of a shaft with two bearings
+                        ┘              └
+
+Several throws are statically determinate one by one: the shaft counts as hinged in every bearing between two throws,
+which carries what both of them leave on it. A real shaft is continuous over its bearings; what each of them carries
+then depends on how stiff shaft and frame are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array
+from kurbel.crank_angle import CrankAngle, unit_vector
+from kurbel.declared.units import GRAVITY
+from kurbel.errors import UsageError
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.crankshaft import Crankshaft
+from kurbel.numerics.arithmetic import some, where
+from kurbel.solver.weights import OwnThrow, counterweights_of
+
+_ALIKE = 1e-9
+"""Degrees, and metres, by which throws differ by rounding only."""
+
+
+class Vector(NamedTuple):
+    """A force in N along D and along T, or the moments in N m of forces along them."""
+
+    D: Any
+    T: Any
+
+
+# one throw
+
+
+def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Vector:
+    """Return a weight on the shaft in the frame of the throw: D = G sin(φ + i), T = −G cos(φ + i).
+
+    weight: G in N; angle: crank angles φ (n,); inclination: i of the stroke line in degrees, 0 horizontal, 90 cylinder
+    above the shaft. The shaft turns so that an engine which drives presses the crosshead down: with a horizontal stroke
+    line the pin rises on the outstroke, and in the inner dead centre the weight is square to the throw (G).
+
+    >>> weight_in_throw(100.0, CrankAngle.of(0.0), 0.0)
+    Vector(D=0.0, T=-100.0)
+    >>> weight_in_throw(100.0, CrankAngle.of(0.0), 90.0).D
+    100.0
+    """
+    incline = CrankAngle.of(inclination)
+    return Vector(
+        weight * (angle.sin * incline.cos + angle.cos * incline.sin),
+        weight * (angle.sin * incline.sin - angle.cos * incline.cos),
+    )
+
+
+def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> Vector:
+    """Return the weight of the flywheel in the frame of a cylinder's throw; nothing where its direction is not known.
+
+    angle: crank angles φ (n,) of that cylinder; the inclination given is that of the stroke line of cylinder 1.
+    """
+    shaft, first = machine.crankshaft, machine.cylinders[0]
+    lean = machine.lean_of(first)
+    if shaft is None or lean is None or not some(shaft.flywheel_mass != 0):
+        return Vector(0.0, 0.0)
+    inclination = lean + cylinder.bank_angle - first.bank_angle
+    return weight_in_throw(shaft.flywheel_mass * GRAVITY, angle, inclination)
+
+
+class WebLoads(NamedTuple):
+    """What a web carries: force along it in N; in-plane bending, out-of-plane bending and twist in N m."""
+
+    force: Any
+    in_plane: Any
+    out_of_plane: Any
+    twist: Any
+
+
+class FreeBody:
+    """One throw under the force on its pin and the weight of the flywheel.
+
+    shaft: lengths in m; crank: r in m; pin: whole force on the pin in N; weight: of the flywheel in N, in one frame.
+    The torque T r leaves the shaft at the flywheel; nothing is taken off at A.
+    """
+
+    def __init__(self, shaft: Crankshaft, crank: Any, pin: Vector, weight: Vector) -> None:
+        self.shaft, self.crank, self.pin, self.weight = shaft, crank, pin, weight
+
+    @cached_property
+    def A(self) -> Vector:
+        """Force on bearing A in N: (F b − G f)/(b − u_A), u_A = −a, overhung a; G: A_p = P b/(a + b)."""
+        shaft = self.shaft
+        return Vector(
+            *((F * shaft.b - G * shaft.flywheel_position) / shaft.span for F, G in zip(self.pin, self.weight))
+        )
+
+    @cached_property
+    def B(self) -> Vector:
+        """Force on bearing B in N: (G (b − u_A + f) − F u_A)/(b − u_A)."""
+        shaft = self.shaft
+        to_flywheel = shaft.span + shaft.flywheel_position
+        return Vector(*((G * to_flywheel - F * shaft.place_A) / shaft.span for F, G in zip(self.pin, self.weight)))
+
+    @cached_property
+    def before_pin(self) -> Vector:
+        """What is carried through the pin from the shaft before it in N: the force of bearing A, nothing overhung."""
+        return Vector(self.A.D * 0.0, self.A.T * 0.0) if self.shaft.overhung else self.A
+
+    @cached_property
+    def torque(self) -> Any:
+        """Torque T r in N m that web B and the shaft beyond it carry."""
+        return self.pin.T * self.crank
+
+    def moments_at(self, u: Any) -> Vector:
+        """Return the moments in N m about the section at u beyond the pin, of what acts before it.
+
+        A (u − u_A) beyond bearing A, less F u beyond the pin; up to B, or to the flywheel where that is before B.
+        G: P e − A_p (a + e), with the other sign.
+        """
+        from_A, from_pin = (where(arm > 0, arm, 0.0) for arm in (u - self.shaft.place_A, u))
+        return Vector(*(A * from_A - F * from_pin for A, F in zip(self.A, self.pin)))
+
+    @cached_property
+    def web_before_pin(self) -> WebLoads:
+        """What web A carries, where the pin has one before it."""
+        moments, carried = self.moments_at(-self.shaft.web_distance), self.before_pin
+        return WebLoads(carried.D, moments.D, abs(carried.T) * self.crank, moments.T)
+
+    @cached_property
+    def web_beyond_pin(self) -> WebLoads:
+        """What the web between pin and shaft carries, bent out of plane as it is at the worse of its ends."""
+        moments = self.moments_at(self.shaft.web_distance)
+        at_pin, at_shaft = abs(self.before_pin.T) * self.crank, abs(self.torque)
+        return WebLoads(self.force_beyond_pin, moments.D, where(at_pin >= at_shaft, at_pin, at_shaft), moments.T)
+
+    @property
+    def overhung_moments(self) -> Vector:
+        """The moments G f in N m in the middle of bearing B of a flywheel outside of it."""
+        outside = where(self.shaft.flywheel_position > 0, self.shaft.flywheel_position, 0.0)
+        return Vector(self.weight.D * outside, self.weight.T * outside)
+
+    @property
+    def force_beyond_pin(self) -> Any:
+        """Force in N along the web toward B, compression positive: D − A_D, which is B_D less the flywheel beyond.
+
+        D alone in the web of an overhung crank.
+        """
+        return self.pin.D - self.before_pin.D
+
+
+def equilibrium_residual(body: FreeBody, torque: Array) -> Array:
+    """Return what is left of the sums of forces and of moments over the sizes of their terms, the larger of both.
+
+    torque: M on the shaft in N m, shaped as the forces (…), found from the work of the piston force and not from T. The
+    sums are taken in space, at the points where the forces act, about the middle of the pin: nothing of the formulas
+    above is used.
+    """
+    shaft, r = body.shaft, body.crank
+    acting: tuple[tuple[Vector, float, Any, Any], ...] = (
+        (body.pin, 1.0, 0.0, 0.0),
+        (body.A, -1.0, -r, shaft.place_A),
+        (body.B, -1.0, -r, shaft.b),
+        (body.weight, 1.0, -r, shaft.b + shaft.flywheel_position),
+    )
+    # along T, toward the pin and along z; the shaft turns about −z: from the pin toward T
+    forces = np.stack([_in_space(sign * force.T, -sign * force.D, 0.0, torque) for force, sign, *_ in acting])
+    points = np.stack([_in_space(0.0, toward_pin, z, torque) for *_, toward_pin, z in acting])
+    moments = np.concatenate((np.cross(points, forces), _in_space(0.0, 0.0, torque, torque)[None]))
+    return np.maximum(_left_over(forces), _left_over(moments))
+
+
+def _in_space(x: Any, y: Any, z: Any, like: Array) -> Array:
+    return np.stack([np.broadcast_to(np.asarray(one, dtype=float), np.shape(like)) for one in (x, y, z)], axis=-1)
+
+
+def _left_over(terms: Array) -> Array:
+    """Return |sum| over the sum of the sizes, for terms (m, …, 3); 0 where there are none."""
+    size, rest = np.linalg.norm(terms, axis=-1).sum(axis=0), np.linalg.norm(terms.sum(axis=0), axis=-1)
+    return np.asarray(np.divide(rest, size, out=np.zeros_like(rest), where=size > 0))
+
+
+# the throws along a shaft
+
+
+class Throw(NamedTuple):
+    """One throw: the cylinders on its pin by their numbers, from 0; its angle in degrees from the throw of crank 1.
+
+    place: along the shaft in m, 0 where it is not known; A, B: numbers of its bearings, from 0; flywheel: whether its
+    weight rests on them; at_A, at_B: mass times radius in kg m of what turns with the shaft, divided between them as by
+    a lever, complex: along this throw, and 90° on in the sense of rotation.
+    """
+
+    cylinders: tuple[int, ...]
+    angle: Any
+    place: Any
+    A: int = 0
+    B: int = 1
+    flywheel: bool = False
+    at_A: Any = 0.0
+    at_B: Any = 0.0
+
+
+def _of_first(condition: Any) -> Any:
+    """Return what holds for the first of the machines."""
+    return np.ravel(condition)[0]
+
+
+class ShaftLine:
+    """The crankshaft of a machine. throws: in order along the shaft; bearings: how many main bearings there are.
+
+    Of many machines the throws are those of the first; the forces of one that has others are nan.
+    """
+
+    def __init__(self, machine: Machine, shaft: Crankshaft) -> None:
+        self.machine, self.shaft = machine, shaft
+        self._like_first: Any = True
+        throws = throws_of(machine.cylinders, self._decided)
+        found = sorted(throws, key=lambda throw: float(_of_first(throw.place)))
+        for one, following in pairwise(found):
+            self._decided(one.place <= following.place)
+        self.bearings = 2 if shaft.overhung else len(found) + 1
+        weights = tuple(self._turning(found))
+        self.throws = tuple(self._supported(number, found, weights) for number in range(len(found)))
+
+    def _decided(self, condition: Any) -> Any:
+        """Return what holds for the first of the machines; others for which something else does have other throws."""
+        self._like_first = self._like_first & (condition == _of_first(condition))
+        return _of_first(condition)
+
+    def _supported(self, number: int, throws: Sequence[Throw], weights: Sequence[tuple[int, Any, Any]]) -> Throw:
+        """Return a throw with its bearings, and with what turns between them."""
+        shaft, throw = self.shaft, throws[number]
+        own = [(weight * unit_vector(-throw.angle), u) for owner, weight, u in weights if owner == number]
+        # the second throw of an overhung shaft is at its other end
+        mirrored = shaft.overhung and number > 0
+        sign = -1.0 if mirrored else 1.0
+        known = where(self._like_first, 0.0, math.nan)
+        return throw._replace(
+            A=1 if mirrored else number,
+            B=0 if mirrored else number + 1,
+            flywheel=number == (0 if shaft.overhung else len(throws) - 1),
+            at_A=known + sum(weight * (shaft.b - sign * u) / shaft.span for weight, u in own),
+            at_B=known + sum(weight * (sign * u - shaft.place_A) / shaft.span for weight, u in own),
+        )
+
+    def _turning(self, throws: Sequence[Throw]) -> Iterator[tuple[int, Any, Any]]:
+        """Yield all that turns: the throw between whose bearings it is, mass times radius, and u in m from its pin.
+
+        The masses times radii in kg m are complex, as angles of throws count. A weight is between the bearings of the
+        throw that is nearest to its place; where that is not known, of the throw that it belongs to. What of a rod
+        turns pulls at its pin.
+        """
+        cranks = [OwnThrow(number, one) for number, one in enumerate(self.machine.cylinders)]
+        of_cylinders = {cylinder: number for number, throw in enumerate(throws) for cylinder in throw.cylinders}
+        weights = (*(crank.weight(crank.unbalanced) for crank in cranks), *counterweights_of(self.machine, cranks))
+        for one in weights:
+            own = cranks[one.owner].place
+            if one.place is None or one.place is own or (own is not None and self._decided(one.place == own)):
+                yield of_cylinders[one.owner], one.product, 0.0
+            else:
+                distances = [np.asarray(abs(throw.place - one.place)) for throw in throws]
+                nearest = int(self._decided(np.argmin(np.broadcast_arrays(*distances), axis=0)))
+                yield nearest, one.product, one.place - throws[nearest].place
+
+    def throw_of(self, cylinder: int) -> Throw:
+        """Return the throw on whose pin a cylinder is, by its number from 0."""
+        return next(throw for throw in self.throws if cylinder in throw.cylinders)
+
+    def carried(self, throw: Throw, pin: Vector, own: Cylinder, angle: CrankAngle) -> tuple[Vector, Vector]:
+        """Return the forces in N of a throw on its bearings A and B, in its own frame.
+
+        pin: force on its pin in N; own: a cylinder on it, and its own crank angle, for the weight of the flywheel.
+        """
+        weight = flywheel_weight(self.machine, own, angle) if throw.flywheel else Vector(0.0, 0.0)
+        body = FreeBody(self.shaft, own.mechanism.crank, pin, weight)
+        omega = 0.0 if self.machine.speed is None else 2 * math.pi * self.machine.speed
+        return _pulled(body.A, throw.at_A * omega * omega), _pulled(body.B, throw.at_B * omega * omega)
+
+
+def _pulled(force: Vector, pull: Any) -> Vector:
+    return Vector(force.D - pull.real, force.T + pull.imag)
+
+
+def shaft_obstacle(machine: Machine) -> str:
+    """Return why the loads on the main bearings of a machine cannot be given, or an empty text."""
+    if machine.crankshaft is None:
+        return "no 'crankshaft' given, which has the lengths of a throw: 'crankshaft: {a: …, b: …, …}'"
+    if not machine.cylinders:
+        return "no cylinder loads them; 'effort' tells a torque and no force"
+    unknown = next((one.mechanism.name for one in machine.cylinders if not one.mechanism.has_rod), None)
+    if unknown is not None:
+        return f"the force of a {unknown} on the crank pin is not followed to the bearings"
+    count = len(throws_of(machine.cylinders))
+    if machine.crankshaft.overhung and count > 2:
+        return f"{count} throws cannot all be overhung; a shaft has two ends"
+    try:
+        list(counterweights_of(machine, [OwnThrow(number, one) for number, one in enumerate(machine.cylinders)]))
+    except UsageError as error:
+        return str(error)
+    return ""
+
+
+def throws_of(cylinders: Sequence[Cylinder], decided: Callable[[Any], Any] = _of_first) -> list[Throw]:
+    """Return the throws of these cylinders, not yet on their bearings, as the cylinders follow one another.
+
+    Cylinders share a pin where their throws have one angle, γ − β, and one place, and their stroke lines differ.
+    decided: says of many machines which condition counts.
+    """
+    found: list[Throw] = []
+    for number, one in enumerate(cylinders):
+        angle, place = _remainder(one.bank_angle - one.crank_position), one.axial_position
+        place = 0.0 if place is None else place
+        for index, throw in enumerate(found):
+            lines = [cylinders[other].bank_angle - one.bank_angle for other in throw.cylinders]
+            same = (abs(_remainder(throw.angle - angle)) <= _ALIKE) & (abs(throw.place - place) <= _ALIKE)
+            for line in lines:
+                same = same & (abs(_remainder(line)) > _ALIKE)
+            if decided(same):
+                found[index] = throw._replace(cylinders=(*throw.cylinders, number))
+                break
+        else:
+            found.append(Throw((number,), angle, place))
+    return found
+
+
+def _remainder(degrees: Any) -> Any:
+    """Return an angle in degrees without whole turns, from −180 to 180."""
+    return degrees - 360.0 * np.rint(degrees / 360.0)

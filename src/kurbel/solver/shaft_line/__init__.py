@@ -1,1 +1,0 @@
-"""Chains of masses on a shaft: their equations, natural vibrations, and what torques make of them."""

@@ -1,0 +1,498 @@
+"""Torsional vibration of the shaft line: natural vibrations, critical speeds, and forced vibration.
+
+The chain of masses and its equations are those of `kurbel.solver.chain`. On each mass act the torques of its cylinders,
+with what the efficiency leaves of the effort but all of the inertia, and on one of them the load:
+
+    M(φ) = M_m + Σ Re(M_ν e^{iνφ})           orders of the torques, see `kurbel.solver.harmonics`
+    n_k = ω_e/(2π ν)                         critical speed of order ν with the natural frequency ω_e
+    |Σ Θ e^{−iνβ}|                           sum of the phase vectors of the cranks: how they excite the mode Θ together
+
+A loss factor is known of single orders only. Where none is given, the motion at the working speed is computed over the
+angle, with every jump and thus with all orders; else it is the sum of many orders.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array, ComplexArray, Flags
+from kurbel.crank_angle import unit_vector
+from kurbel.errors import UsageError
+from kurbel.machine import Machine
+from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
+from kurbel.numerics.collocation import Unsettled
+from kurbel.numerics.pieces import refined
+from kurbel.numerics.waves import crests
+from kurbel.solver.chain import Chain, Holzer, Modes, Motion, Response, Rise, motion, passing, response
+from kurbel.solver.drive import Drive
+from kurbel.solver.effort import Term, TurningEffort, inertia_torque, reduced_inertia, shaft_torque
+from kurbel.solver.figures import Columns, Results
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.harmonics import HIGHEST, MachineOrders, Spectrum, every_order
+from kurbel.solver.speed import SpeedLaw
+
+NEAR = 0.1
+"""A critical speed so near the working speed, relatively, is worth a note."""
+RUN_UP = 1.2
+"""Over the working speed, up to which a machine meets its critical speeds at all."""
+_PRESENT = 1e-6
+"""An order whose sum of phase vectors is smaller, over the sum of their lengths, does no work."""
+_FAINT = 0.01
+"""An order that excites a mode no more than this, over the order that does so most, is no danger to it."""
+_LOST = 1e-4
+"""By what rounding moves a torque, over the largest one, beyond which its fourth digit is none: tables print four."""
+
+
+def shaft_line_of(machine: Machine) -> ShaftLine:
+    """Return the shaft line of a machine: the given one, or the two masses of its coupling. Raises UsageError."""
+    if machine.shaft:
+        return machine.shaft
+    coupling, wheel = machine.coupling, machine.flywheel
+    if coupling is None:
+        what = "write its masses and the pieces between them below it, or give a 'coupling' behind a 'flywheel'"
+        raise UsageError(f"{machine.name}: no 'shaft' is given; {what}")
+    if wheel is None or wheel.inertia is None:
+        raise UsageError(f"{machine.name}: the mass before the coupling is not known; give 'flywheel' an 'inertia'")
+    names = tuple(cylinder.name for cylinder in machine.cylinders)
+    cranks = ShaftMass("cranks and flywheel", cylinders=names, flywheel=1.0)
+    piece = ShaftPiece(coupling.stiffness, coupling.damping)
+    return ShaftLine((cranks, ShaftMass("driven", coupling.inertia)), (piece,), load=1)
+
+
+def stress(line: ShaftLine, segment: int) -> float | None:
+    """Return the stress in Pa that a torque of 1 N m makes in a segment, where it is thinnest; None if not known."""
+    moduli = [section.modulus for section in line.pieces[segment].sections]
+    return 1 / min(moduli) if moduli and math.isfinite(min(moduli)) else None
+
+
+# what acts on the masses
+
+
+class Excitation(NamedTuple):
+    """The torques on n masses in N m, by orders (k,).
+
+    gas, inertia: amplitudes (n, k) of what is independent of the speed, and of the inertia forces at ω_n = omega in
+    rad/s; means (n,), with the load on the mass that takes it; load_slope: dL/dω of each mass at ω_n in N m s/rad (n,).
+    """
+
+    omega: float
+    orders: Array
+    gas: ComplexArray
+    inertia: ComplexArray
+    means: Array
+    load_slope: Array
+
+    def torques(self, omegas: Array) -> ComplexArray:
+        """Return the amplitudes (n, s, k) at angular velocities (s,) in rad/s."""
+        square = (omegas / self.omega) ** 2
+        return np.asarray(self.gas[:, None] + self.inertia[:, None] * square[:, None])
+
+
+def excitation(found: MachineOrders, line: ShaftLine) -> Excitation:
+    """Return what acts on the masses of a shaft line, order by order.
+
+    An effort that is known from elsewhere acts on the first mass. The load takes the mean of all torques, and its own
+    orders where it varies over the turn.
+    """
+    effort, shape = found.effort, (len(line.masses), len(found.orders))
+    gas, inertia, means = np.zeros(shape, complex), np.zeros(shape, complex), np.zeros(len(line.masses))
+    places = {name: index for index, mass in enumerate(line.masses) for name in mass.cylinders}
+    for one in found.cylinders:
+        place, in_machine = places[one.forces.drive.name], one.in_machine
+        gas[place] += in_machine.gas.amplitudes
+        means[place] += in_machine.whole.mean
+        if in_machine.inertia:
+            inertia[place] += in_machine.inertia.amplitudes / one.share
+    if not found.cylinders:
+        gas[0], means[0] = found.machine.gas.amplitudes, found.M_mean
+    if effort.diagram:
+        gas[line.load] -= found.spectra(effort.pieces, [effort.load])[0].amplitudes
+    omega, law, slopes = effort.omega or 0.0, SpeedLaw.of(effort), np.zeros(len(line.masses))
+    if not line.ground:
+        means[line.load] -= means.sum()
+    if law:
+        slopes[line.load] = 2 * float(law.rise(np.zeros(1), effort.pieces)[1][0]) / omega
+    return Excitation(omega, found.orders, gas, inertia, means, slopes)
+
+
+def driving(effort: TurningEffort, line: ShaftLine) -> Array:
+    """Return the same torques over the angle, less their means in N m, (masses, nodes, pieces) of `effort.pieces`."""
+    found = np.zeros((len(line.masses), *effort.pieces.degrees.shape))
+    for torque, mass in zip(found, line.masses):
+        terms: list[Term] = []
+        for group in effort.groups:
+            here, share = [one for one in group if one.drive.name in mass.cylinders], effort.share(group[0].drive)
+            if here:
+                terms += [Term(share, here, shaft_torque), *effort.lost(here)]
+                terms += [Term(1 - share, here, inertia_torque)] if share != 1 and effort.moves(here[0]) else []
+        torque += effort.sampled(terms)
+    if effort.given:
+        found[0] = effort.M
+    if effort.diagram:
+        found[line.load] -= effort.load
+    return np.asarray(found - effort.pieces.mean(found)[:, None])
+
+
+# forced vibration
+
+
+class Vibration:
+    """The forced vibration of a chain at angular velocities (s,) in rad/s, order by order.
+
+    angles (n, s, k) in rad of the cranks' shaft; torques (segments, s, k) in N m, true ones on both sides of a gear.
+    """
+
+    def __init__(self, chain: Chain, line: ShaftLine, acting: Excitation, omegas: Array) -> None:
+        self.chain, self.line, self.acting, self.omegas = chain, line, acting, omegas
+        self.driving = acting.torques(omegas)
+        self._frequencies = np.multiply.outer(omegas, acting.orders)
+        # the load takes the same mean torque at every speed, so that its slope goes with 1/ω; (n, s, 1)
+        self._load_damping = np.multiply.outer(acting.load_slope, acting.omega / omegas)[..., None]
+
+    @cached_property
+    def _response(self) -> Response:
+        return response(self.chain, self._frequencies, self.driving, self._load_damping)
+
+    @property
+    def angles(self) -> ComplexArray:
+        """Amplitudes of the masses in rad."""
+        return self._response.angles
+
+    def _true(self, angles: ComplexArray) -> ComplexArray:
+        """Return the torques in the segments in N m that angles of the masses make."""
+        return passing(self.chain, self._frequencies, angles) / _ratios(self.line)[:, None, None]
+
+    @cached_property
+    def torques(self) -> ComplexArray:
+        """Amplitudes of the torques in the segments in N m."""
+        return self._true(self.angles)
+
+    @cached_property
+    def endless(self) -> Flags:
+        """Where an order meets a mode that next to nothing damps, so that rounding bounds the torques, (s,)."""
+        largest, unsure = (np.abs(one).max(axis=(0, 2)) for one in (self.torques, self._true(self._response.moved)))
+        return np.asarray(np.isfinite(self.driving).all(axis=(0, 2)) & ~(unsure <= _LOST * largest))
+
+    @cached_property
+    def means(self) -> Array:
+        """Mean torques in the segments in N m."""
+        reached, ratios = np.cumsum(self.acting.means), _ratios(self.line)
+        if self.chain.ground == "before":
+            reached = np.append(0.0, reached) - reached[-1]
+        return np.asarray(reached[: len(ratios)] / ratios)
+
+    @cached_property
+    def crests(self) -> tuple[Array, Array]:
+        """Largest and smallest torque in the segments less their mean in N m, (segments, s) each."""
+        orders = self.acting.orders
+        cycle = 2 if (orders % 1).any() else 1  # turns in which all of them are whole waves
+        high, low = crests([round(cycle * order) for order in orders.tolist()], self.torques.reshape(-1, len(orders)))
+        return high.reshape(self.torques.shape[:2]), low.reshape(self.torques.shape[:2])
+
+    @property
+    def vibratory(self) -> Array:
+        """Half peak-to-peak torques in the segments in N m, (segments, s)."""
+        high, low = self.crests
+        return np.asarray((high - low) / 2)
+
+    @property
+    def remainder(self) -> Array:
+        """About what higher orders add to the torque in any segment in N m, (s,).
+
+        What falls off as 1/ν², as behind a jump through a damper, or faster, is in all of them together no more than in
+        the upper half of these.
+        """
+        upper = self.acting.orders > self.acting.orders[-1] / 2
+        return np.asarray(np.abs(self.torques[..., upper]).sum(axis=2).max(axis=0))
+
+    @property
+    def loss(self) -> Array:
+        """Mean power in W lost in dampers, in the material, and in a load that rises with the speed, (s,)."""
+        chain, speeds = self.chain, np.abs(self._frequencies * self.angles) ** 2
+        twists = np.abs(np.tensordot(chain.twists, self.angles, 1)) ** 2
+        of_masses = ((chain.mass_damping[:, None, None] + self._load_damping) * speeds).sum(axis=(0, 2))
+        of_segments = (chain.springs(self._frequencies).imag * self._frequencies * twists).sum(axis=(0, 2))
+        return np.asarray((of_masses + of_segments) / 2)
+
+
+def _ratios(line: ShaftLine) -> Array:
+    """Return the speeds of the segments over that of the cranks."""
+    return np.array([piece.ratio for piece in line.pieces])
+
+
+def _mean_inertia(drive: Drive) -> float:
+    """Return the mean over the turn of the reduced moment of inertia of a cylinder in kg m², whatever forces act."""
+    pieces, inertia = refined(drive.pieces, lambda some: reduced_inertia(drive.on(some))[None])
+    return float(pieces.mean(inertia[0])[0])
+
+
+class SegmentTorque(NamedTuple):
+    """The torque in one segment of the shaft line at the working speed, and the stress where its section is known.
+
+    M_shaft_mean, M_shaft_max, M_shaft_min in N m; over: the torque at crank angles in degrees; factor: the stress in Pa
+    per N m.
+    """
+
+    name: str
+    M_shaft_mean: float
+    M_shaft_max: float
+    M_shaft_min: float
+    over: Callable[[Array], Array]
+    factor: float | None
+
+    @property
+    def M_vibratory(self) -> float:
+        """Vibratory torque amplitude (half peak-to-peak) in N m."""
+        return (self.M_shaft_max - self.M_shaft_min) / 2
+
+    @property
+    def tau_mean(self) -> float | None:
+        """Stress of the mean torque in Pa."""
+        return None if self.factor is None else self.factor * self.M_shaft_mean
+
+    @property
+    def tau_vibratory(self) -> float | None:
+        """Vibratory stress amplitude (half peak-to-peak) in Pa."""
+        return None if self.factor is None else self.factor * self.M_vibratory
+
+    def at(self, degrees: Array) -> Columns:
+        """Return torque and stress at crank angles (n,) in degrees."""
+        torque, factor = self.over(degrees), self.factor
+        return Columns(degrees, {"M_shaft": lambda: torque, "tau": lambda: None if factor is None else torque * factor})
+
+
+# the results
+
+
+class Critical(NamedTuple):
+    """A critical speed in revolutions per second: order, mode, and the sum of the phase vectors of the cranks.
+
+    distance: from the working speed, relatively; None without one. share: how strongly the order excites the mode, over
+    the order that does so most.
+    """
+
+    order: float
+    mode: int
+    speed: float
+    phase_sum: float
+    distance: float | None
+    share: float
+
+    @property
+    def near(self) -> bool:
+        """Whether it is near the working speed, and its order excites it."""
+        return self.distance is not None and abs(self.distance) <= NEAR and self.share > _FAINT
+
+
+class ShaftVibration(Results):
+    """The vibrations of the shaft line of a machine; orders (k,): those of the tables. Raises UsageError."""
+
+    command = "torsion"
+
+    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], orders: Array | None = None) -> None:
+        self.machine, self._cylinders = machine, cylinders
+        self.line, self.cycle = shaft_line_of(machine), 360.0 * machine.revolutions
+        self._every = orders is None
+        self.orders = every_order(self.cycle) if orders is None else orders
+        self.chain = Chain.of(self.line, [self._inertia(mass) for mass in self.line.masses])
+        self.modes = Modes(self.chain)
+
+    def _inertia(self, mass: ShaftMass) -> float:
+        """Return J in kg m²: what is given, the flywheel, and the mean of what the parts of the cylinders reduce to."""
+        wheel = self.machine.flywheel.inertia if self.machine.flywheel else None
+        drives = (one.drive for one in self._cylinders if one.drive.name in mass.cylinders)
+        moving = [_mean_inertia(drive) for drive in drives if drive.cylinder.masses]
+        inertia = math.fsum((mass.inertia, mass.flywheel * (wheel or 0.0), *moving))
+        if not inertia > 0:
+            raise UsageError(f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'")
+        return inertia
+
+    # natural vibrations
+
+    @property
+    def first(self) -> int:
+        """Number of the first mode: 0 where the shaft turns freely."""
+        return 1 if self.chain.ground else 0
+
+    @property
+    def last(self) -> int:
+        """Number of the last mode."""
+        return self.first + len(self.modes.omegas) - 1
+
+    def holzer(self, mode: int) -> Holzer:
+        """Return Holzer's table of a mode by its number. Raises UsageError where there is none."""
+        if not 1 <= mode <= self.last:
+            raise UsageError(f"--mode {mode}: the shaft line has the modes 1 to {self.last}")
+        return self.modes.holzer(mode - self.first)
+
+    @property
+    def natural_frequency(self) -> float:
+        """Lowest natural frequency in Hz but for the rotation of the whole."""
+        return float(self.modes.omegas[1 - self.first]) / (2 * math.pi)
+
+    @cached_property
+    def holzer_residual(self) -> float:
+        """Residual torque of the Holzer tables of all modes, relative to the largest of its table."""
+        return max(self.modes.holzer(index).residual for index in range(len(self.modes.omegas)))
+
+    # critical speeds
+
+    def critical_speeds(self, modes: int, highest: float = math.inf) -> tuple[Critical, ...]:
+        """Return the critical speeds of all orders up to the highest with the first modes."""
+        found, working = [], self.machine.speed
+        for mode in range(1, min(modes, self.last) + 1):
+            angles, omega = self.holzer(mode).angles, float(self.modes.omegas[mode - self.first])
+            sums = self._phase_sums(angles)
+            for order, total, share in zip(self.orders.tolist(), sums.tolist(), self._shares(angles, sums).tolist()):
+                speed = omega / (2 * math.pi * order)
+                distance = speed / working - 1 if working else None
+                if order <= highest:
+                    found.append(Critical(order, mode, speed, total, distance, share))
+        return tuple(found)
+
+    def _phase_sums(self, angles: Array) -> Array:
+        """Return |Σ Θ e^{−iνβ}| over the cranks (k,); of an effort without cranks, the amplitude where it acts."""
+        at = {name: float(angles[i]) for i, mass in enumerate(self.line.masses) for name in mass.cylinders}
+        cranks = [(at[one.name], one.crank_position) for one in self.machine.cylinders]
+        amplitudes, positions = np.array(cranks or [(float(angles[0]), 0.0)]).T
+        sums = np.abs(unit_vector(np.outer(self.orders, positions)) @ amplitudes)
+        return np.where(sums > _PRESENT * np.abs(amplitudes).sum(), sums, 0.0)
+
+    def _shares(self, angles: Array, sums: Array) -> Array:
+        """Return how strongly the orders excite a mode, over the one that does so most (k,).
+
+        That is |Σ M_ν Θ| of the torques at the working speed; of torques that are not known |Σ Θ e^{−iνβ}|.
+        """
+        works = sums
+        if not self._unexcited:
+            torques = self.acting.torques(np.array([self.acting.omega]))
+            works = np.abs(np.tensordot(angles, torques, 1)[0])
+        return np.asarray(works / (works.max() or 1.0))
+
+    def met(self, critical: Critical) -> bool:
+        """Whether the machine meets a critical speed on its way to the working speed, or a little beyond."""
+        return not self.obstacle and bool(self.machine.speed) and critical.speed <= RUN_UP * (self.machine.speed or 0.0)
+
+    # forced vibration
+
+    @property
+    def _unexcited(self) -> str:
+        """Why no torques are known, or an empty text."""
+        if not self.machine.speed:
+            return "no speed given" if self.machine.speed is None else "not defined at rest"
+        if not self.machine.effort and not any(forces.drive.has_force for forces in self._cylinders):
+            return "no torque acts: no effort and no cylinder with a force is given"
+        return ""
+
+    @property
+    def obstacle(self) -> str:
+        """Why no forced vibration can be computed, or an empty text."""
+        if self._unexcited:
+            return self._unexcited
+        return "" if self.chain.damped else "no damping given; at resonance nothing but damping bounds a vibration"
+
+    @cached_property
+    def _effort(self) -> TurningEffort:
+        return TurningEffort(self.machine, self._cylinders)
+
+    @cached_property
+    def acting(self) -> Excitation:
+        """The torques on the masses."""
+        return excitation(MachineOrders(self._effort, self.orders), self.line)
+
+    def forced(self, speeds: Sequence[float]) -> Vibration:
+        """Return the forced vibration at speeds in revolutions per second."""
+        return Vibration(self.chain, self.line, self.acting, 2 * np.pi * np.array(speeds))
+
+    @cached_property
+    def vibration(self) -> Vibration | None:
+        """The forced vibration at the working speed; None where none can be computed."""
+        return None if self.obstacle or self.machine.speed is None else self.forced([self.machine.speed])
+
+    @cached_property
+    def steady(self) -> Motion | None:
+        """The motion at the working speed with all orders, as chains of one shaft have it.
+
+        None where certain orders are requested, where a loss factor is given, and where no motion is found.
+        """
+        if self.vibration is None or not self._every or self.chain.loss.any():
+            return None
+        effort, law = self._effort, SpeedLaw.of(self._effort)
+        rise = Rise(self.line.load % len(self.line.masses), law.rise) if law else None
+        try:
+            return motion(self.chain, self.acting.omega, effort.pieces, driving(effort, self.line), rise)
+        except Unsettled:
+            return None
+
+    @cached_property
+    def _summed(self) -> Vibration | None:
+        """The orders that are summed at the working speed, four times the usual ones; None where `steady` has all."""
+        if self.steady or self.vibration is None or not self._every:
+            return None if self.steady else self.vibration
+        orders = MachineOrders(self._effort, every_order(self.cycle, 4 * HIGHEST))
+        return Vibration(self.chain, self.line, excitation(orders, self.line), self.vibration.omegas)
+
+    @property
+    def summed(self) -> Array | None:
+        """The orders that are summed at the working speed, (n,); None where all are in it."""
+        return self._summed.acting.orders if self._summed else None
+
+    @property
+    def remainder(self) -> float | None:
+        """About what orders beyond those summed add to any torque in N m; None without a remainder."""
+        return float(self._summed.remainder[0]) if self._every and self._summed else None
+
+    @cached_property
+    def pieces(self) -> tuple[SegmentTorque, ...]:
+        """The torque in every segment at the working speed; none where no forced vibration can be computed."""
+        if self.vibration is None:
+            return ()
+        waves, (high, low) = self._over_the_angle()
+        ends = self.vibration.means[:, None] + np.stack((high, low), axis=1)
+        return tuple(
+            SegmentTorque(self.piece_name(i), float(mean), float(top), float(bottom), over, stress(self.line, i))
+            for i, (mean, (top, bottom), over) in enumerate(zip(self.vibration.means, ends, waves))
+        )
+
+    def _over_the_angle(self) -> tuple[list[Callable[[Array], Array]], tuple[Array, Array]]:
+        """Return the torques of the segments by the crank angle, and the largest and smallest less their means."""
+        assert self.vibration
+        means = self.vibration.means
+        if self._summed:
+            orders, (high, low) = self._summed.acting.orders, self._summed.crests
+            summed = zip(means.tolist(), self._summed.torques[:, 0])
+            return [Spectrum(mean, orders, one).at for mean, one in summed], (high[:, 0], low[:, 0])
+        assert self.steady
+        pieces, torques = self.steady.pieces, self.steady.torques / _ratios(self.line)[:, None, None]
+
+        def wave(mean: float, torque: Array) -> Callable[[Array], Array]:
+            return lambda degrees: mean + pieces.at(torque, np.zeros(len(degrees), dtype=np.intp), degrees)
+
+        found = pieces.extremes(torques)
+        return [wave(mean, one) for mean, one in zip(means, torques)], (found.largest[:, 0], found.smallest[:, 0])
+
+    @property
+    def vibration_loss(self) -> float | None:
+        """Mean power in W that the damping takes."""
+        return None if self.vibration is None else float(self.vibration.loss[0])
+
+    @property
+    def M_vibratory(self) -> float | None:
+        """Largest vibratory torque amplitude in N m of any segment at the working speed."""
+        return max((piece.M_vibratory for piece in self.pieces), default=None)
+
+    @property
+    def tau_vibratory(self) -> float | None:
+        """Largest vibratory stress amplitude in Pa of any segment at the working speed."""
+        return max((piece.tau_vibratory for piece in self.pieces if piece.tau_vibratory is not None), default=None)
+
+    def piece_name(self, segment: int) -> str:
+        """Return what a segment is between."""
+        names = [mass.name for mass in self.line.masses]
+        ends = [*(["ground"] if self.chain.ground == "before" else []), *names, "ground"]
+        return f"{ends[segment]} – {ends[segment + 1]}"

@@ -1,1 +1,0 @@
-"""The whole machine on its shaft: turning effort, excess work, flywheel, coupling, speed line."""
