@@ -203,14 +203,9 @@ def test_orders_are_those_of_the_torque() -> None:
     found = Case(whole.machine).harmonics()
     pieces, torque = whole.effort.pieces, whole.effort.M
     waves = np.exp(-1j * np.radians(np.multiply.outer(found.orders, pieces.degrees)))
-<<<<<<< HEAD
-    parts = ((pieces.mean(torque * wave.real), pieces.mean(torque * wave.imag)) for wave in waves)
-    wanted = np.array([2 * (cos + 1j * sin)[0] for cos, sin in parts])
-=======
     wanted = np.array(
         [2 * (pieces.mean(torque * wave.real) + 1j * pieces.mean(torque * wave.imag))[0] for wave in waves]
     )
->>>>>>> numbers
     size = np.abs(wanted).max()
     assert found.machine.whole.mean == pytest.approx(whole.M_mean, rel=1e-12)
     assert found.machine.whole.amplitudes == pytest.approx(wanted, abs=1e-12 * size)

@@ -15,11 +15,7 @@ from kurbel.solver.forces import Brake, CylinderForces
 
 if TYPE_CHECKING:
     from kurbel.solver.flywheel import MachineTurning
-<<<<<<< HEAD
-    from kurbel.solver.strength.crankshaft import CrankshaftStrength
-=======
     from kurbel.solver.stress import CrankshaftStrength
->>>>>>> numbers
 
 
 def as_far_as_solved(found: Iterable[str], command: str) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ q = √(k (1/J₁ + 1/J₂))/ω_n, and for each mass J ω_n (ω − ω_n).
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -22,6 +23,7 @@ from kurbel.numerics.collocation import growth, periodic
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces
 from kurbel.solver.effort import TurningEffort
+from kurbel.solver.harmonics import amplitudes
 from kurbel.solver.speed import SpeedLaw
 
 _NEAR = 0.1
@@ -38,8 +40,6 @@ _SWING = 120.0
 """Degrees of a natural oscillation that one piece may hold at first, …"""
 _MOST_PARTS = 8000
 """… though a piece is cut into no more parts than these."""
-_RESOLVED = 10.0
-"""Radians of an order over a piece whose samples give its amplitude to the last digit."""
 
 
 class Harmonic(NamedTuple):
@@ -239,7 +239,10 @@ class ElasticCoupling:
         step, natural = 360 / self.effort.cycle, float(self._order[machine])
         low, high = (natural * (1 + side * _NEAR) / step for side in (-1, 1))
         orders = step * np.arange(max(np.ceil(low), 1), np.floor(high) + 1)
-        effort, load = self._amplitudes(machine, orders)
+        pieces = self.effort.pieces.taken(self.effort.pieces.machine == machine)
+        alone = replace(pieces, machine=np.zeros_like(pieces.machine), count=1)
+        torques = self._torques[..., self.effort.pieces.machine == machine]
+        effort, load = amplitudes(alone, torques, orders)[..., 0]
         k, d, J1, J2, omega = (
             float(one[machine]) for one in (self.stiffness, self.damping, self.own, self.driven, self.omega)
         )
@@ -249,17 +252,6 @@ class ElasticCoupling:
         with np.errstate(all="ignore"):
             passed = np.abs(spring * (effort * second + load * first) / (first * second + spring * (first + second)))
         return orders, np.abs(effort), np.abs(load), passed
-
-    def _amplitudes(self, machine: int, orders: Array) -> Array:
-        """Return the complex amplitudes (2, k) in N m of effort and load of a machine by these orders."""
-        source = self.effort.pieces
-        rows = source.machine == machine
-        parts = np.ceil(2 * np.radians(source.half[rows]) * orders.max(initial=1.0) / _RESOLVED).astype(int)
-        fine = _split(source.taken(rows), parts)
-        weights = np.radians(fine.half) * fine.rule.weights[:, None] / np.radians(source.cycle)
-        shares = fine.carried(self._torques, source) * weights
-        waves = [np.exp(-1j * np.radians(np.mod(order * fine.degrees, 360.0))) for order in orders]
-        return 2 * np.array([(shares * wave).sum(axis=(1, 2)) for wave in waves], dtype=complex).reshape(-1, 2).T
 
     @cached_property
     def _size(self) -> Array:
@@ -306,13 +298,13 @@ def natural_order(coupling: Coupling, own: Array, omega: Any) -> Array:
 def _cut(pieces: Pieces, order: Array) -> Pieces:
     """Return pieces that hold no more of a natural oscillation than one may at first."""
     parts = np.ceil(2 * pieces.half * (pieces.of(order) / _SWING)).clip(1, _MOST_PARTS).astype(int)
-    return _split(pieces, parts)
-
-
-def _split(pieces: Pieces, parts: Array) -> Pieces:
-    """Return each piece cut into so many equal parts (pieces,)."""
     row = np.repeat(np.arange(len(parts)), parts)
     number = np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)
-    half = pieces.half[row] / parts[row]
-    offset = pieces.offset[row] + 2 * half * number
-    return Pieces(pieces.right_angle[row], offset, half, pieces.machine[row], pieces.count, pieces.cycle, pieces.rule)
+    offset = pieces.offset[row] + 2 * pieces.half[row] * number / parts[row]
+    return replace(
+        pieces,
+        right_angle=pieces.right_angle[row],
+        offset=offset,
+        half=pieces.half[row] / parts[row],
+        machine=pieces.machine[row],
+    )

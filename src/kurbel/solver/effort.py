@@ -157,11 +157,6 @@ class TurningEffort:
         for factor, cylinders, torque in terms:
             own = cylinders[0].pieces
             values = np.broadcast_to(torque(cylinders[0].samples), own.degrees.shape) * own.of(factor)
-<<<<<<< HEAD
-            if own is pieces and len(terms) == 1:
-                return values
-=======
->>>>>>> numbers
             size = size + len(cylinders) * own.largest(values)
             for forces in cylinders:
                 whole += values if own is pieces else pieces.carried(values, own, position(forces))
