@@ -8,9 +8,9 @@ polynomial yet, by the tail of its Chebyshev coefficients, is halved: no other k
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -113,8 +113,7 @@ class Pieces:
 
     def with_nodes(self, nodes: int) -> Pieces:
         """Return these pieces with so many nodes each."""
-        columns = (self.right_angle, self.offset, self.half, self.machine)
-        return Pieces(*columns, self.count, self.cycle, rule(nodes))
+        return replace(self, rule=rule(nodes))
 
     def halved(self, rows: Indices | Flags) -> Pieces:
         """Return the halves of these pieces, in order."""
@@ -166,7 +165,7 @@ class Pieces:
         following = np.where(self.after == self.first[self.machine], self.cycle, following)
         return np.where(np.abs(following - own) < _SAME, following, own)
 
-    def of(self, numbers: Number) -> Number:
+    def of(self, numbers: Any) -> Any:
         """Return numbers of the machines, (machines,), at their pieces; one number stays one."""
         return numbers[self.machine] if isinstance(numbers, np.ndarray) and numbers.ndim else numbers
 
@@ -196,7 +195,7 @@ class Pieces:
         after = np.cumsum(inside[-1])
         before = np.append(0.0, after[:-1])
         before[1:] += np.cumsum(lost(before, inside[-1], after))[:-1]
-        return inside + (before - before[self.first][self.machine])
+        return np.asarray(inside + (before - before[self.first][self.machine]))
 
     def carried(self, values: Array, source: Pieces, later: Number = 0.0) -> Array:
         """Return samples (…, nodes, pieces) of other pieces, within which these lie, at the nodes of these.

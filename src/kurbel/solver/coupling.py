@@ -62,12 +62,12 @@ class ElasticCoupling:
 
     def __init__(self, effort: TurningEffort, own: Array, law: SpeedLaw | None) -> None:
         coupling: Any = effort.machine.coupling
+        omega: Any = effort.omega
         self.effort, self.law, self.own = effort, law, own
         self.stiffness, self.damping, self.driven, self.omega = (
-            np.broadcast_to(one, own.shape)
-            for one in (coupling.stiffness, coupling.damping, coupling.inertia, effort.omega)
+            np.broadcast_to(one, own.shape) for one in (coupling.stiffness, coupling.damping, coupling.inertia, omega)
         )
-        self._order = natural_order(coupling, own, effort.omega)
+        self._order = natural_order(coupling, own, omega)
         self.noise = np.zeros(own.shape)
         self.failed: Flags = np.zeros(own.shape, dtype=bool) if law is None else law.mean == 0
         self._torques = np.stack((effort.true_excess.torque + effort.load, effort.load)) - effort.pieces.of(effort.mean)
@@ -162,7 +162,8 @@ class ElasticCoupling:
 
     @cached_property
     def _extremes(self) -> tuple[Array, Array, Array, Array]:
-        return tuple(self.pieces.extremes(self.samples))
+        high, high_at, low, low_at = self.pieces.extremes(self.samples)
+        return high, high_at, low, low_at
 
     def _end(self, which: int, smallest: bool, base: Array) -> Extreme:
         value, degrees = (one[which] for one in self._extremes[2 * smallest : 2 * smallest + 2])
@@ -256,7 +257,7 @@ class ElasticCoupling:
     @cached_property
     def _size(self) -> Array:
         """Amplitude in N m of a single harmonic of the mean square that effort and load swing by, (n,)."""
-        return np.sqrt(2 * self.effort.pieces.mean(self._torques**2)).sum(axis=0)
+        return np.asarray(np.sqrt(2 * self.effort.pieces.mean(self._torques**2)).sum(axis=0))
 
     @property
     def load_slope(self) -> Array:
@@ -268,7 +269,7 @@ class ElasticCoupling:
 
     def _refuse_resonance(self) -> None:
         """Raise NoSolutionError where a harmonic that is there meets the natural order and nothing damps it."""
-        for machine in np.flatnonzero((self.damping == 0) & (self.load_slope == 0)):
+        for machine in np.flatnonzero((self.damping == 0) & (self.load_slope == 0)).tolist():
             size = self._size[machine]
             orders, effort, load, passed = self._harmonics(machine, 0.0)
             stuck = ~(passed < _ENDLESS * size) & (np.maximum(effort, load) > _PRESENT * size)

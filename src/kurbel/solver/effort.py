@@ -217,13 +217,14 @@ class TurningEffort:
     def M(self) -> Array:
         """The turning effort in N m, with the losses of the machine; see `share`."""
         if self.given:
-            return self.indicated * self.pieces.of(self.share(None))
+            return np.asarray(self.indicated * self.pieces.of(self.share(None)))
         return self.indicated if not some(self.machine.efficiency != 1) else self.sampled(self.terms)
 
     def M_at(self, degrees: Array, within: Array) -> Array:
         """Return the same of one machine at crank angles (k,) in degrees, on the sides of jumps that hold `within`."""
         if self.given:
-            return self.given.at(degrees, within, np.zeros(len(within), dtype=np.intp)) * self.share(None)
+            given = self.given.at(degrees, within, np.zeros(len(within), dtype=np.intp))
+            return np.asarray(given * self.share(None))
         return self.sum_at(self.terms, degrees, within)
 
     @cached_property
@@ -263,13 +264,13 @@ class TurningEffort:
         """The load in N m at the nominal speed: the mean of M, or that by points brought to the same mean."""
         if self.diagram is None:
             return np.broadcast_to(self.pieces.of(self.mean), self.pieces.degrees.shape)
-        return self._diagram_samples + self.pieces.of(self.deficit)
+        return np.asarray(self._diagram_samples + self.pieces.of(self.deficit))
 
     def load_at(self, degrees: Array, within: Array) -> Array:
         """Return the same of one machine at crank angles (k,) in degrees, on the sides of jumps that hold `within`."""
         if self.diagram is None:
             return np.full_like(degrees, self.mean[0])
-        return self.diagram.at(degrees, within, np.zeros(len(within), dtype=np.intp)) + self.deficit[0]
+        return np.asarray(self.diagram.at(degrees, within, np.zeros(len(within), dtype=np.intp)) + self.deficit[0])
 
     # the masses
 

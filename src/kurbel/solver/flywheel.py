@@ -56,7 +56,7 @@ class MachineTurning(Results):
         self.machine = machine
         self.effort = TurningEffort(machine, cylinders, count)
         self.excess = self.effort.excess
-        self.omega = self.effort.omega
+        self.omega: Any = self.effort.omega
         self.crank = machine.cylinders[0].mechanism.crank if machine.cylinders else None
         self.brake = Brake(machine, cylinders)
         wheel = machine.flywheel
@@ -118,11 +118,12 @@ class MachineTurning(Results):
             return self.speed.samples_of(column) if self.speed else None
         if arm is None or (column == "T_inertia" and not effort.inertia_terms):
             return None
-        values = {
-            "E": lambda: self.excess.E,
-            "M_load": lambda: effort.load,
-            "T_inertia": lambda: effort.sampled(effort.inertia_terms),
-        }.get(column, lambda: effort.M)()
+        if column == "E":
+            values = self.excess.E
+        elif column == "M_load":
+            values = effort.load
+        else:
+            values = effort.sampled(effort.inertia_terms) if column == "T_inertia" else effort.M
         return effort.pieces, values / arm
 
     # turning effort

@@ -103,7 +103,7 @@ class SpeedEquation:
     def energy(self, moving: Array, pieces: Pieces) -> Array:
         """Return ½ J(φ) ω_n² in J where the moving masses have so much inertia in kg m²."""
         omega: Any = self.course.effort.omega
-        return (moving + pieces.of(self.flywheel)) * pieces.of(omega * omega / 2)
+        return np.asarray((moving + pieces.of(self.flywheel)) * pieces.of(omega * omega / 2))
 
     def known(self, pieces: Pieces) -> Array:
         """Return M − M_load at uniform rotation in N m, and ½ J(φ) ω_n² in J."""
