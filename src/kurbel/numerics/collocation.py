@@ -154,11 +154,12 @@ def growth(equation: Equation, found: Periodic) -> Array:
     """Return the logarithms of what is left of small disturbances after a cycle (Floquet), (machines,)."""
     pieces, none = found.pieces, np.zeros(found.pieces.count)
     chain = _Chain(equation, pieces, none)
-    stiffness = chain.half * equation.rate(chain.known, found.y[:, 1:], pieces, none)[1]
+    y = np.where(found.failed[pieces.machine], 0.0, found.y)
+    stiffness = chain.half * equation.rate(chain.known, y[:, 1:], pieces, none)[1]
     if equation.unknowns == 1:  # ∮ ∂f/∂y dφ, which holds however fast a disturbance dies
         each = chain.rule.area[-1] @ stiffness[0, 0]
         return np.asarray(np.bincount(pieces.machine, each, minlength=pieces.count), dtype=float)
-    gains = chain.padded(chain.answers(stiffness, np.zeros_like(found.y[:, 1:]))[1][-1], np.eye(equation.unknowns))
+    gains = chain.padded(chain.answers(stiffness, np.zeros_like(y[:, 1:]))[1][-1], np.eye(equation.unknowns))
     size = np.zeros(pieces.count)
     while gains.shape[1] > 1:
         if gains.shape[1] % 2:

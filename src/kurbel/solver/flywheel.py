@@ -61,6 +61,8 @@ class MachineTurning(Results):
         self.brake = Brake(machine, cylinders)
         wheel = machine.flywheel
         self._given, self._wanted, self._rim = (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
+        if count is not None:
+            _ = self.natural_order  # which refuses machines of a batch before anything is told of them
 
     @property
     def answering(self) -> tuple[Any, ...]:
@@ -157,7 +159,7 @@ class MachineTurning(Results):
     def deficit(self) -> Any:
         """Mean effort less the mean of a resistance given by points, in N m; None where they agree."""
         found = self.effort.deficit
-        return self.effort.told(found) if found.any() else None
+        return self.effort.told(np.where(found == 0, np.nan, found)) if found.any() else None
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
@@ -242,18 +244,26 @@ class MachineTurning(Results):
     def delta_book(self) -> Any:
         """δ ≈ ΔE/(J ω²) of the books: constant J, and a load that does not depend on the speed."""
         inertia = (0.0 if self.J is None else self.J) + self._driven_rigidly
-        return self.dE / (inertia * self.omega**2) if self._turns and every(inertia != 0) else None
+        if not self._turns or not some(inertia != 0):
+            return None
+        return self.dE / (np.where(inertia == 0, np.nan, inertia)[()] * self.omega**2)
 
     # coupling
 
     @cached_property
     def natural_order(self) -> Any:
         """Natural frequency of cranks and driven inertia on the coupling, over ω; None where not defined."""
-        flywheel = self._needed_in_all if self._given is None else self._given
-        if self.machine.coupling is None or flywheel is None or not self._turns:
+        if self.machine.coupling is None or not self._turns or (self._given is None and self._wanted is None):
             return None
+        flywheel = self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
         own = self.effort.J_moving_mean + flywheel
-        return self.effort.told(natural_order(self.machine.coupling, own, self.omega)) if every(own != 0) else None
+        if not every(own != 0):
+            return None
+        found = natural_order(self.machine.coupling, own, self.omega)
+        stiff = found > RIGID_ABOVE
+        if not stiff.all():  # of a batch the others have a motion of their own
+            self.effort.refused |= stiff & (self.effort.count is not None)
+        return self.effort.told(found)
 
     @property
     def rigid(self) -> bool:
