@@ -13,10 +13,9 @@ from scipy.integrate import solve_ivp, trapezoid
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.turning import Coupling, Effort, Load
-from kurbel.numerics.cyclic import around
+from kurbel.numerics.collocation import joined_around
+from kurbel.solver.coupling import natural_order
 from kurbel.solver.flywheel import MachineTurning
-from kurbel.solver.shaft_line.modes import Modes
-from kurbel.solver.turning.coupling import coupled as chain_of
 from representative import few
 from turning_machines import of_points
 
@@ -39,8 +38,7 @@ def load_of(points: Points) -> Load:
 
 def test_natural_order() -> None:
     assert coupled(2.5).natural_order == pytest.approx(2.5, rel=1e-14)
-    soft = chain_of(Coupling(stiffness=200.0, inertia=1e12), 8.0)
-    assert Modes(soft).omegas[1] == pytest.approx(5.0, rel=1e-9)
+    assert natural_order(Coupling(stiffness=200.0, inertia=1e12), np.array(8.0), 1.0) == pytest.approx(5.0, rel=1e-9)
 
 
 def in_time(machine: MachineTurning, torque: Points, load: Points, own: float) -> np.ndarray:
@@ -186,7 +184,7 @@ def test_a_load_that_rises_with_the_speed_damps() -> None:
     """In resonance the driven side keeps its speed the more, the stiffer the load; k = 2 M_m/ω_n for a fan."""
     free, held = coupled(2.0, damping=1.0), coupled(2.0, damping=1.0, load=Load(power=2.0))
     assert held.elastic.amplification < free.elastic.amplification
-    assert held.elastic.shaft.load_slope == pytest.approx(2 * held.M_mean / OMEGA, rel=1e-13)
+    assert held.elastic.load_slope[0] == pytest.approx(2 * held.M_mean / OMEGA, rel=1e-13)
 
 
 def test_a_speed_that_falls_to_zero_is_a_stall_with_its_angle() -> None:
@@ -295,9 +293,11 @@ def test_figures_beyond_floats_are_refused_by_name() -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_what_floats_do_not_hold_is_no_solution(count: int, capfd: pytest.CaptureFixture[str]) -> None:
-    """LAPACK would print a line of its own for it and answer with anything."""
-    before, sides = np.ones((count, 1, 1)), np.ones((count, 1))
-    before[-1] = np.inf
-    with np.errstate(all="ignore"), pytest.raises(np.linalg.LinAlgError):
-        around(before, np.ones((count, 1, 1)), sides)
+    """LAPACK would print a line of its own for it and answer with anything; another machine has its own answer."""
+    before, sides = np.ones((2, count, 1, 1)), np.ones((2, count, 1))
+    before[0, -1] = np.inf
+    with np.errstate(all="ignore"):
+        found = joined_around(before, np.ones((2, count, 1, 1)), sides)
+    assert np.isnan(found[0]).all()
+    assert found[1].sum() == pytest.approx(count / 2)
     assert capfd.readouterr() == ("", "")

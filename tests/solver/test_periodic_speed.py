@@ -21,14 +21,14 @@ from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.machine.turning import Load
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.numerics.collocation_old import Unsettled, periodic
-from kurbel.numerics.elements import rule
+from kurbel.numerics.collocation import Unsettled, periodic, radau
+from kurbel.numerics.pieces import Pieces
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning
-from kurbel.solver.turning.speed import SpeedDependentLoad, SpeedEquation
+from kurbel.solver.speed import SpeedEquation
 from machines import STEAM_CARD
 from representative import few
-from turning_machines import of_points
+from turning_machines import moving_inertia, of_points
 
 POINTS = [(0, 500), (40, 1500), (40, 900), (120, 200), (200, 300), (200, 1300), (290, 100), (360, 250)]
 ANGLES = np.array([0.0, 1e-3, 20.0, 39.999, 40.0, 40.001, 100.0, 180.0, 200.0, 233.3, 300.0, 359.9])
@@ -41,10 +41,15 @@ CYLINDER = Cylinder(
 )
 
 
-def omega_of(line: Any, degrees: np.ndarray) -> np.ndarray:
-    """Return the angular velocity in rad/s of a speed line at any crank angles."""
-    angles = np.mod(degrees, line.cycle)
-    return line.curves(angles, angles)["omega"].value
+def ratio_of(machine: MachineTurning, degrees: np.ndarray) -> np.ndarray:
+    """Return (ω/ω_n)² − 1 of the speed line at crank angles (n,) in degrees."""
+    line: Any = machine.speed
+    return line.pieces.at(line.ratio, np.zeros(len(degrees), dtype=int), degrees)
+
+
+def kinetic(machine: MachineTurning, degrees: np.ndarray) -> np.ndarray:
+    """Return half the inertia ½ J(φ) in kg m² at crank angles (n,) in degrees."""
+    return (machine.J + moving_inertia(machine, degrees)) / 2
 
 
 def steam(
@@ -102,7 +107,7 @@ def test_relaxation_from_1e_11_to_1e3_revolutions(relaxation: float) -> None:
             (mp.radians(a1) - mp.radians(a0)) * (mp.mpf(m0) + m1) / 2 for (a0, m0), (a1, m1) in pairwise(POINTS)
         ) / (2 * mp.pi)
         nominal = mp.mpf(inertia) / 2 * (2 * mp.pi) ** 2
-        for angle, omega in zip(ANGLES, omega_of(machine.speed, ANGLES)):
+        for angle, omega in zip(ANGLES, machine.at(ANGLES).omega):
             truth = exact_energy(exact_mean, exact_mean / nominal, float(angle))
             error = mp.mpf(inertia) / 2 * mp.mpf(float(omega)) ** 2 / truth - 1
             assert abs(error) < 2e-14
@@ -115,40 +120,32 @@ def test_scipy_marches_to_the_same_state(slip: float, inertia: float) -> None:
     """J(φ) varies tenfold with the light flywheel; scipy's LSODA from the periodic state comes back to it."""
     second = replace(CYLINDER, crank_position=90.0)
     machine = steam(inertia, Load(slip=slip), second)
-    line = machine.speed
     omega_n = machine.omega
-
-    def kinetic(degrees: Any) -> Any:
-        angles = np.atleast_1d(np.asarray(degrees, dtype=float))
-        return line.inertia.energy(line.course.at(angles, angles)).value / line.inertia.omega**2
 
     def slope(phi: float, energy: Any) -> Any:
         angle = np.array([min(max(math.degrees(phi), low), high)])
         middle = np.array([(low + high) / 2])
-        state = machine.turned.effort.torque(angle, middle).value
-        inertial = sum(mass.torque(angle, middle).value for mass in machine.turned.masses)
-        omega = np.sqrt(energy / kinetic(angle))
+        torque = machine.at(angle, middle)
+        omega = np.sqrt(energy / kinetic(machine, angle))
         load = machine.M_mean * (1 + (omega / omega_n - 1) / slip)
-        return state - inertial - load  # the masses are in E already
+        return torque.M - torque.T_inertia * machine.crank - load  # the masses are in E already
 
-    energy = kinetic(0.0) * omega_of(line, np.array([0.0])) ** 2
-    breaks = machine.excess.grid.breaks
+    energy = kinetic(machine, np.zeros(1)) * machine.at([0.0]).omega ** 2
+    breaks = machine.breaks
     for low, high in pairwise(breaks):
         span = (math.radians(low), math.radians(high))
         energy = solve_ivp(slope, span, energy, method="LSODA", rtol=1e-8, atol=1e-8 * energy[0]).y[:, -1]
         if low < 180 <= high or high == 360:
-            expected = kinetic(high)[0] * omega_of(line, np.array([high % 360]))[0] ** 2
+            expected = kinetic(machine, np.array([high % 360]))[0] * machine.at([high % 360]).omega[0] ** 2
             assert energy[0] == pytest.approx(expected, rel=1e-6)
 
 
 def test_power_and_load_are_in_balance() -> None:
     """Over a cycle the load takes what the effort gives, whatever the speed does."""
     machine = steam(2000, Load(slip=0.05))
-    grid = machine.speed.grid
-    omega = omega_of(machine.speed, grid.degrees[:, 1:-1].ravel()).reshape(len(grid.degrees), -1)
-    load = np.zeros_like(grid.degrees)
-    load[:, 1:-1] = machine.M_mean * (1 + (omega / machine.omega - 1) / 0.05)
-    assert grid.integral(load) / (2 * math.pi) == pytest.approx(machine.M_mean, rel=1e-13)
+    pieces, omega = machine.speed.samples_of("omega")
+    load = machine.M_mean * (1 + (omega / machine.omega - 1) / 0.05)
+    assert pieces.mean(load)[0] == pytest.approx(machine.M_mean, rel=1e-13)
 
 
 def test_a_stiff_generator_turns_the_torque_into_a_speed() -> None:
@@ -157,9 +154,7 @@ def test_a_stiff_generator_turns_the_torque_into_a_speed() -> None:
     machine = steam(50000, Load(slip=slip), replace(CYLINDER, crank_position=90.0))
     angles = np.array([10.0, 77.0, 150.0, 260.0])
     expected = slip * (machine.at(angles).M / machine.M_mean - 1)
-    place = machine.speed.course.at(angles, angles)
-    ratio = machine.speed.z(place) / machine.speed.inertia.energy(place).value
-    assert ratio / 2 == pytest.approx(expected, rel=1e-2)
+    assert ratio_of(machine, angles) / 2 == pytest.approx(expected, rel=1e-2)
 
 
 def test_a_heavy_flywheel_keeps_the_digits_of_its_fluctuation() -> None:
@@ -176,7 +171,7 @@ def test_the_mean_speed_over_time_is_the_nominal_one() -> None:
     for inertia in (500.0, 3000.0, 1e6):
         machine = steam(inertia, None)
         phi = np.linspace(0, 360, 20001)
-        slowness = 1 / omega_of(machine.speed, phi)
+        slowness = 1 / machine.at(phi).omega
         mean = np.sum((slowness[1:] + slowness[:-1]) / 2) / 20000
         assert 1 / mean == pytest.approx(machine.omega, rel=1e-8)
         assert machine.omega_mean == pytest.approx(machine.omega, rel=1e-12)
@@ -227,8 +222,8 @@ def test_masses_count_in_full_where_the_efficiency_takes_its_share() -> None:
     """With J(φ) varying and no gas force to speak of, ½ J(φ) ω² stays what it is, whatever the efficiency."""
     idle = replace(CYLINDER, pistons=())
     for eta in (1.0, 0.8):
-        line = Case(Machine((idle,), speed=1.0, flywheel=Flywheel(500.0), efficiency=eta)).flywheel.speed
-        energy = line.inertia.energy(line.course.at(ANGLES, ANGLES)).value * omega_of(line, ANGLES) ** 2
+        machine = Case(Machine((idle,), speed=1.0, flywheel=Flywheel(500.0), efficiency=eta)).flywheel
+        energy = kinetic(machine, ANGLES) * machine.at(ANGLES).omega ** 2
         assert energy == pytest.approx(energy[0], rel=1e-13)
 
 
@@ -237,16 +232,16 @@ def test_a_load_on_a_mean_of_nothing_is_left_out() -> None:
         Machine((replace(CYLINDER, pistons=()),), speed=1.0, flywheel=Flywheel(500.0), load=Load(slip=0.01))
     ).flywheel
     assert machine.load_ignored
-    assert not isinstance(machine.speed, SpeedDependentLoad)
+    assert machine.speed.law is None
 
 
 def test_radau_rule_integrates_polynomials() -> None:
     """Row i of the matrix integrates to c_i exactly up to degree s − 1, the last one, the weights, up to 2s − 2."""
-    nodes, matrix, _ = rule()
+    nodes, area = radau(11).nodes, radau(11).area
     for k in range(len(nodes)):
-        assert matrix @ nodes**k == pytest.approx(nodes ** (k + 1) / (k + 1), abs=2e-15)
+        assert area @ nodes**k == pytest.approx((nodes ** (k + 1) - (-1) ** (k + 1)) / (k + 1), abs=4e-15)
     for k in range(2 * len(nodes) - 1):
-        assert matrix[-1] @ nodes**k == pytest.approx(1 / (k + 1), abs=1e-15)
+        assert area[-1] @ nodes**k == pytest.approx((1 - (-1) ** (k + 1)) / (k + 1), abs=2e-15)
     assert nodes[-1] == 1
 
 
@@ -261,7 +256,7 @@ def test_the_speed_line_does_not_hang_on_where_the_angle_begins(power: float, in
     ]
     deltas = [line.delta for line in lines]
     assert deltas == pytest.approx([deltas[0]] * 5, rel=1e-9)
-    own = [omega_of(line.speed, np.array([0.0, 100.0]) + line.machine.cylinders[0].crank_position) for line in lines]
+    own = [line.at(np.array([0.0, 100.0]) + line.machine.cylinders[0].crank_position).omega for line in lines]
     for omega in own:
         assert omega == pytest.approx(own[0], rel=1e-10)
 
@@ -283,9 +278,9 @@ def test_an_unstable_line_is_where_marching_backward_ends() -> None:
         return effort - machine.M_mean * 150.0 * machine.omega**2 / energy
 
     energy = 150.0 * 25.0
-    for low, high in list(pairwise(machine.excess.grid.breaks))[::-1]:
+    for low, high in list(pairwise(machine.breaks))[::-1]:
         angles = np.linspace(high, low, 2 * steps + 1)
-        efforts = machine.turned.effort.torque(angles, np.full(len(angles), (low + high) / 2)).value.tolist()
+        efforts = machine.at(angles, np.full(len(angles), (low + high) / 2)).M.tolist()
         h = math.radians(low - high) / steps
         for first, middle, last in zip(efforts[:-1:2], efforts[1::2], efforts[2::2]):
             one = slope(first, energy)
@@ -293,7 +288,7 @@ def test_an_unstable_line_is_where_marching_backward_ends() -> None:
             three = slope(middle, energy + h / 2 * two)
             four = slope(last, energy + h * three)
             energy += h / 6 * (one + 2 * two + 2 * three + four)
-    assert math.sqrt(energy / 150.0) == pytest.approx(omega_of(machine.speed, np.array([0.0]))[0], rel=1e-7)
+    assert math.sqrt(energy / 150.0) == pytest.approx(machine.at([0.0]).omega[0], rel=1e-7)
 
 
 def test_the_multiplier_is_exact_far_beyond_what_a_stability_function_can() -> None:
@@ -312,12 +307,12 @@ def rectangle_above_zero() -> list[tuple[float, float]]:
 def test_failing_to_settle_is_not_called_a_standstill(monkeypatch: pytest.MonkeyPatch) -> None:
     machine = steam(800.0, Load(power=2.0))
 
-    def only_heavy(equation: SpeedEquation, breaks: np.ndarray) -> Any:
-        if equation.inertia.flywheel < 3000.0:
+    def only_heavy(equation: SpeedEquation, pieces: Pieces) -> Any:
+        if equation.flywheel[0] < 3000.0:
             raise Unsettled(1000.0)
-        return periodic(equation, breaks)
+        return periodic(equation, pieces)
 
-    monkeypatch.setattr("kurbel.solver.turning.speed.periodic", only_heavy)
+    monkeypatch.setattr("kurbel.solver.speed.periodic", only_heavy)
     with pytest.raises(NoSolutionError, match="no speed line is found that repeats under this load; it turns") as stop:
         _ = machine.speed
     assert 3000 <= float(str(stop.value).partition("from J = ")[2].partition(" kg")[0]) < 6000
@@ -335,7 +330,7 @@ def test_the_turning_part_of_the_rod_counts_as_inertia() -> None:
     one, other = (steam(500.0, None, cylinder=cylinder) for cylinder in (share, exact))
     angles = np.array([0.0, 50.0, 90.0, 222.0])
     plain = steam(500.0, None, cylinder=replace(CYLINDER, masses=Masses(826.0 + 0.4 * 300.0)))
-    with_rod, without = (machine.speed.course.at(angles, angles).moving.value for machine in (one, plain))
+    with_rod, without = (moving_inertia(machine, angles) for machine in (one, plain))
     more = with_rod - without
     assert more == pytest.approx(0.6 * 300.0 * 0.4**2, rel=1e-11)
     assert other.delta == pytest.approx(one.delta, rel=1e-12)

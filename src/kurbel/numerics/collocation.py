@@ -154,10 +154,12 @@ def growth(equation: Equation, found: Periodic) -> Array:
     """Return the logarithms of what is left of small disturbances after a cycle (Floquet), (machines,)."""
     pieces, none = found.pieces, np.zeros(found.pieces.count)
     chain = _Chain(equation, pieces, none)
-    stiffness = chain.half * equation.rate(chain.known, found.y[:, 1:], pieces, none)[1]
+    y = np.where(found.failed[pieces.machine], 0.0, found.y)
+    stiffness = chain.half * equation.rate(chain.known, y[:, 1:], pieces, none)[1]
     if equation.unknowns == 1:  # ∮ ∂f/∂y dφ, which holds however fast a disturbance dies
-        return np.bincount(pieces.machine, chain.rule.area[-1] @ stiffness[0, 0], minlength=pieces.count)
-    gains = chain.padded(chain.answers(stiffness, np.zeros_like(found.y[:, 1:]))[1][-1], np.eye(equation.unknowns))
+        each = chain.rule.area[-1] @ stiffness[0, 0]
+        return np.asarray(np.bincount(pieces.machine, each, minlength=pieces.count), dtype=float)
+    gains = chain.padded(chain.answers(stiffness, np.zeros_like(y[:, 1:]))[1][-1], np.eye(equation.unknowns))
     size = np.zeros(pieces.count)
     while gains.shape[1] > 1:
         if gains.shape[1] % 2:
@@ -166,7 +168,7 @@ def growth(equation: Equation, found: Periodic) -> Array:
         gains = gains[:, 1::2] @ gains[:, ::2]
         largest = np.maximum(np.abs(gains).max(axis=(2, 3), keepdims=True), 1e-300)
         gains, size = gains / largest, size + np.log(largest).sum(axis=(1, 2, 3))
-    return size + np.log(np.maximum(np.abs(np.linalg.eigvals(gains[:, 0])).max(axis=-1), 5e-324))
+    return np.asarray(size + np.log(np.maximum(np.abs(np.linalg.eigvals(gains[:, 0])).max(axis=-1), 5e-324)))
 
 
 # some of the machines in one row
@@ -275,17 +277,17 @@ class _Chain:
     def size(self, jump: Array, lack: Array) -> Array:
         """Return the size of what is lacking, (machines,); not a number where the rate overflows."""
         squares = np.square(jump).sum(axis=0) + np.square(lack).sum(axis=(0, 1))
-        return np.sqrt(np.bincount(self.pieces.machine, squares, minlength=self.pieces.count))
+        return np.asarray(np.sqrt(np.bincount(self.pieces.machine, squares, minlength=self.pieces.count)))
 
     def step(self, jump: Array, lack: Array, stiffness: Array) -> Array:
         """Return Newton's step of y: in a piece δ = response + gain δ_start, its last node starts the next one."""
         response, gain = self.answers(stiffness, lack)
         more = response[-1] + jump[:, self.after].T
         ends, unit = self.padded(gain[-1], np.eye(len(jump))), np.eye(len(jump))
-        start = _around(-ends, np.broadcast_to(unit, ends.shape), self.padded(more, np.zeros(len(jump))))
+        start = joined_around(-ends, np.broadcast_to(unit, ends.shape), self.padded(more, np.zeros(len(jump))))
         start = start[self._row, self._place]
         inside = response + (gain @ start[:, :, None])[..., 0]
-        return np.concatenate((start[None], inside)).transpose(2, 0, 1)
+        return np.asarray(np.concatenate((start[None], inside)).transpose(2, 0, 1))
 
     def answers(self, stiffness: Array, lack: Array) -> tuple[Array, Array]:
         """Return the changes at the nodes (k, pieces, m) that answer a lack, and to unit changes at the start."""
@@ -323,13 +325,13 @@ def _solved(systems: Array, sides: Array) -> Array:
         return np.concatenate([_solved(systems[k : k + 1], sides[k : k + 1]) for k in range(len(systems))])
 
 
-def _around(before: Array, after: Array, sides: Array) -> Array:
+def joined_around(before: Array, after: Array, sides: Array) -> Array:
     """Return x (n, k, m) with before_i x_i + after_i x_{i+1} = sides_i, x_k being x_0; matrices (n, k, m, m).
 
     Every second x is eliminated by rotations, which do not mind whether a solution grows or dies on its way, until one
     is left. What the equations leave open there is taken as small as can be. Of what is not finite it is not a number.
     """
-    finite = np.isfinite(before).all(axis=(1, 2, 3)) & np.isfinite(sides).all(axis=(1, 2))
+    finite = np.asarray(np.isfinite(before).all(axis=(1, 2, 3)) & np.isfinite(sides).all(axis=(1, 2)))
     found = _eliminated(
         *(np.where(finite.reshape(-1, *(1,) * (one.ndim - 1)), one, 0) for one in (before, after, sides))
     )
@@ -432,8 +434,8 @@ def _followed(equation: Equation, pieces: Pieces, y: Array) -> Periodic:
         if not tame.any():
             break
         deep = own * 100.0**hundredfolds
-        *trial, good = _settled(equation, *_of(*first, tame), np.where(tame, deep - own, 0.0))
-        pieces, y = _put(pieces, y, *trial, good)
+        finer, values, good = _settled(equation, *_of(*first, tame), np.where(tame, deep - own, 0.0))
+        pieces, y = _put(pieces, y, finer, values, good)
         depth, tame = np.where(good, deep, depth), tame & ~good
     running &= np.isfinite(depth)
     factor = np.full(pieces.count, _STEP)
@@ -442,8 +444,8 @@ def _followed(equation: Equation, pieces: Pieces, y: Array) -> Periodic:
         if not running.any():
             break
         nearer = np.maximum(depth * factor, own)
-        *trial, good = _settled(equation, *_of(pieces, y, running), np.where(running, nearer - own, 0.0))
-        pieces, y = _put(pieces, y, *trial, good)
+        finer, values, good = _settled(equation, *_of(pieces, y, running), np.where(running, nearer - own, 0.0))
+        pieces, y = _put(pieces, y, finer, values, good)
         depth = np.where(good, nearer, depth)
         factor = np.where(good, np.maximum(factor**1.5, _STEP), np.where(running, np.sqrt(factor), factor))
     failed = here & ~(depth <= own)

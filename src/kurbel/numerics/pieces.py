@@ -8,13 +8,14 @@ polynomial yet, by the tail of its Chebyshev coefficients, is halved: no other k
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Number
+from kurbel.numerics.arithmetic import lost
 from kurbel.numerics.lobatto import Rule, rule, series_at, slope_of_series
 
 ROUNDING = 1e-14
@@ -23,6 +24,8 @@ TAIL = 1e-13
 """Of the largest value: a piece whose last two coefficients are larger is halved."""
 NARROWEST = 1e-5
 """Degrees of a piece that is halved no more: only the rounding of angles is rough there."""
+_STRAIGHT = 1e-15
+"""Of the largest value: by what a polynomial exceeds its samples where only rounding bends it."""
 _REPEATED = 1e-12
 """Of the largest value: by what equal summits of a curve differ that is summed over cylinders, or solved for."""
 _SUMMIT = 0.5
@@ -110,8 +113,7 @@ class Pieces:
 
     def with_nodes(self, nodes: int) -> Pieces:
         """Return these pieces with so many nodes each."""
-        columns = (self.right_angle, self.offset, self.half, self.machine)
-        return Pieces(*columns, self.count, self.cycle, rule(nodes))
+        return replace(self, rule=rule(nodes))
 
     def halved(self, rows: Indices | Flags) -> Pieces:
         """Return the halves of these pieces, in order."""
@@ -163,7 +165,7 @@ class Pieces:
         following = np.where(self.after == self.first[self.machine], self.cycle, following)
         return np.where(np.abs(following - own) < _SAME, following, own)
 
-    def of(self, numbers: Number) -> Number:
+    def of(self, numbers: Any) -> Any:
         """Return numbers of the machines, (machines,), at their pieces; one number stays one."""
         return numbers[self.machine] if isinstance(numbers, np.ndarray) and numbers.ndim else numbers
 
@@ -190,8 +192,10 @@ class Pieces:
     def running(self, values: Array) -> Array:
         """Return ∫ value dφ (φ in radians) from the angle 0 to every node, (nodes, pieces)."""
         inside = (self.rule.area @ values) * np.radians(self.half)
-        before = np.cumsum(inside[-1]) - inside[-1]
-        return inside + (before - before[self.first][self.machine])
+        after = np.cumsum(inside[-1])
+        before = np.append(0.0, after[:-1])
+        before[1:] += np.cumsum(lost(before, inside[-1], after))[:-1]
+        return np.asarray(inside + (before - before[self.first][self.machine]))
 
     def carried(self, values: Array, source: Pieces, later: Number = 0.0) -> Array:
         """Return samples (…, nodes, pieces) of other pieces, within which these lie, at the nodes of these.
@@ -270,6 +274,10 @@ class Pieces:
         rows, places, turning = _turning_points(samples, self.rule)
         inside = np.abs(places) < _INSIDE
         rows, places, turning = rows[inside], places[inside], turning[inside]
+        top = samples.max(axis=0)[rows]  # by the rounding of a straight line nothing exceeds its ends
+        turning = np.where(
+            turning > top + _STRAIGHT * size[which, self.machine[piece]][rows], turning, np.minimum(turning, top)
+        )
         value = np.concatenate((samples[0], samples[-1], turning))
         ends = self.low[piece], self.high[piece], self._at(piece[rows], places)
         quantity, owner = (

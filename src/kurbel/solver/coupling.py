@@ -10,6 +10,7 @@ q = √(k (1/J₁ + 1/J₂))/ω_n, and for each mass J ω_n (ω − ω_n).
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -22,6 +23,7 @@ from kurbel.numerics.collocation import growth, periodic
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces
 from kurbel.solver.effort import TurningEffort
+from kurbel.solver.harmonics import amplitudes
 from kurbel.solver.speed import SpeedLaw
 
 _NEAR = 0.1
@@ -38,8 +40,6 @@ _SWING = 120.0
 """Degrees of a natural oscillation that one piece may hold at first, …"""
 _MOST_PARTS = 8000
 """… though a piece is cut into no more parts than these."""
-_RESOLVED = 10.0
-"""Radians of an order over a piece whose samples give its amplitude to the last digit."""
 
 
 class Harmonic(NamedTuple):
@@ -62,12 +62,12 @@ class ElasticCoupling:
 
     def __init__(self, effort: TurningEffort, own: Array, law: SpeedLaw | None) -> None:
         coupling: Any = effort.machine.coupling
+        omega: Any = effort.omega
         self.effort, self.law, self.own = effort, law, own
         self.stiffness, self.damping, self.driven, self.omega = (
-            np.broadcast_to(one, own.shape)
-            for one in (coupling.stiffness, coupling.damping, coupling.inertia, effort.omega)
+            np.broadcast_to(one, own.shape) for one in (coupling.stiffness, coupling.damping, coupling.inertia, omega)
         )
-        self._order = natural_order(coupling, own, effort.omega)
+        self._order = natural_order(coupling, own, omega)
         self.noise = np.zeros(own.shape)
         self.failed: Flags = np.zeros(own.shape, dtype=bool) if law is None else law.mean == 0
         self._torques = np.stack((effort.true_excess.torque + effort.load, effort.load)) - effort.pieces.of(effort.mean)
@@ -162,7 +162,8 @@ class ElasticCoupling:
 
     @cached_property
     def _extremes(self) -> tuple[Array, Array, Array, Array]:
-        return tuple(self.pieces.extremes(self.samples))
+        high, high_at, low, low_at = self.pieces.extremes(self.samples)
+        return high, high_at, low, low_at
 
     def _end(self, which: int, smallest: bool, base: Array) -> Extreme:
         value, degrees = (one[which] for one in self._extremes[2 * smallest : 2 * smallest + 2])
@@ -239,7 +240,10 @@ class ElasticCoupling:
         step, natural = 360 / self.effort.cycle, float(self._order[machine])
         low, high = (natural * (1 + side * _NEAR) / step for side in (-1, 1))
         orders = step * np.arange(max(np.ceil(low), 1), np.floor(high) + 1)
-        effort, load = self._amplitudes(machine, orders)
+        pieces = self.effort.pieces.taken(self.effort.pieces.machine == machine)
+        alone = replace(pieces, machine=np.zeros_like(pieces.machine), count=1)
+        torques = self._torques[..., self.effort.pieces.machine == machine]
+        effort, load = amplitudes(alone, torques, orders)[..., 0]
         k, d, J1, J2, omega = (
             float(one[machine]) for one in (self.stiffness, self.damping, self.own, self.driven, self.omega)
         )
@@ -250,24 +254,13 @@ class ElasticCoupling:
             passed = np.abs(spring * (effort * second + load * first) / (first * second + spring * (first + second)))
         return orders, np.abs(effort), np.abs(load), passed
 
-    def _amplitudes(self, machine: int, orders: Array) -> Array:
-        """Return the complex amplitudes (2, k) in N m of effort and load of a machine by these orders."""
-        source = self.effort.pieces
-        rows = source.machine == machine
-        parts = np.ceil(2 * np.radians(source.half[rows]) * orders.max(initial=1.0) / _RESOLVED).astype(int)
-        fine = _split(source.taken(rows), parts)
-        weights = np.radians(fine.half) * fine.rule.weights[:, None] / np.radians(source.cycle)
-        shares = fine.carried(self._torques, source) * weights
-        waves = [np.exp(-1j * np.radians(np.mod(order * fine.degrees, 360.0))) for order in orders]
-        return 2 * np.array([(shares * wave).sum(axis=(1, 2)) for wave in waves], dtype=complex).reshape(-1, 2).T
-
     @cached_property
     def _size(self) -> Array:
         """Amplitude in N m of a single harmonic of the mean square that effort and load swing by, (n,)."""
-        return np.sqrt(2 * self.effort.pieces.mean(self._torques**2)).sum(axis=0)
+        return np.asarray(np.sqrt(2 * self.effort.pieces.mean(self._torques**2)).sum(axis=0))
 
     @property
-    def _load_slope(self) -> Array:
+    def load_slope(self) -> Array:
         """Slope of the load over the speed at the nominal one in N m s/rad, (n,)."""
         if self.law is None:
             return np.zeros_like(self.own)
@@ -276,7 +269,7 @@ class ElasticCoupling:
 
     def _refuse_resonance(self) -> None:
         """Raise NoSolutionError where a harmonic that is there meets the natural order and nothing damps it."""
-        for machine in np.flatnonzero((self.damping == 0) & (self._load_slope == 0)):
+        for machine in np.flatnonzero((self.damping == 0) & (self.load_slope == 0)).tolist():
             size = self._size[machine]
             orders, effort, load, passed = self._harmonics(machine, 0.0)
             stuck = ~(passed < _ENDLESS * size) & (np.maximum(effort, load) > _PRESENT * size)
@@ -290,7 +283,7 @@ class ElasticCoupling:
     @property
     def resonances(self) -> tuple[Harmonic, ...]:
         """Harmonics of the only machine that are present in the torque and near the natural order."""
-        orders, effort, load, passed = self._harmonics(0, float(self._load_slope[0]))
+        orders, effort, load, passed = self._harmonics(0, float(self.load_slope[0]))
         amplitudes, distance = effort + load, orders / self._order[0] - 1
         rigid = (effort * self.driven + load * self.own) / (self.own + self.driven)
         gain = passed / np.where(rigid > 0, rigid, np.inf)
@@ -306,13 +299,13 @@ def natural_order(coupling: Coupling, own: Array, omega: Any) -> Array:
 def _cut(pieces: Pieces, order: Array) -> Pieces:
     """Return pieces that hold no more of a natural oscillation than one may at first."""
     parts = np.ceil(2 * pieces.half * (pieces.of(order) / _SWING)).clip(1, _MOST_PARTS).astype(int)
-    return _split(pieces, parts)
-
-
-def _split(pieces: Pieces, parts: Array) -> Pieces:
-    """Return each piece cut into so many equal parts (pieces,)."""
     row = np.repeat(np.arange(len(parts)), parts)
     number = np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)
-    half = pieces.half[row] / parts[row]
-    offset = pieces.offset[row] + 2 * half * number
-    return Pieces(pieces.right_angle[row], offset, half, pieces.machine[row], pieces.count, pieces.cycle, pieces.rule)
+    offset = pieces.offset[row] + 2 * pieces.half[row] * number / parts[row]
+    return replace(
+        pieces,
+        right_angle=pieces.right_angle[row],
+        offset=offset,
+        half=pieces.half[row] / parts[row],
+        machine=pieces.machine[row],
+    )

@@ -37,6 +37,8 @@ _ROUNDING = 1e-13
 """Of the largest torque: a smaller mean, as that of masses without gas, is rounding."""
 _CANCELLED = 4e-14
 """Of the terms of a sum: where nothing larger is left over the whole cycle, they cancel."""
+_UNIFORM = 1e-14
+"""Of the largest torque: where the load differs from the effort by no more all over the cycle, they are equal."""
 _BALANCED = 1e-9
 """Means of effort and load that differ by less, relatively, are equal."""
 _LEVEL = 16 * float(np.finfo(float).eps)
@@ -215,13 +217,14 @@ class TurningEffort:
     def M(self) -> Array:
         """The turning effort in N m, with the losses of the machine; see `share`."""
         if self.given:
-            return self.indicated * self.pieces.of(self.share(None))
+            return np.asarray(self.indicated * self.pieces.of(self.share(None)))
         return self.indicated if not some(self.machine.efficiency != 1) else self.sampled(self.terms)
 
     def M_at(self, degrees: Array, within: Array) -> Array:
         """Return the same of one machine at crank angles (k,) in degrees, on the sides of jumps that hold `within`."""
         if self.given:
-            return self.given.at(degrees, within, np.zeros(len(within), dtype=np.intp)) * self.share(None)
+            given = self.given.at(degrees, within, np.zeros(len(within), dtype=np.intp))
+            return np.asarray(given * self.share(None))
         return self.sum_at(self.terms, degrees, within)
 
     @cached_property
@@ -261,13 +264,13 @@ class TurningEffort:
         """The load in N m at the nominal speed: the mean of M, or that by points brought to the same mean."""
         if self.diagram is None:
             return np.broadcast_to(self.pieces.of(self.mean), self.pieces.degrees.shape)
-        return self._diagram_samples + self.pieces.of(self.deficit)
+        return np.asarray(self._diagram_samples + self.pieces.of(self.deficit))
 
     def load_at(self, degrees: Array, within: Array) -> Array:
         """Return the same of one machine at crank angles (k,) in degrees, on the sides of jumps that hold `within`."""
         if self.diagram is None:
             return np.full_like(degrees, self.mean[0])
-        return self.diagram.at(degrees, within, np.zeros(len(within), dtype=np.intp)) + self.deficit[0]
+        return np.asarray(self.diagram.at(degrees, within, np.zeros(len(within), dtype=np.intp)) + self.deficit[0])
 
     # the masses
 
@@ -334,7 +337,9 @@ class ExcessWork:
     """The works between the crossings of effort and load; torque: M − M_load in N m, (nodes, pieces)."""
 
     def __init__(self, effort: TurningEffort, torque: Array) -> None:
-        self._effort, self.pieces, self.torque = effort, effort.pieces, torque
+        self._effort, self.pieces = effort, effort.pieces
+        uneven = self.pieces.largest(torque) > _UNIFORM * self.pieces.largest(effort.M)
+        self.torque = np.where(self.pieces.of(uneven), torque, 0.0)
 
     @cached_property
     def E(self) -> Array:

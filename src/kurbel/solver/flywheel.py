@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from kurbel.solver.figures import Columns, Results, passed_on
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.speed import Course, SpeedLaw, SpeedLine, speed_line
 
+_Line = TypeVar("_Line")
 RIGID_ABOVE = 100.0
 """Natural order from which on a coupling counts as rigid: it transmits what a rigid one would but for 1 in 10⁴."""
 _MISSED = 1e-3
@@ -55,11 +56,13 @@ class MachineTurning(Results):
         self.machine = machine
         self.effort = TurningEffort(machine, cylinders, count)
         self.excess = self.effort.excess
-        self.omega = self.effort.omega
+        self.omega: Any = self.effort.omega
         self.crank = machine.cylinders[0].mechanism.crank if machine.cylinders else None
         self.brake = Brake(machine, cylinders)
         wheel = machine.flywheel
         self._given, self._wanted, self._rim = (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
+        if count is not None:
+            _ = self.natural_order  # which refuses machines of a batch before anything is told of them
 
     @property
     def answering(self) -> tuple[Any, ...]:
@@ -117,11 +120,12 @@ class MachineTurning(Results):
             return self.speed.samples_of(column) if self.speed else None
         if arm is None or (column == "T_inertia" and not effort.inertia_terms):
             return None
-        values = {
-            "E": lambda: self.excess.E,
-            "M_load": lambda: effort.load,
-            "T_inertia": lambda: effort.sampled(effort.inertia_terms),
-        }.get(column, lambda: effort.M)()
+        if column == "E":
+            values = self.excess.E
+        elif column == "M_load":
+            values = effort.load
+        else:
+            values = effort.sampled(effort.inertia_terms) if column == "T_inertia" else effort.M
         return effort.pieces, values / arm
 
     # turning effort
@@ -155,7 +159,7 @@ class MachineTurning(Results):
     def deficit(self) -> Any:
         """Mean effort less the mean of a resistance given by points, in N m; None where they agree."""
         found = self.effort.deficit
-        return self.effort.told(found) if found.any() else None
+        return self.effort.told(np.where(found == 0, np.nan, found)) if found.any() else None
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
@@ -240,18 +244,26 @@ class MachineTurning(Results):
     def delta_book(self) -> Any:
         """δ ≈ ΔE/(J ω²) of the books: constant J, and a load that does not depend on the speed."""
         inertia = (0.0 if self.J is None else self.J) + self._driven_rigidly
-        return self.dE / (inertia * self.omega**2) if self._turns and every(inertia != 0) else None
+        if not self._turns or not some(inertia != 0):
+            return None
+        return self.dE / (np.where(inertia == 0, np.nan, inertia)[()] * self.omega**2)
 
     # coupling
 
     @cached_property
     def natural_order(self) -> Any:
         """Natural frequency of cranks and driven inertia on the coupling, over ω; None where not defined."""
-        flywheel = self._needed_in_all if self._given is None else self._given
-        if self.machine.coupling is None or flywheel is None or not self._turns:
+        if self.machine.coupling is None or not self._turns or (self._given is None and self._wanted is None):
             return None
+        flywheel = self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
         own = self.effort.J_moving_mean + flywheel
-        return self.effort.told(natural_order(self.machine.coupling, own, self.omega)) if every(own != 0) else None
+        if not every(own != 0):
+            return None
+        found = natural_order(self.machine.coupling, own, self.omega)
+        stiff = found > RIGID_ABOVE
+        if not stiff.all():  # of a batch the others have a motion of their own
+            self.effort.refused |= stiff & (self.effort.count is not None)
+        return self.effort.told(found)
 
     @property
     def rigid(self) -> bool:
@@ -262,13 +274,15 @@ class MachineTurning(Results):
     def _driven_rigidly(self) -> Any:
         return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
 
-    @property
+    @cached_property
     def elastic(self) -> ElasticCoupling | None:
         """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
 
         Raises NoSolutionError where no motion of it repeats.
         """
-        return self.speed if isinstance(self.speed, ElasticCoupling) else None
+        if self.J is None or not self._turns or self._needs_no_inertia:
+            return None
+        return self._told_of_stalls(lambda: self._coupled(self.J))
 
     # speed line
 
@@ -298,8 +312,13 @@ class MachineTurning(Results):
         """
         if self.J is None or not self._turns:
             return None
+        flywheel = 1.0 if self._needs_no_inertia else self.J
+        return self._told_of_stalls(lambda: _turning(self.elastic or self._rigid(flywheel)))
+
+    def _told_of_stalls(self, solved: Callable[[], _Line]) -> _Line:
+        """Return a solution with the flywheel; where there is none raise NoSolutionError with one that turns."""
         try:
-            return self._line(1.0 if self._needs_no_inertia else self.J, rigid=self._needs_no_inertia)
+            return solved()
         except Unsettled as stop:
             raise NoSolutionError(self._refusal(self.J, stop)) from None
 
@@ -307,23 +326,29 @@ class MachineTurning(Results):
     def _course(self) -> Course:
         return Course(self.effort)
 
-    def _line(self, flywheel: Any, rigid: bool = False) -> SpeedLine | ElasticCoupling:
-        """Return the speed line with a flywheel in kg m², by itself or before the coupling.
+    def _coupled(self, flywheel: Any) -> ElasticCoupling | None:
+        """Return the motion on an elastic coupling with a flywheel in kg m²; None without one, or on a rigid one.
 
         Raises Standstill, Unsettled, NoSolutionError, UsageError.
         """
-        coupling, inertia = self.machine.coupling, np.broadcast_to(flywheel, self.effort.mean.shape).astype(float)
-        own = inertia + self.effort.J_moving_mean
-        if coupling and not rigid and some(own == 0) and self.effort.count is None:
+        if self.machine.coupling is None:
+            return None
+        own = np.asarray(flywheel + self.effort.J_moving_mean)
+        if self.effort.count is None and not own[0]:
             raise UsageError("nothing before the coupling has any inertia: give 'flywheel' an inertia")
-        if coupling and not rigid and some(natural_order(coupling, own, self.omega) <= RIGID_ABOVE):
-            line: SpeedLine | ElasticCoupling = ElasticCoupling(self.effort, own, self.law)
-        else:
-            line = speed_line(self._course, self.law, inertia + (coupling.inertia if coupling else 0.0))
-        slowest = line.omega_min
-        if self.effort.count is None and not slowest.value > 0:
-            raise Standstill(slowest.degrees)
-        return line
+        if not some(natural_order(self.machine.coupling, own, self.omega) <= RIGID_ABOVE):
+            return None
+        return ElasticCoupling(self.effort, own, self.law)
+
+    def _rigid(self, flywheel: Any) -> SpeedLine:
+        """Return the speed line without a coupling, or with a rigid one; raises Standstill, Unsettled, UsageError."""
+        driven = self.machine.coupling.inertia if self.machine.coupling else 0.0
+        whole = np.broadcast_to(np.asarray(flywheel + driven, dtype=float), self.effort.mean.shape)
+        return speed_line(self._course, self.law, whole)
+
+    def _line(self, flywheel: Any) -> SpeedLine | ElasticCoupling:
+        """Return the speed line with a flywheel in kg m²; raises Standstill, Unsettled, NoSolutionError, UsageError."""
+        return _turning(self._coupled(flywheel) or self._rigid(flywheel))
 
     def _delta_with(self, flywheel: float) -> float:
         """Return δ of the speed line with a flywheel in kg m²; inf where it stalls."""
@@ -413,6 +438,14 @@ class MachineTurning(Results):
             return wanted / delta - 1 if delta else math.inf
 
         return rising_root(surplus, self.J_needed)
+
+
+def _turning(line: SpeedLine | ElasticCoupling) -> SpeedLine | ElasticCoupling:
+    """Return the line of many machines, or of one if it never stands still; raises Standstill."""
+    slowest = line.omega_min
+    if isinstance(slowest.value, float) and not slowest.value > 0:
+        raise Standstill(slowest.degrees)
+    return line
 
 
 def _smallest(turns: Callable[[float], bool], least: float, start: float, exact: bool) -> float | None:

@@ -32,6 +32,11 @@ _TAIL = 1e-13
 """Of the largest value: a piece whose last two coefficients of r are larger is halved."""
 _NARROWEST = 1e-8
 """Degrees of a piece that is halved no more."""
+_MORE_PIECES = 3000
+"""So many more pieces show what can be shown of ω_n/ω: beyond them its rounding is halved."""
+_FASTEST = 1e11
+"""Largest (ω/ω_n)² that leaves a digit of the smallest one."""
+_BEYOND = "the speed line leads beyond what can be computed with: check effort and flywheel"
 _NO_INERTIA = 1e-12
 """Of the largest inertia over the turn: what is smaller is none."""
 
@@ -98,7 +103,7 @@ class SpeedEquation:
     def energy(self, moving: Array, pieces: Pieces) -> Array:
         """Return ½ J(φ) ω_n² in J where the moving masses have so much inertia in kg m²."""
         omega: Any = self.course.effort.omega
-        return (moving + pieces.of(self.flywheel)) * pieces.of(omega * omega / 2)
+        return np.asarray((moving + pieces.of(self.flywheel)) * pieces.of(omega * omega / 2))
 
     def known(self, pieces: Pieces) -> Array:
         """Return M − M_load at uniform rotation in N m, and ½ J(φ) ω_n² in J."""
@@ -141,7 +146,7 @@ class SpeedLine:
         self.course, self.flywheel, self.law, self.pieces = course, flywheel, law, pieces
         self.ratio, self.failed, self._growth = np.where(pieces.of(failed), 0.0, ratio), failed, growth
         if course.effort.count is None and not np.isfinite(ratio).all():
-            raise UsageError("the speed line leads beyond what can be computed with: check effort and flywheel")
+            raise UsageError(_BEYOND)
 
     def told(self, values: Array) -> Any:
         """Return numbers of the machines (n,), nan of those that have no line, or that of the only one."""
@@ -263,6 +268,7 @@ def _constant_load(course: Course, flywheel: Array) -> tuple[Pieces, Array, Flag
     """
     omega: Any = course.effort.omega
     pieces = course.pieces
+    most = np.bincount(pieces.machine) + _MORE_PIECES
     while True:
         moving, excess = course.on(pieces, 1, 2)
         energy = (moving + pieces.of(flywheel)) * pieces.of(omega * omega / 2)
@@ -271,10 +277,15 @@ def _constant_load(course: Course, flywheel: Array) -> tuple[Pieces, Array, Flag
             _, at, _, _ = pieces.extremes((-excess + (_SLOWEST**2 - 1) * energy)[None])
             raise Standstill(float(at[0, 0]))
         ratio = np.where(pieces.of(stands), 0.0, (excess + pieces.of(constant)) / energy)
+        beyond = ~(pieces.largest(ratio) < _FASTEST)
+        if course.effort.count is None and beyond[0]:
+            raise UsageError(_BEYOND)
+        stands, ratio = stands | beyond, np.where(pieces.of(beyond), 0.0, ratio)
         both = np.stack((ratio, 1 + _slowness(ratio)))
         size = np.maximum.reduceat(np.abs(both).max(axis=1), pieces.first, axis=1)
         tails = np.abs(pieces.rule.series[-2:] @ both).max(axis=1)
         rough = (tails > _TAIL * size[:, pieces.machine]).any(axis=0) & (pieces.half > _NARROWEST / 2)
+        rough &= pieces.of(np.bincount(pieces.machine) < most)
         if not rough.any():
             return pieces, ratio, stands
         parts = [pieces.taken(~rough), pieces.halved(rough)]
