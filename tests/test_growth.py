@@ -167,11 +167,6 @@ def test_a_rod_hardly_longer_than_the_crank_is_no_larger_a_problem() -> None:
     assert peak("balance", "n.yaml") < 2 * peak("balance", "m.yaml")
 
 
-@pytest.mark.xfail(
-    strict=True,
-    raises=AssertionError,
-    reason="four times the memory for twice the cylinders: 346 MB for 40, 2.2 GB and 7 s for 100",
-)
 def test_check_grows_with_the_cylinders_not_with_their_square() -> None:
     run("check", in_line(2))
     found = [peak("check", in_line(count)) for count in (12, 24)]

@@ -244,9 +244,9 @@ def test_a_killed_worker_is_named_and_resume_goes_on(tmp_path: Path) -> None:
 
 
 def test_rows_that_are_answered_one_after_another_are_handed_over_early() -> None:
-    """In the company of others, so that they read as ever; a limit on delta makes the rows of any column slow."""
-    origin = source.read(WATERWORKS).set_over(["limits.delta=1/20"])
-    spec = sweep.Spec(origin, ("rod_ratio=3:6:0.1",), columns=("S_peak",))
+    """In the company of others, so that they read as ever; a shaper is answered one by one."""
+    origin = source.read(str(Path(WATERWORKS).parent / "shaper.yaml"))
+    spec = sweep.Spec(origin, ("ram_force.work=3:6:0.1 kN",), columns=("T_max",))
     chunks = list(sweep.Sweep(spec).chunks(range(5, 31)))
     assert chunks == [
         (range(20), range(5, 15)),
@@ -254,8 +254,11 @@ def test_rows_that_are_answered_one_after_another_are_handed_over_early() -> Non
         (range(20, 31), range(20, 30)),
         (range(20, 31), range(30, 31)),
     ]
-    without = sweep.Sweep(spec._replace(origin=origin.set_over(["limits={}"])))
-    assert list(without.chunks(range(5, 31))) == [(range(20), range(5, 20)), (range(20, 31), range(20, 31))]
+    waterworks = sweep.Spec(source.read(WATERWORKS), ("rod_ratio=3:6:0.1",), columns=("S_peak",))
+    assert list(sweep.Sweep(waterworks).chunks(range(5, 31))) == [
+        (range(20), range(5, 20)),
+        (range(20, 31), range(20, 31)),
+    ]
 
 
 @pytest.mark.slow

@@ -62,14 +62,20 @@ def dead_centre_force(forces: CylinderForces, cycle: float) -> Extreme | None:
     At the end of the stroke both oppose the motion, and the parts before the pump must stand their sum. None where
     the cylinder does not both drive and drive a pump.
     """
-    if not (forces.work_driving and forces.work_driven):
+    driving, driven = forces.work_driving, forces.work_driven
+    both = np.asarray(driving is not None and (driving > 0) & (driven < 0))
+    if not both.any():
         return None
-    drive = forces.drive
-    centres = np.add.outer(np.arange(0.0, drive.cycle, 360.0), drive.mechanism.dead_centres()).ravel()
-    angles = np.repeat(centres, 2)
-    values = drive.at(angles, angles + np.tile([-1e-6, 1e-6], len(centres))).P_gas
-    largest = int(np.argmax(np.abs(values)))
-    return Extreme(float(values[largest]), float(np.mod(angles[largest], cycle)))
+    drive, count = forces.drive, forces.drive.count or 1
+    centres = np.stack([np.broadcast_to(one, count) for one in drive.mechanism.dead_centres()], axis=1)
+    turns = np.add.outer(centres, np.arange(0.0, drive.cycle, 360.0)).swapaxes(1, 2).reshape(count, -1)
+    angles = np.repeat(turns, 2, axis=1)
+    sides = angles + np.tile([-1e-6, 1e-6], turns.shape[1])
+    machine = np.repeat(np.arange(count), angles.shape[1])
+    values = drive.at(angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
+    largest = np.arange(count), np.abs(values).argmax(axis=1)
+    found = np.where(both, values[largest], np.nan), np.mod(angles[largest], cycle)
+    return Extreme(*map(forces.told, found))
 
 
 def _efficiency_notes(turning: MachineTurning) -> Iterable[str]:
