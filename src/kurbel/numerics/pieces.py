@@ -108,8 +108,13 @@ class Pieces:
 
     def taken(self, rows: Indices | Flags) -> Pieces:
         """Return these of the pieces; they then no longer fill the cycle."""
-        columns = (self.right_angle, self.offset, self.half, self.machine)
-        return Pieces(*(one[rows] for one in columns), self.count, self.cycle, self.rule)
+        return replace(
+            self,
+            right_angle=self.right_angle[rows],
+            offset=self.offset[rows],
+            half=self.half[rows],
+            machine=self.machine[rows],
+        )
 
     def with_nodes(self, nodes: int) -> Pieces:
         """Return these pieces with so many nodes each."""
@@ -117,12 +122,10 @@ class Pieces:
 
     def halved(self, rows: Indices | Flags) -> Pieces:
         """Return the halves of these pieces, in order."""
-        right_angle, half, machine = (
-            np.repeat(one[rows], 2) for one in (self.right_angle, self.half / 2, self.machine)
-        )
-        offset = np.repeat(self.offset[rows], 2)
+        right_angle, half = np.repeat(self.right_angle[rows], 2), np.repeat(self.half[rows] / 2, 2)
+        offset, machine = np.repeat(self.offset[rows], 2), np.repeat(self.machine[rows], 2)
         offset[1::2] += 2 * half[1::2]
-        return Pieces(right_angle, offset, half, machine, self.count, self.cycle, self.rule)
+        return replace(self, right_angle=right_angle, offset=offset, half=half, machine=machine)
 
     # where they lie
 
@@ -187,7 +190,7 @@ class Pieces:
 
     def mean(self, values: Array) -> Array:
         """Return the means over the cycle, (…, machines)."""
-        return self.integral(values) / np.radians(self.cycle)
+        return np.asarray(self.integral(values) / np.radians(self.cycle))
 
     def running(self, values: Array) -> Array:
         """Return ∫ value dφ (φ in radians) from the angle 0 to every node, (nodes, pieces)."""
@@ -359,7 +362,7 @@ def _halved_until_smooth(
     while True:
         values = function(todo, parts)
         top = np.zeros((len(values), pieces.count))
-        np.maximum.at(top, (slice(None), todo.machine), np.abs(values).max(axis=1))
+        np.maximum.at(top.T, todo.machine, np.abs(values).max(axis=1).T)
         size = np.maximum(size, top)
         judged = values
         if only_highest:
@@ -389,7 +392,7 @@ def _rough(pieces: Pieces, values: Array, size: Array) -> Flags:
         share = np.nan_to_num(tails / size[:, pieces.machine], nan=0.0, posinf=0.0).max(axis=0)
     rough: Flags = (share > TAIL) & (pieces.half > NARROWEST / 2)
     crowd = np.bincount(pieces.machine[rough], minlength=pieces.count) > _CROWD
-    return rough & ((share > _NOISE) | ~crowd[pieces.machine])
+    return np.asarray(rough & ((share > _NOISE) | ~crowd[pieces.machine]))
 
 
 def joined(parts: list[Pieces], values: list[Array]) -> tuple[Pieces, Array]:
@@ -465,4 +468,4 @@ def _roots(series: Array, low: Array, high: Array, first: Array, last: Array) ->
         moved, places = np.abs(new - places), new
         if not (moved > 4e-16).any():
             break
-    return places
+    return np.asarray(places)

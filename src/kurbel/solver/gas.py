@@ -344,7 +344,7 @@ def _processes(chamber: Any, setting: Setting, count: int | None) -> tuple[Proce
     """Return one process, or one of every machine."""
     several = isinstance(chamber, Chambers) or isinstance(setting.ambient, np.ndarray)
     if not several or count is None:
-        return (process_in(chamber, setting.lift, setting.cycle, setting.base),)  # type: ignore[arg-type]
+        return (process_in(chamber, setting.lift, setting.cycle, setting.base),)
     each = [chamber] * count
     if isinstance(chamber, Chambers) and chamber.which is not None:
         each = [chamber.each[place] for place in chamber.which.tolist()]

@@ -81,13 +81,13 @@ class Indicated:
         """Share of p_i in Pa of compression and expansion."""
         if self.gas is None or self.mean_pressure_exchange is None:
             return None
-        return self.gas.work / self.gas.swept_volume - self.mean_pressure_exchange
+        return float(self.gas.work / self.gas.swept_volume) - self.mean_pressure_exchange
 
     def _share(self, pressure: TracePressure) -> float:
         """Return the share of a chamber in the swept volume."""
         assert self.gas is not None
         area = self.gas.piston.head_area if pressure.setting.head_end else self.gas.piston.crank_area
-        return area * pressure.setting.mechanism.stroke / self.gas.swept_volume
+        return float(area * pressure.setting.mechanism.stroke / self.gas.swept_volume)
 
     # the measured cycles
 

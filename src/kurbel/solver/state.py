@@ -335,7 +335,7 @@ class State:
             above = self.guide_sense
         else:
             above = State(self.drive, CrankAngle.of(self.within), self.within, self.rubs).guide_sense
-        return 2.0 * (above >= 0) - 1.0
+        return np.where(above >= 0, 1.0, -1.0)
 
     @cached_property
     def below(self) -> Any:

@@ -61,7 +61,7 @@ def middle_of(machine: Machine) -> float | None:
         return given
     lowest = reduce(lambda one, other: where(other < one, other, one), places)
     highest = reduce(lambda one, other: where(other > one, other, one), places)
-    return (lowest + highest) / 2  # type: ignore[no-any-return]
+    return (lowest + highest) / 2
 
 
 def wheels_of(machine: Machine) -> tuple[float, ...]:
