@@ -7,6 +7,7 @@ from kurbel.numerics.arithmetic import where
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
+    from kurbel.numerics.pieces import Pieces
 
 _RADIANS_PER_DEGREE = math.pi / 180
 
