@@ -192,6 +192,7 @@ _WORK_VALUES = (
     _forces(
         "energy_residual", "ΔA/A", "ratio", "Energy in minus energy out by an independent quadrature", residual=True
     ),
+    _forces("residual", "r_F", "ratio", "What Newton's law leaves open of the forces, over the largest", residual=True),
     *EFFORT_VALUES,
 )
 

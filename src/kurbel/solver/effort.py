@@ -29,7 +29,7 @@ from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.state import State
+from kurbel.solver.state import State, reduced_inertia
 
 _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
@@ -66,13 +66,6 @@ def inertia_torque(state: State) -> Any:
     if rod is None:
         return torque
     return torque - rod.couple(state.rod_angle, state.angle) * rod.swing_slope(state.rod_angle, state.angle)
-
-
-def reduced_inertia(state: State) -> Any:
-    """Return m x′² + … in kg m²: what the moving masses of a cylinder, connecting rod included, add to the shaft."""
-    rod = state.drive.rod
-    inertia = state.slope * state.slope * state.drive.mass + state.drive.pin_inertia
-    return inertia + rod.reduced_inertia(state.rod_angle, state.angle) if rod else inertia
 
 
 class Term(NamedTuple):

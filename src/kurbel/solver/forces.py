@@ -26,6 +26,7 @@ from kurbel.solver.figures import Results, crank_angles
 from kurbel.solver.friction import redtenbacher_loss
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
+from kurbel.solver.newton import residual
 from kurbel.solver.state import State
 
 
@@ -301,6 +302,11 @@ class CylinderForces(SampledCylinder, Results):
         if lost is None or driving is None or every(driving == 0):
             return None
         return lost / where(driving == 0, math.nan, driving)
+
+    @cached_property
+    def residual(self) -> float | None:
+        """What Newton's law leaves open of the forces, over the largest; of one machine."""
+        return residual(self)
 
     @cached_property
     def energy_residual(self) -> Any:

@@ -25,7 +25,7 @@ from kurbel.arrays import Array, ComplexArray
 from kurbel.solver.cycle import SampledCylinder
 from kurbel.solver.drive import Drive
 from kurbel.solver.pins import on_crosshead_pin, on_pin
-from kurbel.solver.state import State
+from kurbel.solver.state import State, reduced_inertia
 
 _ANGLES = np.random.default_rng(1927).uniform(0.0, 1.0, 7)
 """Of the cycle."""
@@ -46,7 +46,7 @@ def residual(cylinder: SampledCylinder) -> float | None:
     left = [_crosshead(drive, state), _shaft(drive, state)]
     if math.isfinite(drive.mechanism.rod_length):
         left += _rod(drive, state)
-    return max(cylinder.tail, *(float(np.abs(one).max() / max(sizes)) for one in left))
+    return max(cylinder.tail, _energy(drive, state), *(float(np.abs(one).max() / max(sizes)) for one in left))
 
 
 def _gravity(drive: Drive) -> complex:
@@ -72,6 +72,26 @@ def _shaft(drive: Drive, state: State) -> Array:
     rubbing, R = state.rubbing, drive.mechanism.crank
     lost = 0.0 if rubbing is None else rubbing.at_crank + rubbing.journals
     return np.asarray((state.T * R - lost - state.M) / R)
+
+
+def _energy(drive: Drive, state: State) -> float:
+    """Return what is left of J less 2E/ω² of the moving bodies, over J: their speeds are dz/dφ of their places."""
+    masses, mechanism, angle = drive.cylinder.masses, drive.mechanism, state.angle
+    if masses is None or not math.isfinite(mechanism.rod_length):
+        return 0.0
+    R, L, rod = mechanism.crank, mechanism.rod_length, masses.connecting_rod
+    sin_psi, cos_psi = state.rod_angle
+    turn = R * angle.cos / (L * cos_psi)
+    pin = R * (-angle.sin + 1j * angle.cos)
+    crosshead = pin.real - L * sin_psi * turn
+    J = masses.parts * crosshead**2 + masses.rotating * R * R
+    if rod is not None and rod.exact:
+        share = (rod.center_of_gravity or 0.0) / L
+        J = J + rod.mass * np.abs(crosshead * (1 - share) + pin * share) ** 2 + (rod.inertia or 0.0) * turn**2
+    elif rod is not None:
+        J = J + rod.mass * (rod.share * crosshead**2 + (1 - rod.share) * R * R)
+    size = float(np.max(J))
+    return float(np.abs(J - reduced_inertia(state)).max()) / size if size else 0.0
 
 
 class _Motion(NamedTuple):

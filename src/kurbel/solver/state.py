@@ -521,5 +521,12 @@ class State:
         return None if self._point is None or w is None else self._point.acceleration * (w * w)
 
 
+def reduced_inertia(state: State) -> Any:
+    """Return m x′² + … in kg m²: what the moving masses of a cylinder, connecting rod included, add to the shaft."""
+    rod = state.drive.rod
+    inertia = state.slope * state.slope * state.drive.mass + state.drive.pin_inertia
+    return inertia + rod.reduced_inertia(state.rod_angle, state.angle) if rod else inertia
+
+
 def _sum(first: Any, second: Any) -> Any:
     return second if first is None else first if second is None else first + second
