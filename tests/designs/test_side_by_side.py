@@ -62,7 +62,7 @@ def varied(cylinder: Cylinder, random: np.random.Generator) -> Cylinder:
 
 def asked_of(machine: Machine) -> list[Answer]:
     known = quantities_of(machine.cylinders[0].mechanism).key_values("forces").values()
-    return [Answer(one, "forces", machine.cylinders[0].name) for one in known if one.id != "energy_residual"]
+    return [Answer(one, "forces", machine.cylinders[0].name) for one in known if not one.residual]
 
 
 def with_angle(one: Answer) -> list[Answer]:

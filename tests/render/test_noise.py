@@ -59,6 +59,7 @@ def test_only_residuals_are_taken_for_rounding() -> None:
     assert not shown_key_values([(KEY_VALUES["multiplier"], 1e-60)], "si")[0].noise
     assert [name for name, quantity in KEY_VALUES.items() if quantity.residual] == [
         "energy_residual",
+        "residual",
         "equilibrium_residual",
         "holzer_residual",
     ]

@@ -30,11 +30,12 @@ from kurbel.numerics.pieces import refined
 from kurbel.numerics.waves import crests
 from kurbel.solver.chain import Chain, Holzer, Modes, Motion, Response, Rise, motion, passing, response
 from kurbel.solver.drive import Drive
-from kurbel.solver.effort import Term, TurningEffort, inertia_torque, reduced_inertia, shaft_torque
+from kurbel.solver.effort import Term, TurningEffort, inertia_torque, shaft_torque
 from kurbel.solver.figures import Columns, Results
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.harmonics import HIGHEST, MachineOrders, Spectrum, every_order
 from kurbel.solver.speed import SpeedLaw
+from kurbel.solver.state import reduced_inertia
 
 NEAR = 0.1
 """A critical speed so near the working speed, relatively, is worth a note."""
