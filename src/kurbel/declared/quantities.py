@@ -252,5 +252,5 @@ class Lists:
 
 
 COMMON = Lists.of()
-"""What every machine may have; a mechanism adds its own (`kurbel.mechanisms.every_quantity`)."""
+"""What every machine may have; a mechanism adds its own (`kurbel.mechanisms.kinds.every_quantity`)."""
 COLUMNS = by_id(*(one for one in COMMON.all_columns if one.commands))
