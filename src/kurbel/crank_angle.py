@@ -102,7 +102,12 @@ def _turned(right_angle: "Array", offset: "Array") -> "tuple[Array, Array]":
     rest = offset * _RADIANS_PER_DEGREE
     sin, cos = np.sin(rest), np.cos(rest)
     quarter = (right_angle / 90.0).astype(int) % 4
-    swapped = quarter % 2 == 1
+    swapped, signs = quarter % 2 == 1, np.array(((1.0, 1.0, -1.0, -1.0), (1.0, -1.0, -1.0, 1.0)))[:, quarter]
+    if swapped.shape == sin.shape:
+        sin, cos = np.where(swapped, cos, sin), np.where(swapped, sin, cos)
+    else:  # of whole pieces, in place
+        sin[:, swapped], cos[:, swapped] = cos[:, swapped], sin[:, swapped]
+    sin *= signs[0]
+    cos *= signs[1]
     # adding 0.0 turns −0.0 into 0.0
-    signs = np.array((1.0, 1.0, -1.0, -1.0)), np.array((1.0, -1.0, -1.0, 1.0))
-    return np.where(swapped, cos, sin) * signs[0][quarter] + 0.0, np.where(swapped, sin, cos) * signs[1][quarter] + 0.0
+    return np.add(sin, 0.0, out=sin), np.add(cos, 0.0, out=cos)

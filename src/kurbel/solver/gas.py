@@ -363,7 +363,7 @@ def _over_the_angle(
 
     Those over no width, being jumps, are left out. One process of many machines lies elsewhere in each.
     """
-    machine, stroke, table = _rows_of(processes, setting, count)
+    machine, stroke, table = _rows_of(processes, count)
     # the crank end begins its process at the outer dead centre, one stroke later
     number = stroke + (0 if setting.head_end else 1)
     mechanism = setting.mechanism if count is None else taken(setting.mechanism, machine)
@@ -389,18 +389,21 @@ def _over_the_angle(
     return machine, angles, angles[following], Segment(*(part[wide][order] for part in table))
 
 
-def _rows_of(processes: tuple[Process, ...], setting: Setting, count: int | None) -> tuple[Indices, Indices, Segment]:
+def _rows_of(processes: tuple[Process, ...], count: int | None) -> tuple[Indices, Indices, Segment]:
     """Return whose each segment is, of which stroke, and the segments, (n,), in the order of the process."""
-    if len(processes) == 1 and count is not None:
-        processes = processes * count
+    different = {id(one): one for one in processes}
     rows = [
-        (machine, number, *segment)
-        for machine, process in enumerate(processes)
-        for number, stroke in enumerate(process.strokes)
-        for segment in stroke
+        np.array([(number, *segment) for number, stroke in enumerate(one.strokes) for segment in stroke])
+        for one in different.values()
     ]
-    machine, stroke, *columns = np.array(rows).T
-    return machine.astype(np.intp), stroke.astype(np.intp), Segment(*columns)
+    numbers = {key: number for number, key in enumerate(different)}
+    which = np.broadcast_to([numbers[id(one)] for one in processes], count or 1)
+    lengths = np.array([len(one) for one in rows])
+    machine = np.repeat(np.arange(len(which)), lengths[which])
+    begins = (np.cumsum(lengths) - lengths)[which]
+    own = np.cumsum(lengths[which]) - lengths[which]
+    stroke, *columns = np.concatenate(rows)[np.arange(len(machine)) + (begins - own)[machine]].T
+    return machine, stroke.astype(np.intp), Segment(*columns)
 
 
 def _dead_centre(mechanism: Mechanism, number: Indices) -> Array:
