@@ -218,6 +218,15 @@ def test_what_differs_may_be_anything() -> None:
         assert farthest(asked, values, alone(machine, asked)) <= 1e-12
 
 
+def test_a_brake_may_stand_on_many_machines() -> None:
+    """It was a fault in kurbel: efficiencies asked whether an array is true."""
+    text = STEAM.replace("friction: {crosshead: 0.1}", "brake_power: 20 kW")
+    machines = [loads(text, overrides=[f"speed={speed} rpm"]) for speed in (50, 60, 70, 80)]
+    asked = list(asked_answers(machines[0], ("eta_m", "mean_pressure_brake", "mean_pressure_friction")))
+    for machine, values in zip(machines, together(machines, asked)):
+        assert farthest(asked, values, alone(machine, asked)) <= 1e-12
+
+
 def test_many_machines_leave_nothing_for_the_garbage_collection() -> None:
     """Of a chunk it would be a hundred megabytes."""
 

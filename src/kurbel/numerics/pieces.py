@@ -32,6 +32,8 @@ _SUMMIT = 0.5
 """Degrees in which as high a value belongs to one summit."""
 _CROWD = 100
 """Rough pieces of one machine: a pole or a kink keeps two to four, noise makes them ever more."""
+_OFTEN = 6
+"""Halvings after which a crowd is still as large only where it is noise."""
 _NOISE = 1e-8
 """Of the largest value: the tail of such a crowd is noise."""
 _SAME = 1e-9
@@ -370,7 +372,7 @@ def _halved_until_smooth(
             some = may.any(axis=0)
             todo, values, parts = todo.taken(some), values[..., some], parts[..., some]
             judged = values * may[:, None, some]
-        rough = _rough(todo, judged, size)
+        rough = _rough(todo, judged, size, len(done))
         if not (done or rough.any()):
             return todo, values, parts
         done.append(todo.taken(~rough))
@@ -385,14 +387,17 @@ def _halved_until_smooth(
     return whole, both[: len(values)], both[len(values) :]
 
 
-def _rough(pieces: Pieces, values: Array, size: Array) -> Flags:
-    """Return which pieces are to be halved; size: of the quantities, (q, machines), as far as it is known."""
+def _rough(pieces: Pieces, values: Array, size: Array, halvings: int) -> Flags:
+    """Return which pieces are to be halved; size: of the quantities, (q, machines), as far as it is known.
+
+    halvings: how many times these have been. A crowd of rough pieces that halving does not thin out is noise.
+    """
     tails = np.abs(pieces.rule.series[-2:] @ values).max(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.nan_to_num(tails / size[:, pieces.machine], nan=0.0, posinf=0.0).max(axis=0)
     rough: Flags = (share > TAIL) & (pieces.half > NARROWEST / 2)
     crowd = np.bincount(pieces.machine[rough], minlength=pieces.count) > _CROWD
-    return np.asarray(rough & ((share > _NOISE) | ~crowd[pieces.machine]))
+    return np.asarray(rough & (((share > _NOISE) & (halvings < _OFTEN)) | ~crowd[pieces.machine]))
 
 
 def joined(parts: list[Pieces], values: list[Array]) -> tuple[Pieces, Array]:

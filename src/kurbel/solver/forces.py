@@ -435,40 +435,42 @@ class Brake:
         self.machine, self.cylinders = machine, cylinders
 
     @cached_property
-    def indicated(self) -> float | None:
+    def indicated(self) -> Any:
         """Indicated power in W of all cylinders, negative where they are driven; None where one has none."""
         powers = [forces.power for forces in self.cylinders]
         known = [power for power in powers if power is not None]
-        return math.fsum(known) if known and len(known) == len(powers) else None
+        return total(*known) if known and len(known) == len(powers) else None
 
     @cached_property
-    def _swept(self) -> float | None:
-        """Volume in m³ that the cylinders' own pistons sweep per second against their pressures."""
+    def _swept(self) -> Any:
+        """Volume in m³ that the cylinders' own pistons sweep per second against their pressures; None at rest."""
         speed, volumes = self.machine.speed, list(map(_swept_rate, self.cylinders))
         known = [volume for volume in volumes if volume is not None]
-        return math.fsum(known) * speed if speed and len(known) == len(volumes) and known else None
+        whole = total(*known) if known and len(known) == len(volumes) else None
+        return None if whole is None or speed is None or every(whole * speed == 0) else whole * speed
 
     @property
-    def mean_pressure_brake(self) -> float | None:
+    def mean_pressure_brake(self) -> Any:
         """p_e in Pa: brake power over the volume swept in a second."""
         power = self.machine.brake_power
-        return None if power is None or not self._swept else power / self._swept
+        return None if power is None or self._swept is None else power / self._swept
 
     @property
-    def mean_pressure_friction(self) -> float | None:
+    def mean_pressure_friction(self) -> Any:
         """p_r in Pa: |p_i| less p_e, or p_e less |p_i| where the machine is driven."""
-        brake = self.mean_pressure_brake
-        if brake is None or self.indicated is None or not self._swept:
+        brake, indicated = self.mean_pressure_brake, self.indicated
+        if brake is None or indicated is None:
             return None
-        return math.copysign(1.0, self.indicated) * (abs(self.indicated) / self._swept - brake)
+        return where(indicated < 0, -1.0, 1.0) * (abs(indicated) / self._swept - brake)
 
     @property
-    def eta_m(self) -> float | None:
+    def eta_m(self) -> Any:
         """Brake over indicated power, or indicated over brake power where the machine is driven."""
         power, indicated = self.machine.brake_power, self.indicated
-        if not power or not indicated:
+        if power is None or indicated is None or every(power == 0) or every(indicated == 0):
             return None
-        return power / indicated if indicated > 0 else -indicated / power
+        drives = indicated > 0
+        return where(drives, power, -indicated) / where(drives, indicated, power)
 
 
 def _swept_rate(forces: CylinderForces) -> float | None:
