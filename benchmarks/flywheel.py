@@ -76,7 +76,7 @@ def truth(inertia: float) -> np.ndarray:
 
 def by_kurbel(inertia: float) -> np.ndarray:
     """The periodic state by collocation."""
-    omega = of_points(POINTS, RPM, inertia=inertia, load=Load(power=2.0)).speed.omega(ANGLES)
+    omega = of_points(POINTS, RPM, inertia=inertia, load=Load(power=2.0)).at(ANGLES).omega
     return inertia / 2 * omega**2
 
 

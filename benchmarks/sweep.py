@@ -27,6 +27,7 @@ from kurbel.designs.sweep import Spec, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.machine.variants import Lot
 from kurbel.machine_file import source
+from kurbel.machine_file.reader import read_machine
 from kurbel.render import Look
 from kurbel.render.sweep_output import Titles, csv_rows
 
@@ -34,7 +35,15 @@ CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = "waterworks"
 OTHERS = ("locomotive", "gas-engine", "offset-engine", "steam-ideal", "diesel-two-stroke", "gas-engine-double-acting")
 """Machines whose rods and speeds are varied, too."""
-SINGLE, RUNS = 10, 8
+CHAPTERS = (
+    ("waterworks-two-cranks", ("dE",)),
+    ("four-cylinder-generator", ("delta",)),
+    ("four-in-line", ("F_free_max", "M_free_max", "counterweight_best")),
+    ("gas-engine", ("load_max", "unloaded_arc")),
+    ("gas-engine", ("sigma_pin_max",)),
+)
+"""Key values of the whole machine."""
+SINGLE, RUNS = 10, 5
 
 
 def seconds(task: Callable[[], object]) -> float:
@@ -51,6 +60,14 @@ def designs(name: str, count: int) -> list[Lot]:
     """Machines like one that is shipped, with rods and speeds of every length and size."""
     binder = Binder(source.read(CONFIGS / f"{name}.yaml"), ("rod_ratio", "speed"), ("5", "50 rpm"))
     return binder.bound([(f"{ratio:.6f}", f"{40 + ratio:.6f} rpm") for ratio in np.linspace(3, 6, count)]).lots
+
+
+def at_speeds(name: str, count: int) -> list[Lot]:
+    """Machines like one that is shipped, at so many speeds."""
+    origin = source.read(CONFIGS / f"{name}.yaml")
+    speed = 60 * (read_machine(origin).speed or 1.0)
+    binder = Binder(origin, ("speed",), (f"{speed} rpm",))
+    return binder.bound([(f"{speed * share:.6f} rpm",) for share in np.linspace(0.9, 1.1, count)]).lots
 
 
 def told(name: str, many: float, count: int, single: float | None = None) -> None:
@@ -78,6 +95,9 @@ def main() -> None:
     for name in OTHERS:
         lots = designs(name, AT_ONCE)
         beside_alone(f"key values of forces: {name}", lots, list(asked_answers(lots[0].one(0), ())))
+    for name, columns in CHAPTERS:
+        lots = at_speeds(name, AT_ONCE)
+        beside_alone(f"{', '.join(columns)}: {name}", lots, list(asked_answers(lots[0].one(0), columns)))
     told("binding to the file", seconds(lambda: designs(WATERWORKS, AT_ONCE)), AT_ONCE)
     vary = ("rod_ratio=uniform(3, 6)", "speed=uniform(40, 60 rpm)")
     begin = time.process_time()
