@@ -20,6 +20,9 @@ _FEWEST = 3
 AT_ONCE = 1000
 """Machines of a batch: enough to share the overhead of one run; more would only take memory."""
 
+_LARGE, _AT_ONCE_LARGE = ("stress", "bearings"), 200
+"""Commands with many quantities at the nodes, and machines of a batch for them: 1000 would take a gigabyte."""
+
 Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, a tuple or None each; or why it answers nothing."""
 
@@ -59,9 +62,10 @@ class _Answers:
         self._found: dict[int, Values] = {}
 
     def found(self, wanted: Container[int] | None) -> dict[int, Values]:
+        at_once = min(AT_ONCE, _AT_ONCE_LARGE) if any(one.command in _LARGE for one in self._asked) else AT_ONCE
         for rows in () if self._one_by_one or not self._asked else self._of_one_structure():
-            for start in range(0, len(rows), AT_ONCE):
-                self._together(rows[start : start + AT_ONCE])
+            for start in range(0, len(rows), at_once):
+                self._together(rows[start : start + at_once])
         return {
             row: self._found[row] if row in self._found else self._alone(row)
             for row in self._places
