@@ -52,11 +52,6 @@ def arcsin(value: Any) -> Any:
     return _of(value, "asin", "arcsin")
 
 
-def arsinh(value: Any) -> Any:
-    """Return the area of a hyperbolic sine, a float or an array."""
-    return _of(value, "asinh", "arcsinh")
-
-
 def ulp(value: Any) -> Any:
     """Return the unit in the last place of a positive float or array."""
     return _of(value, "ulp", "spacing")

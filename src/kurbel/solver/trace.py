@@ -15,7 +15,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.machine.trace import Pegging, Trace
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.extreme import Extreme
-from kurbel.numerics.pieces import Angles, Pieces
+from kurbel.numerics.pieces import Angles, Pieces, refined
 
 
 def spread(number: Any, machine: Indices | None) -> Any:
@@ -211,17 +211,16 @@ class TracePressure:
     def _straight_weights(self, begin: float, turn: float) -> Array:
         """Return the weights of the samples in ∫ p dz from a dead centre on over so many degrees."""
         mechanism, cycle = self.setting.mechanism, self.setting.cycle
-        turns = np.add.outer(mechanism.cuts(), np.arange(0.0, cycle, 360.0)).ravel()
+        turns = np.add.outer(mechanism.dead_centres(), np.arange(0.0, cycle, 360.0)).ravel()
         breaks = np.append(self._starts, turns)
         nodes = 16 if len(breaks) < _DENSE else 10
-        pieces = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
+        whole = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
+        pieces, (slope,) = refined(whole, lambda some: self._fraction("slope", some.degrees)[None])
         number = np.searchsorted(self._starts, pieces.middle, side="right") - 1
         since = np.mod(pieces.middle - self._starts[number], cycle) + (pieces.degrees - pieces.middle)
         share = since / (self._segments.end - self._segments.start)[number]
         meant = np.mod(pieces.middle - begin, cycle) < turn
-        by_node = (
-            np.radians(pieces.half) * meant * pieces.rule.weights[:, None] * self._fraction("slope", pieces.degrees)
-        )
+        by_node = np.radians(pieces.half) * meant * pieces.rule.weights[:, None] * slope
         sample, count = self._first[number], len(self.pressures)
         of_start = np.bincount(sample, (by_node * (1 - share)).sum(axis=0), count)
         return np.asarray(of_start + np.bincount(sample + 1, (by_node * share).sum(axis=0), count))
