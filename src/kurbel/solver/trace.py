@@ -1,7 +1,7 @@
 """A measured trace as the pressure in a chamber: straight over the crank angle between its samples.
 
-Before it counts it is freed from drift over the cycle, and pegged to a level that the sensor does not know. What it
-tells beside forces, the exponents of p V^n = const that compression and expansion follow, is at the end.
+First the drift over the cycle is removed, and the level, which the sensor does not give, is set by pegging. At the end:
+the exponents of p V^n = const that compression and expansion follow.
 """
 
 import math
@@ -24,11 +24,11 @@ def spread(number: Any, machine: Indices | None) -> Any:
 
 
 class Setting(NamedTuple):
-    """Where a chamber stands and what its pressures count from.
+    """Which chamber it is, and what its pressures count from.
 
     cycle: degrees of crank angle, 360 or 720; ambient: absolute pressure in Pa; absolute: whether the chamber's own
-    figures are; mirrored: the crank end repeats the head end's figures one stroke later. Of many machines numbers are
-    arrays (machines,), which type checkers are not told.
+    figures are; mirrored: the crank end repeats the head end's figures one stroke later. For many machines numbers are
+    arrays (machines,); the annotations are those of one.
     """
 
     mechanism: Mechanism
@@ -52,7 +52,7 @@ class Setting(NamedTuple):
 _OF_MEDIAN = 1.4826
 """Standard deviation over the median of the magnitude, of what is normally distributed."""
 _CHORD = 1.0
-"""Degrees over which a rise of pressure is told: between two samples it would be their noise."""
+"""Degrees over which a rise of pressure is measured: between two samples it would be their noise."""
 _DENSE = 600
 """Breaks of a cycle from which on its pieces are short enough for few nodes."""
 _ENOUGH = 72
@@ -258,7 +258,7 @@ def corrected(trace: Trace, setting: Setting, shift: float) -> Array:
 def drift_of(trace: Trace, samples: Array) -> Array:
     """Return by how much Pa each cycle (m,) ends too low to go on as it has begun.
 
-    Where the closing sample is missing, straight lines through the samples at both ends tell what it would have been.
+    Where the closing sample is missing, straight lines through the samples at both ends estimate it.
     """
     if not trace.completed:
         return np.asarray(samples[:, 0] - samples[:, -1])
