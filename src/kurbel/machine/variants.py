@@ -98,7 +98,7 @@ class Chambers:
     """One end of a cylinder of many machines: the different chambers, and which one each machine has, (machines,)."""
 
     each: tuple[Any, ...]
-    which: Indices | None
+    which: Indices
 
     @property
     def cycles(self) -> tuple[str, ...]:
@@ -126,7 +126,7 @@ def count_of(record: Any) -> int | None:
     if isinstance(record, np.ndarray):
         return len(record)
     if isinstance(record, Chambers):
-        return None if record.which is None else len(record.which)
+        return len(record.which)
     parts = record if isinstance(record, tuple) else (getattr(record, name) for name in _varied(record))
     return next((count for part in parts if (count := count_of(part)) is not None), None)
 

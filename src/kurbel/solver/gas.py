@@ -346,7 +346,7 @@ def _processes(chamber: Any, setting: Setting, count: int | None) -> tuple[Proce
     if not several or count is None:
         return (process_in(chamber, setting.lift, setting.cycle, setting.base),)
     each = [chamber] * count
-    if isinstance(chamber, Chambers) and chamber.which is not None:
+    if isinstance(chamber, Chambers):
         each = [chamber.each[place] for place in chamber.which.tolist()]
     lifts, bases = (np.broadcast_to(one, count).tolist() for one in (setting.lift, setting.base))
     made: dict[tuple[int, float, float], Process] = {}
