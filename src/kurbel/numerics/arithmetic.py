@@ -102,7 +102,7 @@ def lost(before: Any, term: Any, whole: Any) -> Any:
 
 
 _ROUNDING = 16 * 2.0**-52
-"""What is left of terms that cancel, beside the sum of their sizes, is rounding."""
+"""Relative to the sum of the sizes of terms: a smaller sum of them is rounding."""
 
 
 def unless_cancelled(whole: Any, sizes: Any) -> Any:

@@ -306,9 +306,9 @@ class Pieces:
 
 
 def common(parts: Sequence[tuple[Pieces, Number]], cycle: float) -> Pieces:
-    """Return the pieces of a cycle in degrees, as long as those of the parts or several times, within all of theirs.
+    """Return the pieces of a cycle in degrees, one or several times those of the parts, that lie within all of theirs.
 
-    parts: each with the degrees, (machines,), by which its own angle is behind that of the common pieces.
+    parts: each with the degrees, a number or (machines,), by which its angle lags that of the common pieces.
     """
     first = parts[0][0]
     if len(parts) == 1 and not np.any(parts[0][1]) and first.cycle == cycle:
@@ -319,7 +319,7 @@ def common(parts: Sequence[tuple[Pieces, Number]], cycle: float) -> Pieces:
         starts = np.mod(one.low + one.of(later), one.cycle)
         degrees += [starts + turn for turn in np.arange(0.0, cycle, one.cycle)]
         machine += [one.machine] * (len(degrees) - len(machine))
-    nodes = min(len(one.rule.nodes) for one, _ in parts)
+    nodes = max(len(one.rule.nodes) for one, _ in parts)
     return Pieces.between(Angles(np.concatenate(machine), np.concatenate(degrees)), first.count, cycle, nodes)
 
 

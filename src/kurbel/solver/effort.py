@@ -26,7 +26,7 @@ from kurbel.machine.alike import gathered, work_alike
 from kurbel.machine.turning import Effort, Harmonics
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import Angles, Pieces
+from kurbel.numerics.pieces import Angles, Pieces, common
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State, reduced_inertia
@@ -131,18 +131,13 @@ class TurningEffort:
     @cached_property
     def pieces(self) -> Pieces:
         """The cycle in pieces on which every torque is a polynomial."""
-        first = self.cylinders[0].pieces if self.cylinders else None
-        alone = len(self.cylinders) == 1 and first is not None and first.cycle == self.cycle and self.diagram is None
-        if first is not None and alone and not some(position(self.cylinders[0]) != 0):
-            return first
-        breaks = [given.breaks for given in (self.given, self.diagram) if given]
-        for group in self.groups:
-            own = group[0].pieces
-            turns = np.arange(0.0, self.cycle, own.cycle)
-            breaks += [Angles(own.machine, own.low + own.of(position(one)) + turn) for one in group for turn in turns]
-        nodes = max((len(group[0].pieces.rule.nodes) for group in self.groups), default=16)
-        whole = Angles(*(np.concatenate(parts) for parts in zip(*breaks)))
-        return Pieces.between(whole, self.count or 1, self.cycle, nodes)
+        none = Angles(np.zeros(0, dtype=np.intp), np.zeros(0))
+        breaks = [none, *(given.breaks for given in (self.given, self.diagram) if given)]
+        cuts = Angles(*(np.concatenate(parts) for parts in zip(*breaks)))
+        if not self.cylinders:
+            return Pieces.between(cuts, self.count or 1, self.cycle)
+        parts = [(group[0].pieces, position(one)) for group in self.groups for one in group]
+        return common(parts, self.cycle).split(cuts)
 
     def sampled(self, terms: Sequence[Term]) -> Array:
         """Return the sum of the terms on the common pieces; exactly 0 in machines where the terms cancel."""

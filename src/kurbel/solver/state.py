@@ -316,7 +316,7 @@ class State:
 
     @cached_property
     def _guide_load(self) -> Any:
-        """What rests on the guide beside the push of the rod in N: weight less the couples on the rod."""
+        """Load on the guide besides the push of the rod in N: weight less the side force of couples on the rod."""
         weight = self.drive.guide_weight
         return weight if self.rod_side is None else weight - self.rod_side
 
