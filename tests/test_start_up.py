@@ -46,7 +46,7 @@ def test_the_end_loses_nothing_that_was_written_before() -> None:
 def test_the_torque_at_given_angles_needs_no_search() -> None:
     case = Case(load(WATERWORKS))
     assert case.balance.at(np.array([10.0])).M_roll is not None
-    assert "grid" not in vars(case.cylinders[0])
+    assert "pieces" not in vars(case.cylinders[0])
 
 
 def test_no_reversal_of_the_rod_load_of_an_engine_is_searched() -> None:

@@ -16,8 +16,8 @@ class CrankAngle(NamedTuple):
     """A crank angle, or an array of them, with its sine and cosine.
 
     degrees: angle in degrees, any size; sin, cos: of the same shape. The formulas of the mechanisms need only
-    `sin` and `cos`, which may be floats, arrays or numbers of higher precision alike. rod: (sin ψ, cos ψ) of the
-    one mechanism that is asked about these angles, where they are known: most of its formulas need them.
+    `sin` and `cos`, which may be floats, arrays or numbers of higher precision alike. rod: (sin ψ, cos ψ) at
+    these angles of the one mechanism that they are used with, where known: most of its formulas need them.
     """
 
     degrees: Any
@@ -68,7 +68,7 @@ def within_cycle(degrees: "Array", cycle: float) -> "Array":
     """Return angles (n,) in degrees as those of a cycle, from 0 on and less than its end."""
     import numpy as np
 
-    if degrees.size and degrees.min() >= 0 and degrees.max() <= cycle:  # as grids have them: numpy.mod takes its time
+    if degrees.size and degrees.min() >= 0 and degrees.max() <= cycle:  # numpy.mod is slow
         return np.where(degrees == cycle, 0.0, degrees)
     return np.asarray(np.mod(degrees, cycle))
 

@@ -209,11 +209,6 @@ def test_what_it_offers_fits_what_it_says(machine):
         assert math.hypot(*machine.rod_angle(angle)) == pytest.approx(1, rel=1e-15)
 
 
-@every()
-def test_landmarks_are_angles(machine):
-    assert all(-90 <= mark <= 450 for mark in machine.landmarks())
-
-
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_every_word_names_a_class_that_is_built_from_its_keys(name):
     mechanism = MECHANISMS[name].load()

@@ -63,7 +63,7 @@ def _of_motion(cylinder: Cylinder) -> Iterator[Difference]:
 
 def _has_torque(machine: Machine, cylinder: Cylinder) -> bool:
     has_gas = any(piston.indicator for piston in cylinder.pistons)
-    return has_gas and not any(why_not(machine, one) for one in machine.cylinders)
+    return has_gas and not any(why_not(one) for one in machine.cylinders)
 
 
 def _of_torque(machine: Machine, causes: dict[str, dict[str, Any]]) -> Iterator[Difference]:

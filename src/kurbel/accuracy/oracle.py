@@ -138,7 +138,7 @@ class Chamber:
             yield segment.z if self.head_end else 1 - segment.z
 
 
-def why_not(machine: Machine, cylinder: Cylinder) -> str:
+def why_not(cylinder: Cylinder) -> str:
     """Return why there is no independent calculation of a cylinder's forces, or an empty text."""
     from kurbel.machine.indicator import Card
 

@@ -15,8 +15,6 @@ from kurbel.accuracy.given import End, Given
 from kurbel.arrays import Array
 from kurbel.machine import Cylinder, Machine
 
-FORMULAS = ("exact", "first-order", "infinite", "printed")
-
 
 class Moved:
     """The motion at crank angles (n,) in radians, (n,) each; every formula is computed when it is asked for."""

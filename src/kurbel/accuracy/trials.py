@@ -91,7 +91,7 @@ def _of_forces(machine: Machine, cylinder: Cylinder) -> Iterator[Question | Lack
         (rubs, "A_f", references.friction_work, rivals.friction_methods),
     )
     found = [each for there, *each in asked if there]
-    if found and (why := why_not(machine, cylinder)):
+    if found and (why := why_not(cylinder)):
         yield Lacking("work, T, friction work", why)
         return
     for quantity, reference, methods in found:
@@ -108,7 +108,7 @@ def _of_machine(machine: Machine) -> Iterator[Question | Lacking]:
         if machine.effort is not None:
             yield Lacking("ΔE, ω", "no independent calculation of a given turning effort")
         return
-    why = next((why for cylinder in machine.cylinders if (why := why_not(machine, cylinder))), "")
+    why = next((why for cylinder in machine.cylinders if (why := why_not(cylinder))), "")
     if machine.load and machine.load.diagram:
         why = why or "no independent calculation of a load given by points"
     if machine.efficiency != 1:

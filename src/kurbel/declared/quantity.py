@@ -1,4 +1,4 @@
-"""What is said of a printed quantity, and the order in which several of them stand."""
+"""The declaration of a printed quantity, and the order of several of them."""
 
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
@@ -23,16 +23,15 @@ class Quantity(NamedTuple):
 
     `id` stands in JSON and CSV, `symbol` over the printed table (`plain` where the output has no Greek letters, if it
     is more than what stands for each of them), `kind` decides the unit (see `units`), and `text` says in one sentence
-    what it is. `commands` print it, as far as the machine has it; the results of a command answer it by the attribute
-    of its id, or where they have it, by what it `asks`: the name of a method, its argument, and which part of its
-    answer.
+    what it is. `commands` print it, if the machine has it. Its value is the attribute of its id in the results of the
+    command, or what `asks` names: a method of the results, its argument, and which part of what it returns.
     `extremes`: of a column, the commands that print its largest and smallest value as key values `<id>_max` and
     `<id>_min`; `called` names it in their sentences.
-    `unless`: where the results say that this is so, it says nothing new and is printed only if it is asked for.
-    `after`: the id behind which it stands, if not where it is declared. A `residual` would be zero without rounding:
-    people are not shown what of it is only that. On what is `listed`, a list of values, no bound can be put.
+    `unless`: an attribute of the results; where it is true, the quantity adds nothing and is printed only on request.
+    `after`: the id after which it is printed, if not where it is declared. A `residual` would be zero without rounding:
+    tables do not show rounding. A quantity that is `listed`, a list of values, cannot have a bound.
     `peak`: a column with extremes that has, besides, its largest magnitude as key value `<id>_peak`.
-    `on_request`: the commands that print it only where it is asked for by name.
+    `on_request`: the commands that print it only where it is requested by name.
     `wanted_large`: a bound on it is one from below, as on every smallest value.
     `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
     """

@@ -1,7 +1,7 @@
 """What standard uncertainties of the inputs make of the key values, u² = Σ (∂y/∂x u_x)², and which input it comes from.
 
 The derivatives by an input are differences of the solver's answers, which are exact but for rounding: at four places
-beside the value, extrapolated to none (Richardson). Jets carry slopes by the crank angle and do not reach the inputs.
+beside the value, extrapolated to none (Richardson).
 Where an answer bends over the width of an uncertainty, so that its first order does not hold, a sample tells instead.
 """
 

@@ -1,7 +1,7 @@
 """Many machines of one structure as one machine, whose numbers are arrays (machines,) where they differ.
 
-Each machine has kept its own rules at birth, so that these records, made without them, keep them too. What formulas
-tell apart is structure: words, whole numbers, whether a number is given, zero or infinite, how throws share their pins.
+The rules of each machine were checked when it was made, and are not checked again here. What formulas distinguish is
+structure: words, whole numbers, whether a number is given, zero or infinite, how throws share their pins.
 """
 
 import math
@@ -21,25 +21,25 @@ from kurbel.machine.variants import Chambers, Lot, one_of, record_of, values_of,
 from kurbel.numerics.varied import Varied
 
 _MECHANISMS = ("slider-crank", "yoke-frame", "scotch-yoke")
-"""Mechanisms whose formulas take arrays."""
+"""Mechanisms whose formulas take parameters that are arrays; machines with others are computed one by one."""
 _MOST_LINES = 40
-"""Points of a card with more of which a machine is answered alone: its pieces are many enough to fill an array."""
+"""Most points of a card in a batch; a machine with more is computed alone, since its pieces fill an array."""
 _SAID = ("name", "limits", "expect", "uncertainty", "origin")
-"""What of a machine no formula asks for."""
+"""Fields of a machine that no formula needs."""
 
 
 class _Alone(Exception):
-    """A machine has what must be answered alone."""
+    """The machine must be computed alone."""
 
 
 class Structures:
-    """Tells the structure that machines of a batch must share; what stands in several of them is looked at once."""
+    """The structure that machines of a batch must share; objects that several of them share are examined once."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Any, Any]] = {}
 
     def of(self, machine: Machine) -> Hashable | None:
-        """Return the structure of a machine, whose numbers may be `Varied`; None where it must be answered alone."""
+        """Return the structure of a machine, whose numbers may be `Varied`; None where it must be computed alone."""
         try:
             parts = {name: one for name, one in values_of(machine).items() if name not in _SAID}
             return (*(self._part(one) for one in parts.values()), _arrangement(machine))
@@ -78,7 +78,7 @@ def _chamber(chamber: Any) -> str | None:
 
 
 def _arrangement(machine: Machine) -> Hashable:
-    """Return which cylinders stand at one angle, on one line and at one place; these must be alike in all machines."""
+    """Return which pairs of cylinders share a crank angle, a line or a place; the same in all machines of a batch."""
     return tuple(
         _same(one.crank_position - one.bank_angle, other.crank_position - other.bank_angle)
         + 2 * _same(one.bank_angle, other.bank_angle)
@@ -99,7 +99,7 @@ def _same(one: Any, other: Any) -> bool:
 def batch(lots: Sequence[tuple[Lot, Indices]]) -> Machine:
     """Return machines of one structure as one of arrays.
 
-    lots: with the places (n,) of the machines that are meant in each.
+    lots: each with the places (n,) in it of the machines that are taken.
     """
     stack = _Stack(lots)
     machines = [lot.machine for lot, _ in lots]
@@ -109,7 +109,7 @@ def batch(lots: Sequence[tuple[Lot, Indices]]) -> Machine:
 
 
 class _Stack:
-    """Puts records of lots of one structure together; what is one in many places stays one."""
+    """Joins records of lots of one structure; an object that is shared stays shared."""
 
     def __init__(self, lots: Sequence[tuple[Lot, Indices]]) -> None:
         self._lots = lots
@@ -117,7 +117,7 @@ class _Stack:
         self._seen: dict[int, Any] = {}
 
     def of(self, column: Sequence[Any]) -> Any:
-        """Return what stands for the values, one of each lot, of one field."""
+        """Return the joined values of one field, given those of every lot."""
         first = column[0]
         if all(one is first for one in column) and not varies(first, self._seen):
             return first

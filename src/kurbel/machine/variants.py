@@ -1,4 +1,4 @@
-"""Records of many variants of a machine: what differs among them is `Varied`, or, for the solver, an array (v,)."""
+"""Records of many machines: numbers that differ among them are `Varied` or, for the solver, arrays (machines,)."""
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Lot:
-    """Machines of one kind in one record, whose numbers are `Varied` where they differ; rows: what each is known by."""
+    """Machines of one kind in one record, with `Varied` for numbers that differ; rows: the row number of each."""
 
     machine: "Machine"
     rows: Sequence[int]
@@ -31,7 +31,7 @@ def values_of(record: Any) -> dict[str, Any]:
 
 
 def sort_of(value: Any) -> Hashable:
-    """Return what values must have in common to differ in numbers only, and to be joined."""
+    """Return a key that is equal for values that differ in numbers only, and so can be joined."""
     if type(value) in (float, int):
         return type(value).__name__
     if isinstance(value, (tuple, list)):
@@ -42,7 +42,7 @@ def sort_of(value: Any) -> Hashable:
 
 
 def joined(values: Sequence[Any]) -> Any:
-    """Return values of one sort as one of many variants, in which numbers are `Varied` where they differ."""
+    """Return values of one sort as one value of many machines; numbers that differ are `Varied`."""
     first = values[0]
     if all(one is first for one in values):
         return first
@@ -57,22 +57,22 @@ def joined(values: Sequence[Any]) -> Any:
 
 
 def one_of(record: Any, place: int) -> Any:
-    """Return a record of many variants as that of one of them."""
+    """Return the record of one of many machines."""
     return changed(record, lambda numbers: numbers.values[place].item(), {})
 
 
 def one_kind(record: Any) -> None:
-    """Raise Parted where a number is 0, or infinite, for some variants only: formulas tell these apart."""
+    """Raise Parted where a number is 0, or infinite, for some machines only: formulas distinguish these."""
     changed(record, Varied.alike, {})
 
 
 def varies(record: Any, known: dict[int, Any]) -> bool:
-    """Return whether anything differs among the variants of a record; known: what was seen before."""
+    """Return whether anything differs among the machines of a record; known: cache, by id."""
     return changed(record, lambda numbers: None, known) is not record
 
 
 def changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]) -> Any:
-    """Return a record with what varies changed; what is one in many places stays one; known: what was seen before."""
+    """Return a record with every `Varied` changed; an object in several places stays one; known: cache, by id."""
     if isinstance(record, Varied):
         return change(record)
     if not (isinstance(record, tuple) or is_dataclass(record)):
@@ -95,24 +95,24 @@ def _changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]
 
 @dataclass(frozen=True, eq=False)
 class Chambers:
-    """What stands in one end of a cylinder of many variants: the different chambers, and which one each has, (v,)."""
+    """One end of a cylinder of many machines: the different chambers, and which one each machine has, (machines,)."""
 
     each: tuple[Any, ...]
-    which: Indices | None
+    which: Indices
 
     @property
     def cycles(self) -> tuple[str, ...]:
-        """The working cycles that they can be part of, which are the same for all of a kind."""
+        """The working cycles that the chambers can be part of, the same for all."""
         return self.each[0].cycles  # type: ignore[no-any-return]
 
     @property
     def clearance(self) -> Any:
-        """Smallest volume over the stroke volume of each, (v,), 0 where it is not known."""
+        """Smallest volume over the stroke volume, (machines,), 0 where it is not known."""
         return np.array([getattr(one, "clearance", None) or 0.0 for one in self.each])[self.which]
 
 
 def taken(record: Any, index: Indices) -> Any:
-    """Return a record of many variants with the numbers of these ones, of the shape of the index."""
+    """Return a record of many machines with the numbers of these, of the shape of the index."""
     if isinstance(record, np.ndarray):
         return record[index]
     if isinstance(record, tuple) and not hasattr(record, "_fields"):
@@ -122,28 +122,28 @@ def taken(record: Any, index: Indices) -> Any:
 
 
 def count_of(record: Any) -> int | None:
-    """Return how many variants a record is of; None for one machine, and where all variants have the same."""
+    """Return the number of machines of a record; None for one machine, and where all machines have the same."""
     if isinstance(record, np.ndarray):
         return len(record)
     if isinstance(record, Chambers):
-        return None if record.which is None else len(record.which)
+        return len(record.which)
     parts = record if isinstance(record, tuple) else (getattr(record, name) for name in _varied(record))
     return next((count for part in parts if (count := count_of(part)) is not None), None)
 
 
 def record_of(like: Any, varied: dict[str, Any]) -> Any:
-    """Return a record like another one but for these values of many variants, as the solver takes them."""
+    """Return a record like another one, with these values of many machines, as the solver takes them."""
     return _like(like, varied | {"_varied": tuple(varied)})
 
 
 def _like(record: Any, values: dict[str, Any]) -> Any:
-    """Return a record with other values; what was checked when they were born is not again."""
+    """Return a record with other values, without checking its rules again."""
     made = object.__new__(type(record))
     made.__dict__.update(values_of(record) | values)
     return made
 
 
 def _varied(record: Any) -> tuple[str, ...]:
-    """Return which values may differ among the variants of a record: records of machines alone tell of none."""
+    """Return the names of the values that may differ among the machines of a record; () in a record of one machine."""
     varied: tuple[str, ...] = getattr(record, "__dict__", {}).get("_varied", ())
     return varied

@@ -1,7 +1,7 @@
 """The mechanisms of the book behind one interface: the output coordinate and its first two derivatives by crank angle.
 
 A mechanism is one file with one class, named in `kurbel.mechanisms.kinds`. None imports numpy: the formulas work on
-whatever the crank angle is made of. What a new mechanism must supply stands in `Mechanism`.
+whatever numbers the crank angle has. `Mechanism` lists what a new one must supply.
 """
 
 from collections.abc import Callable
@@ -14,7 +14,6 @@ from kurbel.declared.keys import Described, Keys
 from kurbel.declared.quantities import Lists
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, UsageError, refuse
-from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -41,7 +40,7 @@ own_motion = partial(Quantity, commands=("motion",), after="b")
 own_force = partial(Quantity, commands=("forces",), extremes=("forces",), after="N")
 """Declares a column that a mechanism adds to `kurbel forces`, with extremes, of which `called` says what they are."""
 on_request = partial(Quantity, commands=("motion", "forces"), on_request=("motion", "forces"))
-"""Declares a column that a mechanism adds to both, where it is asked for, behind the one that it names."""
+"""Declares a column that a mechanism adds to both, printed on request, after the column named by `after`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +48,7 @@ class KeyOffer:
     """A key value that only some mechanisms have, with its formula.
 
     value: takes the mechanism and the results of its command, and returns a number in SI, an Extreme, or None.
-    bound: how large it may be after the sources, in SI; what is larger is told as a warning.
+    bound: largest value that the sources permit, in SI; a larger one gives a warning.
     """
 
     quantity: Quantity
@@ -67,11 +66,11 @@ class Mechanism(Described):
        rises from `start` at the inner dead centre (0 unless the book counts otherwise) by `stroke`;
     3. `dead_centres` in degrees, the end of the outstroke after its beginning.
 
-    A class without one of these is refused. All else has an answer here that a mechanism may better: `crank_angles_at`,
-    the inverse of `coordinate`; `landmarks`, where its functions bend sharply; the connecting rod, the radial force;
-    closed extremes; `sketch`, what is drawn of it; `lacks` and `notes`. What only some mechanisms have (a swinging
-    lever, a sliding block, a coupler) they hand out as columns in OFFERS and key values in KEY_OFFERS. Nobody asks for
-    the class of a mechanism.
+    A class without one of these is refused. All else has a default here that a mechanism may override:
+    `crank_angles_at`, the inverse of `coordinate`; the connecting rod, the radial force; closed extremes; `sketch`,
+    what is drawn of it; `lacks` and `notes`. What only some mechanisms have (a swinging lever, a sliding block, a
+    coupler) they add as columns in OFFERS and key values in KEY_OFFERS. No other module tests for the class of a
+    mechanism.
     """
 
     KEYS: ClassVar[Keys]
@@ -84,7 +83,7 @@ class Mechanism(Described):
     """What the pin of the connecting rod or coupler that is not on the crank is called."""
     known_across: ClassVar[bool] = False
     """Whether, without a connecting rod, nothing but its weight pushes the output across the stroke line onto N."""
-    # what follows may also hang on the lengths of one: then a property takes its place
+    # what follows may depend on the lengths: then a property takes its place
     slides: ClassVar[Any] = True
     """Whether the output moves to and fro on a line."""
     turns: ClassVar[Any] = False
@@ -152,14 +151,6 @@ class Mechanism(Described):
     def remaining(self, angle: CrankAngle) -> Any:
         """Return what is left of the stroke to the outer dead centre, s − (q − start), in m (or rad)."""
         return self.stroke - (self.coordinate(angle) - self.start)
-
-    def landmarks(self) -> tuple[float, ...]:
-        """Return the crank angles in degrees, besides the dead centres, at which searches should split."""
-        return ()
-
-    def cuts(self) -> tuple[float, ...]:
-        """Return the crank angles in degrees at which quadratures and searches cut a turn: dead centres, landmarks."""
-        return (*self.dead_centres(), *self.landmarks())
 
     @property
     def phi_work(self) -> float:
@@ -229,7 +220,7 @@ class Mechanism(Described):
 
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
-        """What could be said of forces with further keys, and the reason why it is not: (what, why)."""
+        """Results that need further keys of the file, each with the reason why it is missing: (what, why)."""
         return ()
 
     @property
@@ -257,25 +248,3 @@ def check_lengths(**lengths: float | None) -> None:
     """Raise RuleError for every length that is not positive and finite; None is one that is not given."""
     wrong = [name for name, value in lengths.items() if value is not None and not 0 < value < float("inf")]
     refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
-
-
-def fan(centre: Any, width: Any) -> tuple[Any, ...]:
-    """Return angles in degrees that stand ever wider on both sides of a bend of this half width (degrees) at `centre`.
-
-    So far from the real axis is the pole that makes it; what nine points between two of these angles integrate is
-    exact, and without any where the bend is wide. Of arrays, angles of which some have fewer are nan there.
-
-    >>> fan(180.0, 40.0)
-    (180.0, 160.0, 200.0, 148.0, 212.0, 128.8, 231.2)
-    >>> fan(180.0, 80.0)
-    ()
-    """
-    angles: list[Any] = []
-    width = 0.5 * width
-    bends = (width > 0) & (width < 36)
-    while some(narrow := bends & (width < 72)):  # then pieces of 36 are as narrow
-        apart = where(narrow, width, float("nan"))
-        angles = angles or [centre + 0.0 * apart]
-        angles += [centre - apart, centre + apart]
-        width = width * 1.6
-    return tuple(angles)

@@ -11,7 +11,7 @@ from kurbel.declared.keys import Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan, on_request
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, on_request
 from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.four_bar_loop import Loop
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
@@ -233,14 +233,6 @@ class FourBar(Mechanism):
     def notes(self) -> tuple[str, ...]:
         """Say that the rocker turns fully, where it does."""
         return ("The frame is the shortest link: the rocker turns fully with the crank (drag link).",) * self.turns
-
-    def landmarks(self) -> tuple[float, ...]:
-        """Return 0° and 180°, each with a widening fan where the linkage comes near to lying flat."""
-        loop = self.loop
-        gap = min(loop.near_coupler, loop.near_rocker) * (abs(loop.span) / loop.crank)
-        nearest = math.degrees(math.sqrt(2 * min(gap, loop.span * loop.span / loop.crank)))
-        flat = math.degrees(math.sqrt(2 * loop.flat * (1 + loop.crank) / loop.crank))
-        return *fan(0.0, nearest), *fan(180.0, flat)
 
     @property
     def transmission(self) -> tuple[Extreme, Extreme]:

@@ -125,10 +125,6 @@ class ScotchYoke(Mechanism):
         sweep = np.degrees(2 * np.arctan2(np.sqrt(displacement), np.sqrt(self.stroke - displacement)))
         return sweep if outstroke else 360.0 - sweep
 
-    def landmarks(self) -> tuple[float, ...]:
-        """Return the velocity peaks, 90° and 270°."""
-        return 90.0, 270.0
-
     def velocity_extremes(self) -> tuple[Extreme, ...]:
         """Return ±R: c_max = v at 90°."""
         return Extreme(self.crank, 90.0), Extreme(-self.crank, 270.0)

@@ -12,8 +12,8 @@ from kurbel.declared.forms import Number, Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.mechanisms import Mechanism, Offer, fan, on_request
-from kurbel.numerics.arithmetic import arsinh, bearing, every, sqrt, total, ulp, where
+from kurbel.mechanisms import Mechanism, Offer, on_request
+from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -301,13 +301,6 @@ class SliderCrank(Mechanism):
         sweep = np.degrees(2 * half)
         bearing = 0.0 if straight else np.degrees(np.arctan2(eps, distance))
         return bearing + sweep if outstroke else 360.0 + bearing - sweep
-
-    def landmarks(self) -> tuple[float, ...]:
-        """Return a fan round 90° and 270° where the rod barely reaches: there cos ψ is 0 beside the real axis."""
-        if self._endless:
-            return ()
-        beyond, within = (2 * arsinh(sqrt(gap / self.lam / 2)) * (180 / math.pi) for gap in self._gaps)
-        return *fan(90.0, beyond), *fan(270.0, within)
 
     def velocity_extremes(self) -> tuple[Extreme, ...]:
         """Return ±c_max/ω in m in closed form, straight slider-crank only."""

@@ -9,7 +9,7 @@ from kurbel.declared.forms import Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, fan
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths
 from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, check_pin, pin_pressure, sum_along
 from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
@@ -303,12 +303,6 @@ class SlottedLever(Mechanism):
         """Return dρ/dφ = −r e sin φ/ρ in m: times ω, the speed at which the block slides along the lever."""
         _, frame, _ = self._shares
         return -self.crank * frame * angle.sin / self._lever_at(angle).reach
-
-    def landmarks(self) -> tuple[float, ...]:
-        """Return 0° and 180°, and a widening fan round 180° where the pin comes near the pivot."""
-        crank, frame, gap = self._shares
-        width = math.degrees(abs(gap) / math.sqrt(crank * frame))
-        return (0.0, *fan(180.0, width))
 
     def velocity_extremes(self) -> tuple[Extreme, ...]:
         """Return dx/dφ at 0°, R_l r/(e + r), R 304, and at 180°, −R_l r/|e − r|, R 305; fork head only."""

@@ -21,13 +21,13 @@ _OF = "of the swinging member"
 
 
 def _column(id: str, symbol: str, kind: str, text: str, called: str = "") -> Quantity:
-    # in forces the place of what slides is told by x
+    # in forces x gives the position of what slides
     searched = ("motion",) if called else ()
     return Quantity(id, symbol, kind, text, "", _BOTH, searched, called, unless="slides", after="b")
 
 
 def turning_offers(method: str, angle: Quantity, velocity: Quantity, acceleration: Quantity) -> tuple[Offer, ...]:
-    """Return how a member turns, by the name of the method of its mechanism that tells its angle and derivatives."""
+    """Return how a member turns, by the name of the method of its mechanism that gives its angle and derivatives."""
 
     def factor(name: str) -> Callable[[Any, Any], Any]:
         return lambda one, at: getattr(getattr(one, method)(at), name)

@@ -1,1 +1,1 @@
-"""Numerical methods that know no crank: jets, grids of smooth pieces, roots, extremes, collocation."""
+"""Numerical methods that know no crank: smooth pieces, series, roots, extremes, collocation."""

@@ -1,4 +1,4 @@
-"""The few operations beside + − × ÷ that the formulas need, for floats, arrays, jets and high-precision numbers."""
+"""The few operations besides + − × ÷ that formulas need, for floats, arrays, `Varied` and high-precision numbers."""
 
 import math
 from typing import Any
@@ -10,7 +10,7 @@ def is_number(value: Any) -> bool:
 
 
 def sqrt(value: Any) -> Any:
-    """Return the square root of a float, an array, or any number that brings its own `sqrt` (Decimal, mpf, Jet)."""
+    """Return the square root of a float, an array, or any number with its own `sqrt` (Decimal, mpf, Varied)."""
     if isinstance(value, (float, int)):
         return math.sqrt(value)
     if hasattr(value, "sqrt"):
@@ -24,24 +24,19 @@ def where(condition: Any, value: Any, otherwise: Any) -> Any:
     """Return `value` where the condition holds and `otherwise` elsewhere; shapes as for numpy.where."""
     if not getattr(condition, "ndim", 0):
         return value if condition else otherwise
-    for branch in (value, otherwise):
-        if hasattr(branch, "where"):  # a Jet chooses value and slope together
-            return branch.where(condition, value, otherwise)
     import numpy as np
 
     return np.where(condition, value, otherwise)
 
 
 def bearing(sin: Any, cos: Any) -> Any:
-    """Return the direction of (cos, sin) in degrees, from −180 to 180, for floats, arrays or numbers that bring it.
+    """Return the direction of (cos, sin) in degrees, from −180 to 180, of floats or arrays.
 
     >>> bearing(1.0, 0.0)
     90.0
     """
     if isinstance(sin, (float, int)) and isinstance(cos, (float, int)):
         return math.degrees(math.atan2(sin, cos))
-    if hasattr(sin, "bearing"):
-        return sin.bearing(cos)
     import numpy as np
 
     return np.degrees(np.arctan2(sin, cos))
@@ -55,21 +50,6 @@ def sin(value: Any) -> Any:
 def arcsin(value: Any) -> Any:
     """Return the arc of a sine, a float or an array, in radians."""
     return _of(value, "asin", "arcsin")
-
-
-def arsinh(value: Any) -> Any:
-    """Return the area of a hyperbolic sine, a float or an array."""
-    return _of(value, "asinh", "arcsinh")
-
-
-def exp(value: Any) -> Any:
-    """Return the exponential of a float, an array or a jet."""
-    return _of(value, "exp")
-
-
-def log1p(value: Any) -> Any:
-    """Return ln(1 + value) of a float, an array or a jet, exact for the smallest values."""
-    return _of(value, "log1p")
 
 
 def ulp(value: Any) -> Any:
@@ -122,7 +102,7 @@ def lost(before: Any, term: Any, whole: Any) -> Any:
 
 
 _ROUNDING = 16 * 2.0**-52
-"""What is left of terms that cancel, beside the sum of their sizes, is rounding."""
+"""Relative to the sum of the sizes of terms: a smaller sum of them is rounding."""
 
 
 def unless_cancelled(whole: Any, sizes: Any) -> Any:

@@ -290,7 +290,7 @@ class _Chain:
         return np.asarray(np.concatenate((start[None], inside)).transpose(2, 0, 1))
 
     def answers(self, stiffness: Array, lack: Array) -> tuple[Array, Array]:
-        """Return the changes at the nodes (k, pieces, m) that answer a lack, and to unit changes at the start."""
+        """Return the changes at the nodes (k, pieces, m) that make up a lack, and those per change at the start."""
         m, k, count = lack.shape
         response, gain = np.empty((k, count, m)), np.empty((k, count, m, m))
         chunk = max(1, _AT_ONCE // (m * k) ** 2)
@@ -391,7 +391,7 @@ def _newton(chain: _Chain, y: Array) -> tuple[Array, Flags]:
         fall = -step[:, 1:] / (0.9 * (y[:, 1:] - chain.floor))
         share = 1 / np.maximum(_largest(pieces, fall), 1.0)
         y, lacking, after, share = _damped(chain, y, step, share, going & (size > near), now)
-        # the next step answers what is left lacking: of a linear equation nothing but rounding
+        # the next step makes up what is still lacking: for a linear equation only rounding
         left = np.where(now > 0, size * after / now, 0.0)
         small = (size <= 1e-6 * near) | (left <= 1e-5 * near) | ((size <= near) & (size >= previous / 4))
         good |= going & (share == 1) & small

@@ -1,4 +1,4 @@
-"""An extreme: the value and where it stands."""
+"""An extreme: the value and its crank angle."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ from kurbel.numerics.arithmetic import where
 
 
 class Extreme(NamedTuple):
-    """A value and the angle in degrees at which it stands.
+    """A value and the angle in degrees at which it occurs.
 
-    Of many variants of a machine both are arrays (v,), which type checkers are not told: who asks for one has
-    floats.
+    For many machines both are arrays (machines,); the annotations are those of one machine.
     """
 
     value: float
@@ -19,12 +18,12 @@ class Extreme(NamedTuple):
 
 
 def number_of(answer: Any) -> Any:
-    """Return an answer without its angle: the value of an extreme, or the answer itself."""
+    """Return a key value without its angle: the value of an extreme, or the key value itself."""
     return answer.value if isinstance(answer, Extreme) else answer
 
 
 def size_of(answer: Any) -> float:
-    """Return the magnitude of an answer, of a list the largest, 0 of none."""
+    """Return the magnitude of a key value, of a list the largest, 0 of None."""
     number = number_of(answer)
     return max(map(abs, number), default=0.0) if isinstance(number, tuple) else abs(number or 0.0)
 

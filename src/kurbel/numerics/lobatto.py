@@ -1,4 +1,4 @@
-"""Lobatto nodes on a piece, and the constant matrices that read the polynomial through samples at them."""
+"""Lobatto nodes on a piece, and constant matrices that act on the samples of a polynomial there."""
 
 from functools import lru_cache
 
@@ -8,7 +8,7 @@ from kurbel.arrays import Array
 
 
 class Rule:
-    """Nodes in [−1, 1], both ends among them, and what is told of a polynomial by its values there.
+    """Lobatto nodes in [−1, 1], both ends included, and matrices that act on the values of a polynomial there.
 
     weights (n,): of its integral; series (n, n): turns values into Chebyshev coefficients; slope: those into the
     coefficients of the derivative, (n − 1, n); area (n, n): values into integrals from −1 to every node; places (m,):

@@ -1,8 +1,9 @@
-"""Smooth pieces of the cycles of many machines in one flat row, and what polynomials through their samples tell.
+"""The cycles of many machines cut into smooth pieces, and the means, zeros and extremes of samples on them.
 
 Every quantity is sampled once at the Lobatto nodes of the pieces, (nodes, pieces). Means, integrals, crossings,
 extremes and samples on finer pieces follow from these samples by constant matrices. A piece on which the samples are no
-polynomial yet, by the tail of its Chebyshev coefficients, is halved: no other knowledge of poles or kinks is needed.
+polynomial yet, by the tail of its Chebyshev coefficients, is halved, so that poles need not be known. Kinks and jumps
+should be ends of pieces from the start: halving only closes in on them.
 """
 
 from __future__ import annotations
@@ -19,34 +20,34 @@ from kurbel.numerics.arithmetic import lost
 from kurbel.numerics.lobatto import Rule, rule, series_at, slope_of_series
 
 ROUNDING = 1e-14
-"""Of the largest value of a quantity: what is smaller is zero."""
+"""Relative to the largest value of a quantity: a smaller value counts as zero."""
 TAIL = 1e-13
-"""Of the largest value: a piece whose last two coefficients are larger is halved."""
+"""Relative to the largest value: a piece whose last two Chebyshev coefficients are larger is halved."""
 NARROWEST = 1e-5
-"""Degrees of a piece that is halved no more: only the rounding of angles is rough there."""
+"""Degrees: so narrow a piece is not halved further; only the rounding of angles makes it rough."""
 _STRAIGHT = 1e-15
-"""Of the largest value: by what a polynomial exceeds its samples where only rounding bends it."""
+"""Relative to the largest value: by less a polynomial exceeds its samples only through rounding."""
 _REPEATED = 1e-12
-"""Of the largest value: by what equal summits of a curve differ that is summed over cylinders, or solved for."""
+"""Relative to the largest value: summits that differ by less are equal, as those of equal cylinders."""
 _SUMMIT = 0.5
-"""Degrees in which as high a value belongs to one summit."""
+"""Degrees after the first angle that reaches the largest value: equal values there belong to the same summit."""
 _CROWD = 100
-"""Rough pieces of one machine: a pole or a kink keeps two to four, noise makes them ever more."""
+"""More rough pieces than this in one machine are a sign of noise: a pole or a kink leaves two to four."""
 _OFTEN = 6
-"""Halvings after which a crowd is still as large only where it is noise."""
+"""Halvings after which so many rough pieces are left only by noise."""
 _NOISE = 1e-8
-"""Of the largest value: the tail of such a crowd is noise."""
+"""Relative to the largest value: among so many rough pieces, smaller tails are noise and are not refined."""
 _SAME = 1e-9
-"""Degrees between crossings that are one, made many by rounding."""
+"""Degrees: crossings closer together are one crossing, repeated by rounding."""
 _NEAR = 0.05
-"""Of the range of samples on a piece: as near they come to zero where a summit between them may pass it."""
+"""Of the range of samples on a piece: if they come closer to zero, a summit between them may cross it."""
 _INSIDE = 1 - 1e-10
-"""Of half a piece: a summit nearer to its end is the end."""
+"""Of half a piece: a summit beyond this is the end of the piece."""
 _NO_WIDTH = 1e-11
-"""Degrees of a piece that is none."""
+"""Degrees: a narrower piece is dropped."""
 
 _AT_ONCE = 512
-"""Pieces whose polynomials are summed together: what the nearest memory holds."""
+"""Pieces whose polynomials are summed together: what fits into the cache."""
 
 Sample = Callable[["Pieces"], Array]
 """Gives quantities at the nodes of pieces, (quantities, nodes, pieces)."""
@@ -63,7 +64,7 @@ class Angles(NamedTuple):
         return np.split(self.degrees, np.searchsorted(self.machine, np.arange(1, count)))
 
 
-class Extremes(NamedTuple):
+class SampledExtremes(NamedTuple):
     """Largest and smallest values of quantities, and the first angles in degrees that have them; each (q, machines)."""
 
     largest: Array
@@ -76,8 +77,9 @@ class Extremes(NamedTuple):
 class Pieces:
     """Pieces (n,) of the cycles of `count` machines, ordered by machine and angle.
 
-    right_angle: the multiple of 90° beside a piece; offset: from there to its beginning; half: half its width, in
-    degrees, so that no digit is lost beside dead centres and at 90°. machine: whose each is. cycle: degrees.
+    right_angle: the multiple of 90° nearest to a piece; offset: from there to its beginning; half: half its width; all
+    in degrees, apart, so that no digit is lost near dead centres and at 90°. machine: the machine of each piece. cycle:
+    its length in degrees.
     """
 
     right_angle: Array
@@ -129,7 +131,7 @@ class Pieces:
         offset[1::2] += 2 * half[1::2]
         return replace(self, right_angle=right_angle, offset=offset, half=half, machine=machine)
 
-    # where they lie
+    # positions
 
     @cached_property
     def low(self) -> Array:
@@ -138,7 +140,7 @@ class Pieces:
 
     @cached_property
     def middle(self) -> Array:
-        """Their middles in degrees: what says on which side of a jump a piece lies."""
+        """Their middles in degrees: they decide on which side of a jump a piece is."""
         return self.right_angle + (self.offset + self.half)
 
     @cached_property
@@ -171,7 +173,7 @@ class Pieces:
         return np.where(np.abs(following - own) < _SAME, following, own)
 
     def of(self, numbers: Any) -> Any:
-        """Return numbers of the machines, (machines,), at their pieces; one number stays one."""
+        """Return numbers (machines,) for each piece, (pieces,); a single number is returned as it is."""
         return numbers[self.machine] if isinstance(numbers, np.ndarray) and numbers.ndim else numbers
 
     def holding(self, machine: Indices, degrees: Array) -> Indices:
@@ -180,7 +182,7 @@ class Pieces:
         found = np.searchsorted(keys, machine * (2 * self.cycle) + np.mod(degrees, self.cycle), side="right") - 1
         return np.maximum(found, self.first[machine])
 
-    # what samples (nodes, pieces) tell
+    # integrals, zeros and extremes of samples (nodes, pieces)
 
     def largest(self, values: Array) -> Array:
         """Return the largest magnitude (…, machines) of samples (…, nodes, pieces)."""
@@ -205,7 +207,7 @@ class Pieces:
     def carried(self, values: Array, source: Pieces, later: Number = 0.0) -> Array:
         """Return samples (…, nodes, pieces) of other pieces, within which these lie, at the nodes of these.
 
-        later: degrees by which each machine's own angle stands behind these.
+        later: degrees by which the other pieces lag these, a number or (machines,).
         """
         if source is self and not np.any(later):
             return values
@@ -239,7 +241,7 @@ class Pieces:
     def zeros(self, values: Array, size: Array | None = None) -> Angles:
         """Return where values (nodes, pieces) change sign, by a jump as well, within [0, cycle).
 
-        size: (machines,), of the terms of which the values are sums, beside which they are zero.
+        size: (machines,), of the terms whose sum the values are; zero is judged relative to it.
         """
         size = (self.largest(values) if size is None else size)[self.machine]
         tiny = -ROUNDING * size
@@ -249,31 +251,31 @@ class Pieces:
         degrees = np.mod(np.append(self._at(rows, places), self.high[jumps]), self.cycle)
         order = np.lexsort((degrees, machine))
         machine, degrees = machine[order], degrees[order]
-        # beside a break rounding crosses more than once: an odd number of times is once, an even number never
+        # near a break rounding may cross several times: an odd number of crossings is one, an even number none
         begins = np.append(True, (np.diff(degrees) > _SAME) | (np.diff(machine) > 0))[: len(degrees)]
         odd = np.bincount(np.cumsum(begins) - 1) % 2 == 1 if len(degrees) else begins
         return Angles(machine[begins][odd], degrees[begins][odd])
 
-    def extremes(self, values: Array, size: Array | None = None) -> Extremes:
+    def extremes(self, values: Array, size: Array | None = None) -> SampledExtremes:
         """Return largest and smallest values of quantities (q, nodes, pieces), of equal ones the first.
 
-        size: (q, machines), of the terms of which the quantities are sums: what is smaller but for rounding is zero.
+        size: (q, machines), of the terms whose sums the quantities are; a value that is rounding relative to it is 0.
         """
         largest = self.largest(values)
         size = largest if size is None else np.maximum(size, largest)
         (high, high_at), (low, low_at) = (self.highest(sign * values, size) for sign in (1, -1))
-        # beside the values of the other sign this is the rounding of a dead centre, which is no float
+        # relative to values of the other sign: a zero at a dead centre whose angle is no float, for example
         high, low = (np.where(np.abs(one) > ROUNDING * size, one, 0.0) for one in (high, low))
-        return Extremes(high + 0.0, high_at, 0.0 - low, low_at)
+        return SampledExtremes(high + 0.0, high_at, 0.0 - low, low_at)
 
     def highest(self, values: Array, size: Array) -> tuple[Array, Array]:
         """Return the largest values, and the angles of the first summits that reach them, each (q, machines).
 
-        values: (q, nodes, pieces); size: (q, machines), of the terms of which they are sums.
+        values: (q, nodes, pieces); size: (q, machines), of the terms whose sums they are.
         """
         tops, bottoms = values.max(axis=1), values.min(axis=1)
         best = np.maximum.reduceat(tops, self.first, axis=-1)
-        # a piece exceeds its samples by less than they differ
+        # a polynomial exceeds its samples by less than they differ
         which, piece = np.nonzero(tops + (tops - bottoms) >= (best - _REPEATED * size)[:, self.machine])
         samples = values.transpose(1, 0, 2)[:, which, piece]
         rows, places, turning = _turning_points(samples, self.rule)
@@ -306,9 +308,9 @@ class Pieces:
 
 
 def common(parts: Sequence[tuple[Pieces, Number]], cycle: float) -> Pieces:
-    """Return the pieces of a cycle in degrees, as long as those of the parts or several times, within all of theirs.
+    """Return the pieces of a cycle in degrees, one or several times those of the parts, that lie within all of theirs.
 
-    parts: each with the degrees, (machines,), by which its own angle is behind that of the common pieces.
+    parts: each with the degrees, a number or (machines,), by which its angle lags that of the common pieces.
     """
     first = parts[0][0]
     if len(parts) == 1 and not np.any(parts[0][1]) and first.cycle == cycle:
@@ -319,17 +321,18 @@ def common(parts: Sequence[tuple[Pieces, Number]], cycle: float) -> Pieces:
         starts = np.mod(one.low + one.of(later), one.cycle)
         degrees += [starts + turn for turn in np.arange(0.0, cycle, one.cycle)]
         machine += [one.machine] * (len(degrees) - len(machine))
-    nodes = min(len(one.rule.nodes) for one, _ in parts)
+    nodes = max(len(one.rule.nodes) for one, _ in parts)
     return Pieces.between(Angles(np.concatenate(machine), np.concatenate(degrees)), first.count, cycle, nodes)
 
 
 def resolved(
     pieces: Pieces, parts: Array, kinks: Array, size: Array, function: Callable[[Pieces, Array], Array]
 ) -> tuple[Pieces, Array, Array]:
-    """Return pieces cut where kinks vanish, and halved until functions of the parts are polynomials: magnitudes.
+    """Return pieces on which functions with kinks, such as magnitudes of the parts, are polynomials.
 
-    Returns with them the values of the functions (q, nodes, pieces) and the parts (p, nodes, pieces) there. parts: have
-    polynomials on the pieces; kinks: (k, nodes, pieces); size: (k, machines), beside which a kink is zero.
+    The pieces are cut at the zeros of `kinks`, then halved. Returned with them: the values of the functions (q, nodes,
+    pieces) and the parts (p, nodes, pieces) there. parts: polynomials on the given pieces; kinks: (k, nodes, pieces),
+    quantities at whose zeros a function bends; size: (k, machines), relative to which a kink counts as zero.
     """
     cuts = [pieces.zeros(one, beside) for one, beside in zip(kinks, size)]
     cut = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*cuts))))

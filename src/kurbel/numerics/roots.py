@@ -44,36 +44,6 @@ def _next_part(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array) ->
     return np.where(quadratic & np.isfinite(step), np.clip(step, 0.0, 1.0), 0.5)
 
 
-def roots_by_slope(
-    function: Callable[[Array], tuple[Array, Array]],
-    low: Array,
-    high: Array,
-    f_low: Array,
-    f_high: Array,
-    steps: int = 100,
-) -> Array:
-    """Return one root in each bracket (n,), as `bracketed_roots`, of a function whose slope costs next to nothing.
-
-    function: maps all arguments (n,) at once to values and slopes (n,). Newton's steps, halves of the bracket where
-    they would leave it, until the last one is but some units in the last place of the largest argument, or so many are
-    made.
-    """
-    rising, ends = f_low < f_high, np.where(f_low == 0, low, high)
-    settled = 16 * np.finfo(float).eps * np.abs((low, high)).max(initial=0.0)
-    x = low + (high - low) * (f_low / (f_low - f_high))
-    for _ in range(steps):
-        value, slope = function(x)
-        beyond = (value > 0) == rising
-        low, high = np.where(beyond, low, x), np.where(beyond, x, high)
-        with np.errstate(all="ignore"):
-            step = x - value / slope
-        safe = (np.abs(step - x) <= settled) | ((step > low) & (step < high))
-        before, x = x, np.where(safe, step, (low + high) / 2)
-        if (np.abs(x - before) <= settled).all():
-            break
-    return np.where((f_low == 0) | (f_high == 0), ends, x)
-
-
 _TRIALS = 20
 _CLOSE = 1e-9
 _FAR = 1000.0

@@ -1,4 +1,4 @@
-"""Numbers of many variants in place of one, for what is written for one: the rules and formulas of a record."""
+"""Numbers of many machines in place of one float, so that rules and formulas written for one serve them all."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from kurbel.arrays import Flags
 
 
 class Parted(Exception):
-    """What is asked of many variants holds for some of them and not for others; `holds` says for which, (v,)."""
+    """A condition holds for some of many machines and not for others; holds: for which, (machines,)."""
 
     def __init__(self, holds: Flags) -> None:
         super().__init__()
@@ -22,7 +22,7 @@ class Parted(Exception):
 
 
 def varied(numbers: Sequence[float]) -> Varied:
-    """Return numbers of many variants."""
+    """Return numbers of many machines."""
     return Varied(np.array(numbers))
 
 
@@ -50,7 +50,7 @@ def _plain(number: Any) -> Any:
 
 
 def _decided(holds: Flags) -> bool:
-    """Return what is so of all variants; raises Parted where they differ."""
+    """Return whether a condition holds for all machines or for none; raises Parted where they differ."""
     if holds.all():
         return True
     if holds.any():
@@ -72,10 +72,10 @@ def _power(base: Any, exponent: Any) -> Any:
 
 
 class Varied:
-    """Numbers (v,) that go where a float goes: each operation is that of floats, one by one and to the last bit.
+    """Numbers (machines,) in place of a float: each operation is that of floats, one by one and to the last bit.
 
-    A comparison must hold for all variants or for none; else Parted is raised, so that those of each sort can be taken
-    apart. What is written for floats alone, such as the functions of `math`, raises TypeError.
+    A comparison must hold for all machines or for none; else Parted is raised, so that the two groups can be computed
+    separately. What is written for floats alone, such as the functions of `math`, raises TypeError.
     """
 
     __slots__ = ("values",)

@@ -32,7 +32,7 @@ def crests(waves: Sequence[int], amplitudes: ComplexArray) -> tuple[Array, Array
 
 
 def _highest(waves: Array, amplitudes: ComplexArray, samples: Array) -> Array:
-    """Return the largest value (m,) near equally spaced samples (m, n), of which the highest do not tell it apart."""
+    """Return the largest value (m,) near the highest of equally spaced samples (m, n)."""
     step = 2 * np.pi / samples.shape[1]
     # a crest is above the sample next to it by no more than the largest curvature makes over half a step
     above = np.abs(amplitudes) @ waves.astype(float) ** 2 * step**2 / 8

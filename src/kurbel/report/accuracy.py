@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.accuracy.extremes import Probe, all_cases
+from kurbel.accuracy.extremes import all_cases
 from kurbel.accuracy.inexact import Difference, data_errors, model_errors
 from kurbel.accuracy.leaving_out import Saving, savings
 from kurbel.accuracy.scenes import Loads, Scene, built_in
@@ -156,14 +156,14 @@ def _processor() -> str:
 # stiff and extreme cases
 
 
-def extremes_report(loads: Loads, cases: Sequence[Probe] | None = None) -> tuple[Report, bool]:
-    """Return the verdicts on the cases, on all if none are given, and whether every one is passed."""
+def extremes_report(loads: Loads) -> tuple[Report, bool]:
+    """Return the verdicts on all cases, and whether every one is passed."""
     from kurbel.accuracy.extremes.judge import verdicts as judge
 
     def ask(text: str, asked: str) -> float | None:
         return answer(loads(text), asked)
 
-    verdicts = list(judge(all_cases() if cases is None else cases, ask, loads))
+    verdicts = list(judge(all_cases(), ask, loads))
     passed = sum(verdict.passed for verdict in verdicts)
     names = tuple(
         (v.case.name, v.case.asked, v.expected, v.observed, "passed" if v.passed else "FAILED") for v in verdicts

@@ -1,4 +1,4 @@
-"""From a machine to its results: a case asks the whole machine, the machine its cylinders, a cylinder its pressures.
+"""From a machine to its results: a case uses the whole machine, the machine its cylinders, a cylinder its pressures.
 
 Letters before the numbers of formulas and pages name their source:
 

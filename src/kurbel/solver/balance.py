@@ -118,7 +118,7 @@ class MachineBalance(Results):
 
     @property
     def answering(self) -> tuple[Any, ...]:
-        """What has key values, the first that has one."""
+        """The objects that have key values, searched in this order."""
         return (self, *((self.locomotive,) if self.locomotive else ()))
 
     def _columns(self, phi: Array, within: Array) -> Columns:

@@ -1,4 +1,4 @@
-"""The machine as a whole, solved: results hang on each other and are computed when they are asked for."""
+"""The machine as a whole, solved: results depend on each other and are computed on first use."""
 
 from __future__ import annotations
 

@@ -54,8 +54,8 @@ class Harmonic(NamedTuple):
 class ElasticCoupling:
     """The torque in the coupling and the speed of the crank shaft, of one machine or of many.
 
-    own: J₁ in kg m², (n,). Results are told as `TurningEffort.told` does. Raises NoSolutionError in a resonance that
-    nothing damps, and where floats do not hold the figures, Unsettled where no motion repeats.
+    own: J₁ in kg m², (n,). Raises NoSolutionError in a resonance without damping and where numbers leave the
+    range of floats, Unsettled where no motion repeats.
     """
 
     unknowns = 3
@@ -121,7 +121,7 @@ class ElasticCoupling:
         return floor
 
     def also(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> Array:
-        """Return nothing: what is told is linear in y."""
+        """Return nothing: all results are linear in y."""
         return y[:0]
 
     def _solve(self) -> None:
@@ -146,10 +146,10 @@ class ElasticCoupling:
         omega, alpha = y[1] / pieces.of(self.own * self.omega), (self.known(pieces)[0] - torque) / pieces.of(self.own)
         self.samples = np.stack((torque, omega, alpha))
 
-    # what it tells
+    # results
 
     def told(self, values: Array) -> Any:
-        """Return numbers of the machines (n,), nan of those that have no answer, or that of the only one."""
+        """Return values (n,), nan for machines without a solution; for one machine a float."""
         return self.effort.told(np.where(self.failed, np.nan, values))
 
     def samples_of(self, column: str) -> tuple[Pieces, Array] | None:

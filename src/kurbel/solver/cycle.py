@@ -25,29 +25,32 @@ from kurbel.solver.pins import on_crosshead_pin, on_pin
 from kurbel.solver.state import State
 
 _SURE = 4.0
-"""Standard deviations that the noise of thousands of samples does not reach."""
+"""Standard deviations: the noise of thousands of samples stays below."""
 _SENSE = ("guide_sense", "curvature", "P_gas", "P")
+"""Columns that are refined before the guide force is searched for changes of side; `guide_sense` is the first."""
 _RUBBING = ("at_crank", "at_crosshead", "journals")
+"""Moments of friction in pins and journals, attributes of `Rubbing`."""
 _SMOOTH = ("curvature", "P_gas", "P", "N", "T", "D", *_RUBBING)
-"""What is to be a polynomial on every piece: columns, and the moments of friction in pins and journals."""
+"""Columns, and moments of friction, that must be polynomials on every piece."""
 
 
 class Where(NamedTuple):
-    """The angles in degrees at which a quantity has a value, ascending, and between which values it moves."""
+    """The angles in degrees at which a quantity has a value, ascending, and the range of its values."""
 
     angles: tuple[float, ...]
     span: tuple[float, float]
 
 
 class SampledCylinder:
-    """A cylinder with its cycle in pieces, and where its columns are largest, smallest, and zero."""
+    """A cylinder with its cycle in pieces, and the extremes and zeros of its columns."""
 
     drive: Drive
     motion: Motion
     _last: tuple[Pieces, State]
+    """Where columns were sampled last, so that `samples` need not compute them again."""
 
     def told(self, values: Array) -> Any:
-        """Return what was found of every machine (machines,), or of the only one as a number."""
+        """Return values (machines,) as they are for many machines, and as a float for one."""
         return float(values[0]) if self.drive.count is None else values
 
     @cached_property
@@ -101,7 +104,7 @@ class SampledCylinder:
 
     @property
     def tail(self) -> float:
-        """What is left of the series on a piece that could be halved, over the largest value of its quantity."""
+        """Largest tail of the Chebyshev series on a piece that could be halved, relative to the largest value."""
         values = self._smooth(self.pieces)
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
         tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
@@ -111,7 +114,7 @@ class SampledCylinder:
     def samples(self) -> State:
         """The state at the nodes of the pieces."""
         pieces = self.pieces
-        last, state = self._last  # where no piece was halved it is known already
+        last, state = self._last  # known already if no piece was halved
         return state if last is pieces else self.drive.on(pieces)
 
     def sampled(self, column: str) -> Array | None:
@@ -156,18 +159,18 @@ class SampledCylinder:
         values = self.sampled(column)
         return None if values is None else where_is(self.pieces, values, value)
 
-    # where P changes sides
+    # reversals
 
     @cached_property
     def phi_reversal(self) -> tuple[Any, ...] | None:
-        """Druckwechsel: crank angles in degrees at which P takes the other sign, through zero or by a jump.
+        """Force reversal (Druckwechsel): crank angles in degrees at which P changes sign, through zero or by a jump.
 
-        Of those that are the noise of a trace alone the middle one stands for all. Of many machines one tuple each.
+        Changes that are noise of a trace count once, at the middle one. For many machines one tuple each.
         """
         return self.reversals_of("P") if self.drive.has_force else None
 
     def reversals_of(self, column: str) -> tuple[Any, ...] | None:
-        """Return the crank angles in degrees at which a force takes the other sign for longer than noise."""
+        """Return the crank angles in degrees at which a force changes sign, not counting the noise of a trace."""
         values = self.sampled(column)
         if values is None:
             return None
@@ -178,7 +181,7 @@ class SampledCylinder:
 
     @property
     def reversals_in_noise(self) -> int:
-        """How many changes of the sign of P are the noise of a trace alone, and not told."""
+        """How many changes of the sign of P are noise of a trace, and are not listed."""
         values = self.sampled("P") if self._noise and self.drive.has_force else None
         return 0 if values is None else len(self.pieces.zeros(values).degrees) - len(self.phi_reversal or ())
 
@@ -191,7 +194,7 @@ class SampledCylinder:
     def lifted(self) -> tuple[tuple[float, float], ...]:
         """Stretches of crank angle in degrees on which N presses on the upper guide, R p. 602.
 
-        Empty, too, where there is no guide, no N, or no inclination that says which guide is the lower one.
+        Empty, too, where there is no guide, no N, or no inclination, so that no guide is the lower one.
         """
         down, side = self.drive.down, self.sampled("N") if self.drive.has_force else None
         if side is None or not down or not (self.drive.mechanism.guided and self.drive.mechanism.has_rod):
@@ -212,7 +215,7 @@ def _column(state: State, name: str) -> Any:
 
 
 def where_is(pieces: Pieces, values: Array, value: float) -> Where:
-    """Return the angles of the cycle at which samples pass a value, or reach it as their extreme, of one machine.
+    """Return the angles of the cycle of one machine at which samples pass a value, or reach it as their extreme.
 
     At a jump over the value it is the angle of the jump; one that only leads to the value does not pass it.
     """
@@ -226,10 +229,10 @@ def where_is(pieces: Pieces, values: Array, value: float) -> Where:
 
 
 def lasting(pieces: Pieces, values: Array, changes: Array, noise: float) -> Array:
-    """Return those of the changes of sign (n,) of samples between which they leave a band of noise beside 0.
+    """Return the changes of sign (n,) that are more than noise: between them samples leave the band ±noise.
 
-    Of several that follow one another within the band, the middle one stands for a change that lasts beyond it, and
-    none where they lead back to the sign before.
+    Of several changes within the band the middle one is kept if the sign after the band is another than before it, and
+    none otherwise.
     """
     if not noise or not len(changes):
         return changes

@@ -25,15 +25,15 @@ from kurbel.solver.state import State
 _IDLE = 1e-4
 """Mean indicated pressure in Pa that is rounding: such a piston neither drives nor is driven."""
 _DENSE = 600
-"""Breaks of a cycle from which on its pieces, those between the samples of a trace, are short enough for few nodes."""
+"""Breaks of a cycle, as at the samples of a trace, from which on its pieces are short enough for 6 nodes."""
 
 
 class Drive:
     """A cylinder of a machine: masses, weights, pressures and friction as the state needs them.
 
     revolutions, cycle: turns and degrees of crank angle per working cycle of this cylinder; omega: rad/s or None.
-    count: of how many machines its numbers are, arrays (machines,); None for one machine. index: of which of them,
-    where they are those of angles or pieces (n,) already.
+    count: number of machines, whose numbers are then arrays (machines,); None for one machine. index: in a copy made by
+    `taken`, the machine of every angle or piece (n,), to which its numbers belong.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class Drive:
         self.cycle = 360.0 * self.revolutions
 
     def taken(self, index: Indices) -> Drive:
-        """Return it with the numbers of these machines (n,)."""
+        """Return a copy with the numbers of these machines, one for every angle or piece (n,)."""
         if self.count is None:
             return self
         other = Drive(taken(self.machine, index), taken(self.cylinder, index), self.count, index)
@@ -104,7 +104,7 @@ class Drive:
 
     @property
     def has_inertia(self) -> bool:
-        """Whether inertia forces can be given: masses and a speed."""
+        """Whether inertia forces are known: there are masses and a speed."""
         return self.cylinder.masses is not None and self.omega is not None
 
     @cached_property
@@ -205,7 +205,7 @@ class Drive:
 
     @cached_property
     def steady_friction(self) -> Any:
-        """Friction in N that is the same over the stroke: of the piston rings, and what is given as a force."""
+        """Friction in N that is constant over the stroke: of the piston rings, and what is given as a force."""
         friction = self.cylinder.friction
         return self.ring_force + (0.0 if friction is None or friction.constant is None else friction.constant)
 
@@ -223,7 +223,7 @@ class Drive:
         return self.cylinder.friction is not None
 
     def locks(self, degrees: float) -> str:
-        """Return why nothing is computed of a crosshead that locks itself at this angle."""
+        """Return why no forces are computed for a crosshead that locks itself at this angle."""
         f = self.crosshead_friction
         bound = 1 / np.sqrt(1 + f * f)
         return (

@@ -4,8 +4,8 @@
     E(φ) = ∫₀^φ (M − M_load) dφ          excess work; ΔE = E_max − E_min (R p. 608)
     J(φ) = Σ m x′² + …                   what the moving masses add to the inertia of the shaft
 
-The pieces of the whole machine lie within those of every cylinder. Each cylinder is sampled on its own pieces and its
-polynomials carry it to the common ones; of cylinders that work alike one is computed.
+The pieces of the whole machine lie within those of every cylinder. Each cylinder is sampled on its own pieces, and the
+polynomials there are evaluated on the common ones. Of cylinders that work alike only one is sampled.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from kurbel.machine.alike import gathered, work_alike
 from kurbel.machine.turning import Effort, Harmonics
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import Angles, Pieces
+from kurbel.numerics.pieces import Angles, Pieces, common
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State, reduced_inertia
@@ -34,15 +34,15 @@ from kurbel.solver.state import State, reduced_inertia
 _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
 _ROUNDING = 1e-13
-"""Of the largest torque: a smaller mean, as that of masses without gas, is rounding."""
+"""Relative to the largest torque: a smaller mean, as that of masses without gas, is rounding."""
 _CANCELLED = 4e-14
-"""Of the terms of a sum: where nothing larger is left over the whole cycle, they cancel."""
+"""Relative to the terms of a sum: if the sum is smaller over the whole cycle, the terms cancel."""
 _UNIFORM = 1e-14
-"""Of the largest torque: where the load differs from the effort by no more all over the cycle, they are equal."""
+"""Relative to the largest torque: load and effort that differ by less over the whole cycle are equal."""
 _BALANCED = 1e-9
-"""Means of effort and load that differ by less, relatively, are equal."""
+"""Relative difference below which the means of effort and load are equal."""
 _LEVEL = 16 * float(np.finfo(float).eps)
-"""Of the works to and fro: summits of E that differ by less are equal."""
+"""Relative to the work of all lobes: maxima, or minima, of E that differ by less are equal."""
 
 
 def shaft_torque(state: State) -> Any:
@@ -58,7 +58,7 @@ def driving_torque(state: State) -> Any:
 def inertia_torque(state: State) -> Any:
     """Return the torque −m x′ x″ ω² in N m of the inertia forces at uniform rotation, −½ ω² dJ/dφ (Tolle).
 
-    Of an exact rod it has the couple times −ψ′ besides.
+    An exact rod adds its couple times −ψ′.
     """
     rod, omega = state.drive.rod, state.drive.omega
     assert omega is not None
@@ -80,7 +80,7 @@ class TurningEffort:
     """The turning effort of a machine, or of `count` machines of one kind, over their common cycle in degrees.
 
     Samples are (nodes, pieces) at the nodes of `pieces`, numbers of the machines (n,); of one machine, n = 1.
-    refused: the machines (n,) of a batch that have no answer; one machine alone raises.
+    refused: which machines (n,) of many have no result; with one machine an error is raised instead.
     """
 
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], count: int | None = None) -> None:
@@ -104,7 +104,7 @@ class TurningEffort:
             raise UsageError(f"{name}: a speed of {show(speed, 'speed')} is too {size} to compute with")
 
     def told(self, values: Array) -> Any:
-        """Return numbers of the machines (n,), nan where refused, or that of the only one."""
+        """Return values (n,), nan for refused machines; for one machine a float."""
         return float(values[0]) if self.count is None else np.where(self.refused, np.nan, values)
 
     # the common pieces
@@ -131,18 +131,13 @@ class TurningEffort:
     @cached_property
     def pieces(self) -> Pieces:
         """The cycle in pieces on which every torque is a polynomial."""
-        first = self.cylinders[0].pieces if self.cylinders else None
-        alone = len(self.cylinders) == 1 and first is not None and first.cycle == self.cycle and self.diagram is None
-        if first is not None and alone and not some(position(self.cylinders[0]) != 0):
-            return first
-        breaks = [given.breaks for given in (self.given, self.diagram) if given]
-        for group in self.groups:
-            own = group[0].pieces
-            turns = np.arange(0.0, self.cycle, own.cycle)
-            breaks += [Angles(own.machine, own.low + own.of(position(one)) + turn) for one in group for turn in turns]
-        nodes = max((len(group[0].pieces.rule.nodes) for group in self.groups), default=16)
-        whole = Angles(*(np.concatenate(parts) for parts in zip(*breaks)))
-        return Pieces.between(whole, self.count or 1, self.cycle, nodes)
+        none = Angles(np.zeros(0, dtype=np.intp), np.zeros(0))
+        breaks = [none, *(given.breaks for given in (self.given, self.diagram) if given)]
+        cuts = Angles(*(np.concatenate(parts) for parts in zip(*breaks)))
+        if not self.cylinders:
+            return Pieces.between(cuts, self.count or 1, self.cycle)
+        parts = [(group[0].pieces, position(one)) for group in self.groups for one in group]
+        return common(parts, self.cycle).split(cuts)
 
     def sampled(self, terms: Sequence[Term]) -> Array:
         """Return the sum of the terms on the common pieces; exactly 0 in machines where the terms cancel."""
@@ -176,7 +171,7 @@ class TurningEffort:
 
     @cached_property
     def drives(self) -> Any:
-        """Whether any piston drives; of a given effort, whether it does on the mean."""
+        """Whether any piston drives; for a given effort, whether its mean does."""
         if self.given:
             return self.told(self._mean_of(self.indicated)) >= 0
         return any_of(forces.drive.drives for forces in self.cylinders)
@@ -184,8 +179,9 @@ class TurningEffort:
     def share(self, drive: Drive | None) -> Any:
         """Return what the torque of a cylinder, or a given effort, is multiplied by for the losses (R p. 610–613).
 
-        η where its pistons drive, 1/η where the machine is driven and no piston drives. Beside driving pistons driven
-        ones count in full; where both are on one rod, so does all but the force of the driving ones.
+        η where its pistons drive, 1/η where the machine is driven and no piston drives. In a machine with driving
+        pistons the driven ones count in full. On a rod with both the factor is 1, and `lost` subtracts the loss of the
+        driving ones.
         """
         eta = self.machine.efficiency
         if not some(eta != 1) or drive is None:
@@ -195,7 +191,7 @@ class TurningEffort:
         return where(self.drives, where(alone, eta, 1.0), where(driven, 1 / eta, 1.0))
 
     def lost(self, group: Sequence[CylinderForces]) -> list[Term]:
-        """Return what is lost of the torque of driving pistons that have driven ones on their rods; at most one."""
+        """Return the loss, at most one term, of driving pistons that share their rods with driven ones; see `share`."""
         drive = group[0].drive
         factor = where(drive.drives & drive.driven, self.machine.efficiency - 1.0, 0.0)
         return [Term(factor, group, driving_torque)] if some(factor != 0) else []
@@ -321,7 +317,7 @@ class TurningEffort:
 
     @cached_property
     def true_excess(self) -> ExcessWork:
-        """The excess that changes the kinetic energy: the losses take their share of the effort, not of inertia."""
+        """The excess that changes the kinetic energy: with the losses of the effort, but none of the inertia torque."""
         missing = [Term(1 - share, one, torque) for share, one, torque in self.inertia_terms if some(share != 1)]
         return ExcessWork(self, self.excess.torque + self.sampled(missing)) if missing else self.excess
 
@@ -344,7 +340,7 @@ class ExcessWork:
 
     @cached_property
     def _to_and_fro(self) -> Array:
-        """The works in J that speed up and slow down, all counted positive, (n,): what E is the difference of."""
+        """Work in J of all lobes, each counted positive, (n,): the size of the terms of E."""
         return self.pieces.integral(np.abs(self.torque))
 
     def at(self, degrees: Array, machine: Indices | None = None) -> Array:
@@ -451,9 +447,9 @@ class HarmonicTorque:
 
 
 def position(forces: CylinderForces) -> Any:
-    """Return by how many degrees the crank of a cylinder stands behind crank 1.
+    """Return by how many degrees the crank of a cylinder lags crank 1.
 
-    Whole cycles are taken off, which is exact: beside a large position an angle would lose its digits.
+    Whole cycles are taken off, which is exact; added to a large position an angle would lose digits.
     """
     behind = forces.drive.cylinder.crank_position
     return (

@@ -34,7 +34,7 @@ class Shown:
 
 
 class Columns:
-    """Columns at crank angles φ (n,) in degrees: attributes by their ids, in SI, each (n,), computed when asked for.
+    """Columns at crank angles φ (n,) in degrees: attributes by their ids, in SI, each (n,), computed on first use.
 
     formulas: what computes each column; None comes of one that the machine does not have.
     """
@@ -50,7 +50,7 @@ class Columns:
 
 
 class Results(Shown):
-    """What has key values and columns of a command; attributes of those ids, or what a quantity asks, answer them."""
+    """Key values and columns of a command: attributes named by their ids, or what `Quantity.asks` names."""
 
     command: ClassVar[str]
 
@@ -61,11 +61,11 @@ class Results(Shown):
 
     @property
     def answering(self) -> Iterable[Any]:
-        """What answers key values, the first that knows one."""
+        """The objects that have key values, searched in this order."""
         return (self,)
 
     def __getattr__(self, id: str) -> Any:
-        """Return a key value that is no attribute here: extremes, and what something else answers."""
+        """Return a key value that is no attribute here: an extreme, or one that another of `answering` has."""
         quantity = None if id.startswith("_") else self._known.get(id)
         if quantity is None:
             raise AttributeError(f"no key value is called {id}")

@@ -1,4 +1,4 @@
-"""Flywheel of the whole machine: what `kurbel flywheel` answers, of one machine or of many.
+"""Flywheel of the whole machine: key values and columns of `kurbel flywheel`, of one machine or of many.
 
     J_δ = ΔE/(δ ω²)           the flywheel of the books for the wanted δ (R p. 613)
     GD² = 4 J                 A_K = 4 J/(π ρ D (D² + h²))     section of the rim that has it
@@ -62,11 +62,11 @@ class MachineTurning(Results):
         wheel = machine.flywheel
         self._given, self._wanted, self._rim = (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
         if count is not None:
-            _ = self.natural_order  # which refuses machines of a batch before anything is told of them
+            _ = self.natural_order  # refuses machines of a batch before any result is read
 
     @property
     def answering(self) -> tuple[Any, ...]:
-        """What answers key values, the first that knows one."""
+        """The objects that have key values, searched in this order."""
         return (self, *((self.elastic,) if self.elastic else ()), self.brake)
 
     # over the crank angle

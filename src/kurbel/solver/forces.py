@@ -1,4 +1,4 @@
-"""What `kurbel forces` answers for one cylinder, or for that cylinder of many machines: key values of its forces.
+"""Key values of `kurbel forces` for one cylinder, or for the same cylinder of many machines.
 
 Rod loads are judged after API 618: unless crosshead pin and bush part once in every turn, no oil comes between them on
 the loaded side. The standard asks for 15° of crank angle and 3 % of the larger load in the other direction; it takes
@@ -31,10 +31,10 @@ from kurbel.solver.state import State
 
 
 class CylinderForces(SampledCylinder, Results):
-    """What `kurbel forces` answers for one cylinder. Attributes are named by the ids of the key values, in SI.
+    """Key values of the forces of one cylinder: attributes named by their ids, in SI.
 
-    A key value that the machine does not have is None. `at(degrees)` gives the columns. count: of how many machines the
-    numbers of machine and cylinder are, (machines,); then so are all key values.
+    A key value that the machine does not have is None. `at(degrees)` gives the columns. count: number of machines; the
+    numbers of machine and cylinder, and all key values, are then arrays (machines,).
     """
 
     command = "forces"
@@ -45,7 +45,7 @@ class CylinderForces(SampledCylinder, Results):
 
     @property
     def answering(self) -> Iterator[Any]:
-        """What answers key values, the first that knows one; the others need not be made for it."""
+        """The objects that have key values, searched in this order; each is made only if those before it lack one."""
         yield from (self, self.motion)
         if self.drive.own_gas:
             yield self.indicated
@@ -54,12 +54,12 @@ class CylinderForces(SampledCylinder, Results):
 
     @cached_property
     def indicated(self) -> Indicated:
-        """What the traces of the cylinder's own piston tell."""
+        """Key values of the traces of the cylinder's own piston."""
         return Indicated(self.drive.own_gas)
 
     @property
     def brake(self) -> Brake | None:
-        """What the brake tells, where this is the only cylinder."""
+        """Key values of the brake, where this is the only cylinder."""
         machine = self.drive.machine
         return Brake(machine, (self,)) if len(machine.cylinders) == 1 else None
 
@@ -105,7 +105,7 @@ class CylinderForces(SampledCylinder, Results):
 
     @property
     def slides(self) -> bool:
-        """Whether the output slides, so that its place is told by x."""
+        """Whether the output slides, so that x gives its position."""
         return bool(self.drive.mechanism.slides)
 
     @cached_property
@@ -145,7 +145,7 @@ class CylinderForces(SampledCylinder, Results):
 
     @property
     def works_one_way(self) -> bool:
-        """Whether the works of driving and driven pistons do not differ from the whole: not both hang on the rod."""
+        """Whether the pistons of the rod all drive or are all driven, so that `work` is the only work."""
         return not (self.work_driving and self.work_driven)
 
     @cached_property
@@ -244,7 +244,7 @@ class CylinderForces(SampledCylinder, Results):
 
     @property
     def way(self) -> Any:
-        """The way in m of what slides, there and back, per cycle."""
+        """Path in m of what slides, there and back, per cycle."""
         return 2 * self.drive.mechanism.stroke * self.drive.revolutions
 
     @cached_property
@@ -297,7 +297,7 @@ class CylinderForces(SampledCylinder, Results):
         return self._of_driving(self.ring_work)
 
     def _of_driving(self, lost: Any) -> Any:
-        """Return work lost in J over that of the driving pistons; of variants that have none it is nan."""
+        """Return lost work in J over the work of the driving pistons; nan for those of many machines without any."""
         driving = self.work_driving
         if lost is None or driving is None or every(driving == 0):
             return None
@@ -325,7 +325,7 @@ class CylinderForces(SampledCylinder, Results):
 
     @property
     def no_compressor(self) -> bool:
-        """Whether nobody asks for the rod load: an engine, also a motored one of four strokes, or no connecting rod."""
+        """Whether the rod load is of no interest: an engine, also a motored four-stroke one, or no connecting rod."""
         work, drive = self.work, self.drive
         return work is None or work >= 0 or drive.revolutions > 1 or not drive.mechanism.has_rod
 
@@ -345,9 +345,9 @@ class CylinderForces(SampledCylinder, Results):
 
     @cached_property
     def phi_rod_reversal(self) -> tuple[Any, ...] | None:
-        """Crank angles in degrees at which the rod load takes the other sign; within the noise of a trace, once.
+        """Crank angles in degrees at which the rod load changes sign; changes within the noise of a trace count once.
 
-        Of many variants one tuple each.
+        For many machines one tuple each.
         """
         return self.reversals_of("P_rod") if self.drive.has_force else None
 
@@ -480,7 +480,7 @@ def _swept_rate(forces: CylinderForces) -> float | None:
 
 
 def _stretches(whose: Indices, degrees: Array, count: int) -> Array:
-    """Return the sum of the stretches (n,) of each of so many variants, and the longest, (2, count)."""
+    """Return the sum of the stretches (n,) of each of `count` machines, and the longest, (2, count)."""
     longest = np.zeros(count)
     np.maximum.at(longest, whose, degrees)
     return np.stack((np.bincount(whose, degrees, count), longest))

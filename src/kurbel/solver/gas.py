@@ -2,7 +2,7 @@
 
 A card is a process over the stroke z, counted from the chamber's smallest volume: segments that are straight, or p V^n
 = const. Ideal cards are drawn from the few numbers of a theoretical cycle. Segments are found by crank angle, not by
-displacement, so that each side of a vertical jump can be asked for exactly. The indicated work is closed, A s ∮ p dz:
+displacement, so that each side of a vertical jump is exact. The indicated work is closed, A s ∮ p dz:
 
     straight      (p + p′)/2 · (z′ − z)
     p V^n         P V ln(V′/V) (e^u − 1)/u,  u = (1 − n) ln(V′/V), P absolute, less what makes it absolute
@@ -346,7 +346,7 @@ def _processes(chamber: Any, setting: Setting, count: int | None) -> tuple[Proce
     if not several or count is None:
         return (process_in(chamber, setting.lift, setting.cycle, setting.base),)
     each = [chamber] * count
-    if isinstance(chamber, Chambers) and chamber.which is not None:
+    if isinstance(chamber, Chambers):
         each = [chamber.each[place] for place in chamber.which.tolist()]
     lifts, bases = (np.broadcast_to(one, count).tolist() for one in (setting.lift, setting.base))
     made: dict[tuple[int, float, float], Process] = {}

@@ -1,4 +1,4 @@
-"""What a measured trace tells beside forces: exponents, the pumping loop, and the spread of its cycles."""
+"""Key values of a measured trace besides forces: exponents, the pumping loop, and the spread of its cycles."""
 
 import math
 from functools import cached_property

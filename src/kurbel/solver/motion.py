@@ -104,7 +104,7 @@ class Motion:
 
     @cached_property
     def _offers(self) -> list[Offer]:
-        """What the mechanism offers of which the extremes are told."""
+        """Columns that the mechanism offers with extremes in `kurbel motion`, where it has them."""
         here = CrankAngle.of(45.0)
         declared = [one for one in self.mechanism.OFFERS if "motion" in one.quantity.extremes]
         return [one for one in declared if one.factor(self.mechanism, here) is not None]
@@ -158,7 +158,7 @@ class Motion:
 
     @property
     def has_no_c_min(self) -> bool:
-        """Whether the return stroke is as fast as the outstroke, or its speed is told as `c_return_max`."""
+        """Whether the return stroke is as fast as the outstroke, or its speed is printed as `c_return_max`."""
         return self.equal_strokes or self.mechanism.quick_return
 
     @cached_property

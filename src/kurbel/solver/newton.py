@@ -10,7 +10,7 @@ The crosshead gives F to the rod at c, the rod gives K to the crank pin at k:
 
     F − K + W = m z̈_G        (k − c) × (−K) + (z_G − c) × (W − m z̈_G) + M = −I ψ̈
 
-At a few angles the accelerations follow from these places. What is left open, of moments over their arm, is told over
+At a few angles the accelerations follow from these places. What is left open, of moments over their arm, is relative to
 the largest force of the cycle.
 """
 
@@ -118,7 +118,7 @@ class _Motion(NamedTuple):
 
 
 def _rod(drive: Drive, state: State) -> list[Array]:
-    """Return what is left of the forces on the rod, of their moments over L, and of the forces told along it."""
+    """Return what is left of the forces on the rod, of their moments over L, and of S along it."""
     masses, angle, L = drive.cylinder.masses, state.angle, drive.mechanism.rod_length
     rod = masses.connecting_rod if masses else None
     sin_psi, cos_psi = state.rod_angle

@@ -130,7 +130,7 @@ class SpeedLine:
     """The speed of machines over the turn, by samples of r = (ω/ω_n)² − 1 on pieces of their cycles.
 
     failed (n,): which of a batch have none; found: the solution of their equation, None under a load that does not
-    depend on the speed. Results are told as `TurningEffort.told` does.
+    depend on the speed.
     """
 
     def __init__(
@@ -149,7 +149,7 @@ class SpeedLine:
             raise UsageError(_BEYOND)
 
     def told(self, values: Array) -> Any:
-        """Return numbers of the machines (n,), nan of those that have no line, or that of the only one."""
+        """Return values (n,), nan for machines without a speed line; for one machine a float."""
         return self.course.effort.told(np.where(self.failed, np.nan, values))
 
     @cached_property

@@ -1,4 +1,4 @@
-"""A cylinder at crank angles: every column of `kurbel forces` and `kurbel motion`, computed when it is asked for.
+"""A cylinder at crank angles: every column of `kurbel forces` and `kurbel motion`, computed on first use.
 
 What acts on the crosshead, drawn for a stroke line to the left, the shaft on the right, 0 < φ < 180°:
 
@@ -39,9 +39,9 @@ if TYPE_CHECKING:
 class State:
     """A cylinder at crank angles; its attributes are named by the ids of the columns, in SI, shaped as the angles.
 
-    angle: crank angles (n,), or those at the nodes of pieces, (nodes, n); within: angles in degrees (n,) that say on
-    which side of a jump each one, or each piece, is meant. rubs: whether pins and journals do. A quantity that the
-    machine does not have is None.
+    angle: crank angles (n,), or those at the nodes of pieces, (nodes, n); within: angles in degrees (n,) on the side of
+    every jump that is meant: for pieces their middles. rubs: whether pins and journals rub. A quantity that the machine
+    does not have is None.
     """
 
     def __init__(self, drive: Drive, angle: CrankAngle, within: Array, rubs: bool = True) -> None:
@@ -64,7 +64,7 @@ class State:
 
     @property
     def unrubbed(self) -> State:
-        """The state as it would be if pins and journals did not rub: the loads that make them rub."""
+        """The state without friction in pins and journals: its loads are those that this friction is computed from."""
         return State(self.drive, self.angle, self.within, rubs=False) if self.rubs else self
 
     @property
@@ -102,7 +102,7 @@ class State:
 
     @cached_property
     def way(self) -> Any:
-        """Displacement in m from the inner dead centre, wherever the book counts x from: what the chambers see."""
+        """Displacement in m from the inner dead centre, even where x counts from elsewhere: for the chambers."""
         return self.x - self.drive.mechanism.start
 
     @cached_property
@@ -138,7 +138,7 @@ class State:
 
     @cached_property
     def z(self) -> Any:
-        """What of the stroke, or of the swing, is passed from the inner dead centre; of what turns on, None."""
+        """Fraction of the stroke, or of the swing, from the inner dead centre; None where the output turns fully."""
         one = self.drive.mechanism
         return None if one.turns else (self._coordinate - one.start) / one.stroke
 
@@ -284,7 +284,7 @@ class State:
     def rod_load(self, without: Any = 0.0) -> Any:
         """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft (API 618).
 
-        without: mass in kg that is left out beside the connecting rod's share. None without a gas force, and without a
+        without: mass in kg that is left out, as the connecting rod's share is. None without a gas force, and without a
         connecting rod, where it would be P.
         """
         drive, masses = self.drive, self.drive.cylinder.masses
@@ -316,7 +316,7 @@ class State:
 
     @cached_property
     def _guide_load(self) -> Any:
-        """What rests on the guide beside the push of the rod in N: weight less the couples on the rod."""
+        """Load on the guide besides the push of the rod in N: weight less the side force of couples on the rod."""
         weight = self.drive.guide_weight
         return weight if self.rod_side is None else weight - self.rod_side
 
@@ -339,7 +339,7 @@ class State:
 
     @cached_property
     def below(self) -> Any:
-        """cos ψ + f sin ψ sgn c sgn N: what N is over; not positive where the crosshead locks itself."""
+        """cos ψ + f sin ψ sgn c sgn N, the denominator of N; not positive where the crosshead locks itself."""
         sin_psi, cos_psi = self.rod_angle
         return cos_psi + sin_psi * (self.guide_side * self.direction * self.drive.crosshead_friction)
 
@@ -381,7 +381,7 @@ class State:
 
     @cached_property
     def crosshead_power(self) -> Any:
-        """Crosshead friction times way by crank angle in J per radian, positive."""
+        """Work of crosshead friction by crank angle, f |N| |dx/dφ| in J per radian."""
         return self.crosshead_drag * (self.slope * self.direction)
 
     # rod and crank pin
@@ -473,7 +473,7 @@ class State:
 
     @cached_property
     def _free_torque(self) -> Any:
-        """Torque in N m before pins and journals rub, from the work of the force at the output."""
+        """Torque in N m before friction in pins and journals, from the work of the force at the output."""
         torque = self._output * self.slope
         return torque + self._rod_tangential * self.drive.mechanism.crank if self.drive.rod else torque
 
@@ -486,7 +486,7 @@ class State:
 
     @property
     def torque(self) -> Any:
-        """Torque T R in N m of the force on the pin, before crank pin and journals rub, from the work as M is."""
+        """Torque T R in N m of the force on the pin, before friction in crank pin and journals; from the work, as M."""
         return self._free_torque if self.rubbing is None else self._free_torque - self.rubbing.by_couple
 
     # a point of the rod

@@ -1,7 +1,7 @@
 """A measured trace as the pressure in a chamber: straight over the crank angle between its samples.
 
-Before it counts it is freed from drift over the cycle, and pegged to a level that the sensor does not know. What it
-tells beside forces, the exponents of p V^n = const that compression and expansion follow, is at the end.
+First the drift over the cycle is removed, and the level, which the sensor does not give, is set by pegging. At the end:
+the exponents of p V^n = const that compression and expansion follow.
 """
 
 import math
@@ -15,7 +15,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.machine.trace import Pegging, Trace
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.extreme import Extreme
-from kurbel.numerics.pieces import Angles, Pieces
+from kurbel.numerics.pieces import Angles, Pieces, refined
 
 
 def spread(number: Any, machine: Indices | None) -> Any:
@@ -24,11 +24,11 @@ def spread(number: Any, machine: Indices | None) -> Any:
 
 
 class Setting(NamedTuple):
-    """Where a chamber stands and what its pressures count from.
+    """Which chamber it is, and what its pressures count from.
 
     cycle: degrees of crank angle, 360 or 720; ambient: absolute pressure in Pa; absolute: whether the chamber's own
-    figures are; mirrored: the crank end repeats the head end's figures one stroke later. Of many machines numbers are
-    arrays (machines,), which type checkers are not told.
+    figures are; mirrored: the crank end repeats the head end's figures one stroke later. For many machines numbers are
+    arrays (machines,); the annotations are those of one.
     """
 
     mechanism: Mechanism
@@ -52,7 +52,7 @@ class Setting(NamedTuple):
 _OF_MEDIAN = 1.4826
 """Standard deviation over the median of the magnitude, of what is normally distributed."""
 _CHORD = 1.0
-"""Degrees over which a rise of pressure is told: between two samples it would be their noise."""
+"""Degrees over which a rise of pressure is measured: between two samples it would be their noise."""
 _DENSE = 600
 """Breaks of a cycle from which on its pieces are short enough for few nodes."""
 _ENOUGH = 72
@@ -211,17 +211,16 @@ class TracePressure:
     def _straight_weights(self, begin: float, turn: float) -> Array:
         """Return the weights of the samples in ∫ p dz from a dead centre on over so many degrees."""
         mechanism, cycle = self.setting.mechanism, self.setting.cycle
-        turns = np.add.outer(mechanism.cuts(), np.arange(0.0, cycle, 360.0)).ravel()
+        turns = np.add.outer(mechanism.dead_centres(), np.arange(0.0, cycle, 360.0)).ravel()
         breaks = np.append(self._starts, turns)
         nodes = 16 if len(breaks) < _DENSE else 10
-        pieces = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
+        whole = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
+        pieces, (slope,) = refined(whole, lambda some: self._fraction("slope", some.degrees)[None])
         number = np.searchsorted(self._starts, pieces.middle, side="right") - 1
         since = np.mod(pieces.middle - self._starts[number], cycle) + (pieces.degrees - pieces.middle)
         share = since / (self._segments.end - self._segments.start)[number]
         meant = np.mod(pieces.middle - begin, cycle) < turn
-        by_node = (
-            np.radians(pieces.half) * meant * pieces.rule.weights[:, None] * self._fraction("slope", pieces.degrees)
-        )
+        by_node = np.radians(pieces.half) * meant * pieces.rule.weights[:, None] * slope
         sample, count = self._first[number], len(self.pressures)
         of_start = np.bincount(sample, (by_node * (1 - share)).sum(axis=0), count)
         return np.asarray(of_start + np.bincount(sample + 1, (by_node * share).sum(axis=0), count))
@@ -259,7 +258,7 @@ def corrected(trace: Trace, setting: Setting, shift: float) -> Array:
 def drift_of(trace: Trace, samples: Array) -> Array:
     """Return by how much Pa each cycle (m,) ends too low to go on as it has begun.
 
-    Where the closing sample is missing, straight lines through the samples at both ends tell what it would have been.
+    Where the closing sample is missing, straight lines through the samples at both ends estimate it.
     """
     if not trace.completed:
         return np.asarray(samples[:, 0] - samples[:, -1])

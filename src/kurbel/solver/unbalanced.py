@@ -138,7 +138,7 @@ def _turned(forward: ComplexArray, backward: ComplexArray, turn: ComplexArray) -
 
 
 class Rest(NamedTuple):
-    """What a short rod adds beside the circles: factor · rest(φ − late); numbers of the machines."""
+    """What a short rod adds to the circles: factor · rest(φ − late); numbers of the machines."""
 
     waves: Waves
     factor: Any

@@ -87,7 +87,7 @@ def _given(
     throws: Sequence[OwnThrow], given: "SharedCounterweights | tuple[Counterweight, ...]", wheels: tuple[float, ...]
 ) -> Iterator[Weight]:
     if isinstance(given, tuple):
-        # among several throws nobody knows beside which one a weight stands
+        # with several throws a weight without a place belongs to none of them
         yield from (throws[0].carrying(one, throws[0].place if len(throws) == 1 else None) for one in given)
         return
     planes = given.planes or wheels
