@@ -154,6 +154,7 @@ def work() -> None:
 def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit, Callable[[], int]]]:
     try:
         from distributed import Client, TimeoutError
+        from distributed.comm import CommClosedError
     except ImportError:
         raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
     import logging
@@ -187,7 +188,7 @@ def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit
     try:
         yield submit, workers
     except Exception as error:
-        if client.status != "running" or isinstance(error, CancelledError):
+        if client.status != "running" or isinstance(error, (CancelledError, CommClosedError)):
             raise KurbelError(f"--dask {address}: the connection to the scheduler is lost") from None
         raise KurbelError(f"--dask {address}: {type(error).__name__}: {_first_line(error)}") from None
     finally:

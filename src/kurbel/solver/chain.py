@@ -109,16 +109,49 @@ def _response(chain: Chain, frequencies: Array, torques: ComplexArray, load_damp
     """Return it at frequencies (m,)."""
     twists, springs = chain.twists, chain.springs(frequencies)
     own = 1j * (chain.mass_damping[:, None] + load_damping) * frequencies - np.outer(chain.inertias, frequencies**2)
-    matrix, places = (twists.T * springs.T[:, None]) @ twists.astype(complex), np.arange(len(own))
-    matrix[:, places, places] += own.T + np.finfo(float).tiny * 1j  # a pivot of exactly zero is none: it ends as inf
-    angles = np.linalg.solve(matrix, torques.T[..., None])[..., 0].T
+    # a pivot of exactly zero is none: it ends as inf
+    diagonal = own + (twists.T**2) @ springs + np.finfo(float).tiny * 1j
+    solved = _eliminated(diagonal, (twists[:, :-1] * twists[:, 1:]).T @ springs)
+    angles = solved(torques)
     # of soft masses on stiff springs the matrix has lost digits, what is left over by the masses and the twists has not
     left = torques - own * angles - twists.T @ (springs * (twists @ angles))
     phases = angles / np.maximum(np.abs(angles), np.finfo(float).tiny)
     sizes = np.abs(own) + 2 * np.abs(twists.T) @ np.abs(springs)
     unsure = np.finfo(float).eps * (sizes * angles + np.abs(torques) * phases)
-    more, moved = np.linalg.solve(matrix, np.stack((left.T, unsure.T), axis=2)).T
-    return Response(angles + more, moved)
+    return Response(angles + solved(left), solved(unsure))
+
+
+def _eliminated(diagonal: ComplexArray, beside: ComplexArray) -> Callable[[ComplexArray], ComplexArray]:
+    """Return what solves beside_{i−1} x_{i−1} + diagonal_i x_i + beside_i x_{i+1} = sides_i for x (n, m).
+
+    diagonal (n, m), beside (n − 1, m). Of two neighbouring rows the one with the larger pivot goes first.
+    """
+    count, width = diagonal.shape
+    done = np.zeros((count, 3, width), dtype=complex)  # the factors of x_i, x_{i+1}, x_{i+2} in finished rows
+    row, lower = np.zeros((2, 3, width), dtype=complex)
+    swaps, shares = np.zeros((count, width), dtype=bool), np.zeros((count, width), dtype=complex)
+    row[0], row[1] = diagonal[0], beside[0] if count > 1 else 0.0
+    for i in range(1, count):
+        lower[0], lower[1], lower[2] = beside[i - 1], diagonal[i], beside[i] if i + 1 < count else 0.0
+        swap = swaps[i] = np.abs(lower[0]) > np.abs(row[0])
+        above = done[i - 1] = np.where(swap, lower, row)
+        below = np.where(swap, row, lower)
+        shares[i] = below[0] / above[0]
+        row[:2] = below[1:] - shares[i] * above[1:]
+    done[-1] = row
+
+    def solved(sides: ComplexArray) -> ComplexArray:
+        right = sides.astype(complex)
+        for i in range(1, count):
+            above = np.where(swaps[i], right[i], right[i - 1])
+            right[i] = np.where(swaps[i], right[i - 1], right[i]) - shares[i] * above
+            right[i - 1] = above
+        found = np.zeros((count + 2, width), dtype=complex)
+        for i in range(count - 1, -1, -1):
+            found[i] = (right[i] - done[i, 1] * found[i + 1] - done[i, 2] * found[i + 2]) / done[i, 0]
+        return np.asarray(found[:-2])
+
+    return solved
 
 
 def passing(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
