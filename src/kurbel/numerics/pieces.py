@@ -17,6 +17,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Number
 from kurbel.numerics.arithmetic import lost
+from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.lobatto import Rule, rule, series_at, slope_of_series
 
 ROUNDING = 1e-14
@@ -72,6 +73,11 @@ class SampledExtremes(NamedTuple):
     smallest: Array
     smallest_at: Array
 
+    def each(self, told: Callable[[Array], Any]) -> list[Extremes]:
+        """Return those of every quantity; told: gives a result (machines,) the form in which it is shown."""
+        high, high_at, low, low_at = (map(told, part) for part in self)
+        return [Extremes(*pair) for pair in zip(map(Extreme, high, high_at), map(Extreme, low, low_at))]
+
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
@@ -126,10 +132,15 @@ class Pieces:
 
     def halved(self, rows: Indices | Flags) -> Pieces:
         """Return the halves of these pieces, in order."""
-        right_angle, half = np.repeat(self.right_angle[rows], 2), np.repeat(self.half[rows] / 2, 2)
-        offset, machine = np.repeat(self.offset[rows], 2), np.repeat(self.machine[rows], 2)
-        offset[1::2] += 2 * half[1::2]
-        return replace(self, right_angle=right_angle, offset=offset, half=half, machine=machine)
+        some = self.taken(rows)
+        return some.parted(np.full(len(some.half), 2))
+
+    def parted(self, parts: Indices) -> Pieces:
+        """Return every piece cut into so many equal parts, (pieces,), in order."""
+        row = np.repeat(np.arange(len(parts)), parts)
+        number = np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)
+        cut = self.taken(row)
+        return replace(cut, offset=cut.offset + 2 * cut.half * number / parts[row], half=cut.half / parts[row])
 
     # positions
 

@@ -15,6 +15,7 @@ from kurbel.report.tables import Report
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.forces import CylinderForces
+from kurbel.solver.motion import every_dead_centre
 
 
 def flywheel_report(case: Case, frame: Frame) -> Report:
@@ -67,10 +68,9 @@ def dead_centre_force(forces: CylinderForces, cycle: float) -> Extreme | None:
     if not both.any():
         return None
     drive, count = forces.drive, forces.drive.count or 1
-    centres = np.stack([np.broadcast_to(one, count) for one in drive.mechanism.dead_centres()], axis=1)
-    turns = np.add.outer(centres, np.arange(0.0, drive.cycle, 360.0)).swapaxes(1, 2).reshape(count, -1)
-    angles = np.repeat(turns, 2, axis=1)
-    sides = angles + np.tile([-1e-6, 1e-6], turns.shape[1])
+    centres = every_dead_centre(drive.mechanism, count, drive.cycle)
+    angles = np.repeat(centres, 2, axis=1)
+    sides = angles + np.tile([-1e-6, 1e-6], centres.shape[1])
     machine = np.repeat(np.arange(count), angles.shape[1])
     values = drive.at(angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
     largest = np.arange(count), np.abs(values).argmax(axis=1)

@@ -154,8 +154,7 @@ class Bearing(Results):
 
     def _extremes_of(self, pieces: Pieces, values: Array) -> Extremes:
         """Return the extremes of samples (nodes, pieces)."""
-        high, high_at, low, low_at = (self._told(part[0]) for part in pieces.extremes(values[None]))
-        return Extremes(Extreme(high, high_at), Extreme(low, low_at))
+        return pieces.extremes(values[None]).each(self._told)[0]
 
     @cached_property
     def _load(self) -> Extremes:

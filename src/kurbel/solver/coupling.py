@@ -21,7 +21,7 @@ from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
 from kurbel.numerics.collocation import growth, periodic
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import Pieces
+from kurbel.numerics.pieces import Pieces, SampledExtremes
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.harmonics import amplitudes
 from kurbel.solver.speed import SpeedLaw
@@ -161,9 +161,8 @@ class ElasticCoupling:
         return self.pieces, self.pieces.of(base) + values
 
     @cached_property
-    def _extremes(self) -> tuple[Array, Array, Array, Array]:
-        high, high_at, low, low_at = self.pieces.extremes(self.samples)
-        return high, high_at, low, low_at
+    def _extremes(self) -> SampledExtremes:
+        return self.pieces.extremes(self.samples)
 
     def _end(self, which: int, smallest: bool, base: Array) -> Extreme:
         value, degrees = (one[which] for one in self._extremes[2 * smallest : 2 * smallest + 2])
@@ -197,8 +196,7 @@ class ElasticCoupling:
     @property
     def alpha_extremes(self) -> Extremes:
         """Largest and smallest angular acceleration of the crank shaft in rad/s²."""
-        high, high_at, low, low_at = (self.told(one[2]) for one in self._extremes)
-        return Extremes(Extreme(high, high_at), Extreme(low, low_at))
+        return self._extremes.each(self.told)[2]
 
     @cached_property
     def _mean(self) -> Array:
@@ -299,13 +297,4 @@ def natural_order(coupling: Coupling, own: Array, omega: Any) -> Array:
 def _cut(pieces: Pieces, order: Array) -> Pieces:
     """Return pieces that hold no more of a natural oscillation than one may at first."""
     parts = np.ceil(2 * pieces.half * (pieces.of(order) / _SWING)).clip(1, _MOST_PARTS).astype(int)
-    row = np.repeat(np.arange(len(parts)), parts)
-    number = np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)
-    offset = pieces.offset[row] + 2 * pieces.half[row] * number / parts[row]
-    return replace(
-        pieces,
-        right_angle=pieces.right_angle[row],
-        offset=offset,
-        half=pieces.half[row] / parts[row],
-        machine=pieces.machine[row],
-    )
+    return pieces.parted(parts)

@@ -17,7 +17,7 @@ from kurbel.arrays import Array
 from kurbel.errors import NoSolutionError
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import quantities_of
-from kurbel.numerics.extreme import Extreme, Extremes
+from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.motion import Motion
@@ -139,10 +139,7 @@ class SampledCylinder:
         found = {name: values for name in columns if (values := self.sampled(name)) is not None}
         if not found:
             return {}
-        each = self.pieces.extremes(np.stack([*found.values()]))
-        high, high_at, low, low_at = (list(map(self.told, part)) for part in each)
-        pairs = zip(map(Extreme, high, high_at), map(Extreme, low, low_at))
-        return dict(zip(found, (Extremes(*pair) for pair in pairs)))
+        return dict(zip(found, self.pieces.extremes(np.stack([*found.values()])).each(self.told)))
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them, None where it is left out."""

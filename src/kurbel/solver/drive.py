@@ -18,6 +18,7 @@ from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.friction import ring_force
 from kurbel.solver.gas import PistonGas
+from kurbel.solver.motion import every_dead_centre
 from kurbel.solver.pins import PinFriction
 from kurbel.solver.rod import ExactRod
 from kurbel.solver.state import State
@@ -244,10 +245,8 @@ class Drive:
     def pieces(self) -> Pieces:
         """The cycle between the angles at which something bends or jumps: dead centres and the corners of cards."""
         count = self.count or 1
-        each = np.stack([np.broadcast_to(one, count) for one in self.mechanism.dead_centres()], axis=1)
-        turns = np.arange(0.0, self.cycle, 360.0)
-        smooth = np.add.outer(each, turns).reshape(count, -1)
-        breaks = Angles(np.repeat(np.arange(count), smooth.shape[1]), smooth.ravel())
+        centres = every_dead_centre(self.mechanism, count, self.cycle)
+        breaks = Angles(np.repeat(np.arange(count), centres.shape[1]), centres.ravel())
         jumps = [breaks, *(starts for gas in self.gas for starts in gas.starts)]
         whole = Angles(*(np.concatenate(parts) for parts in zip(*jumps)))
         return Pieces.between(whole, count, self.cycle, 16 if len(whole.degrees) < _DENSE * count else 6)

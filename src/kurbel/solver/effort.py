@@ -219,8 +219,7 @@ class TurningEffort:
     @cached_property
     def extremes(self) -> Extremes:
         """Largest and smallest M in N m, one-sided values at jumps included."""
-        high, high_at, low, low_at = (self.told(one[0]) for one in self.pieces.extremes(self.M[None]))
-        return Extremes(Extreme(high, high_at), Extreme(low, low_at))
+        return self.pieces.extremes(self.M[None]).each(self.told)[0]
 
     @cached_property
     def mean(self) -> Array:

@@ -87,8 +87,8 @@ class Motion:
     def _pieces(self) -> Pieces:
         """One revolution, halved until all that the mechanism does is a polynomial on every piece."""
         count = self._count or 1
-        each = np.stack([np.broadcast_to(one, count) for one in self.mechanism.dead_centres()], axis=1)
-        turn = Pieces.between(Angles(np.repeat(np.arange(count), 2), each.ravel()), count, 360.0)
+        centres = every_dead_centre(self.mechanism, count, 360.0)
+        turn = Pieces.between(Angles(np.repeat(np.arange(count), 2), centres.ravel()), count, 360.0)
         return refined(turn, self._sampled)[0]
 
     def _sampled(self, pieces: Pieces) -> Array:
@@ -112,10 +112,7 @@ class Motion:
     @cached_property
     def _searched(self) -> list[Extremes]:
         """Largest and smallest values of what is sampled."""
-        high, high_at, low, low_at = (
-            map(self._told, part) for part in self._pieces.extremes(self._sampled(self._pieces))
-        )
-        return [Extremes(*pair) for pair in zip(map(Extreme, high, high_at), map(Extreme, low, low_at))]
+        return self._pieces.extremes(self._sampled(self._pieces)).each(self._told)
 
     def _told(self, values: Array) -> Any:
         return float(values[0]) if self._count is None else values
@@ -206,6 +203,13 @@ class Motion:
         if self._count is None:
             return tuple(found.degrees.tolist())
         return tuple(tuple(one.tolist()) for one in found.of_each(self._count))
+
+
+def every_dead_centre(mechanism: Mechanism, count: int, cycle: float) -> Array:
+    """Return the dead centres of machines in a cycle of so many degrees, (count, k), turn after turn."""
+    each = np.stack([np.broadcast_to(one, count) for one in mechanism.dead_centres()], axis=1)
+    turns: Array = each[:, None, :] + np.arange(0.0, cycle, 360.0)[:, None]
+    return turns.reshape(count, -1)
 
 
 def _ends(found: tuple[Extreme, ...]) -> Extremes | None:

@@ -23,13 +23,11 @@ from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import every
 from kurbel.numerics.collocation import Periodic, Standstill, growth, periodic
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import Pieces, joined, refined
+from kurbel.numerics.pieces import TAIL, Pieces, joined, refined
 from kurbel.solver.effort import Term, TurningEffort, inertia_torque
 
 _SLOWEST = 0.01
 """Of the nominal speed: a machine under a constant load that falls below it stands still."""
-_TAIL = 1e-13
-"""Of the largest value: a piece whose last two coefficients of r are larger is halved."""
 _NARROWEST = 1e-8
 """Degrees of a piece that is halved no more."""
 _MORE_PIECES = 3000
@@ -219,8 +217,7 @@ class SpeedLine:
     def alpha_extremes(self) -> Extremes:
         """Largest and smallest angular acceleration in rad/s²."""
         pieces, values = self._alpha
-        high, high_at, low, low_at = (self.told(one[0]) for one in pieces.extremes(values))
-        return Extremes(Extreme(high, high_at), Extreme(low, low_at))
+        return pieces.extremes(values).each(self.told)[0]
 
     def samples_of(self, column: str) -> tuple[Pieces, Array] | None:
         """Return the samples of ω in rad/s or α in rad/s² with their pieces; None for another column."""
@@ -284,7 +281,7 @@ def _constant_load(course: Course, flywheel: Array) -> tuple[Pieces, Array, Flag
         both = np.stack((ratio, 1 + _slowness(ratio)))
         size = np.maximum.reduceat(np.abs(both).max(axis=1), pieces.first, axis=1)
         tails = np.abs(pieces.rule.series[-2:] @ both).max(axis=1)
-        rough = (tails > _TAIL * size[:, pieces.machine]).any(axis=0) & (pieces.half > _NARROWEST / 2)
+        rough = (tails > TAIL * size[:, pieces.machine]).any(axis=0) & (pieces.half > _NARROWEST / 2)
         rough &= pieces.of(np.bincount(pieces.machine) < most)
         if not rough.any():
             return pieces, ratio, stands
