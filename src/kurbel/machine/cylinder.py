@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Choice, Inline, Listing, OneOf, Physical, Record, Text, Variant
-from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.forms import Inline, Listing, OneOf, Variant
+from kurbel.declared.forms import Record as RecordForm
+from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, refuse, refused
+from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.machine.friction import Friction
 from kurbel.machine.masses import ConnectingRod, Masses
@@ -37,19 +39,18 @@ _OTHER_NAMES = {
 """What people call a mechanism -> the word of the machine file."""
 
 
-COUNTERWEIGHTS = Key(
-    OneOf(
-        Record(SharedCounterweights),
-        Listing(Record(Counterweight)),
-    ),
-    "Counterweights on the crank: a share of the reciprocating mass, or a list of them",
-    absent="none",
-)
-"""Of a cylinder beside its throw, or of the whole machine."""
+def counterweights() -> Any:
+    """Return the field of counterweights of a cylinder beside its throw, or of the whole machine."""
+    return field(
+        OneOf(RecordForm(SharedCounterweights), Listing(RecordForm(Counterweight))),
+        "Counterweights on the crank: a share of the reciprocating mass, or a list of them",
+        default=(),
+        absent="none",
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Cylinder(Described):
+class Cylinder(Record):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
@@ -60,94 +61,90 @@ class Cylinder(Described):
     RuleError for parts that the mechanism cannot have.
     """
 
-    mechanism: Mechanism
-    name: str = "cylinder 1"
+    mechanism: Mechanism = field(
+        Variant("slider-crank", MECHANISMS, _OTHER_NAMES),
+        "Kind of crank mechanism",
+        default=dataclasses.MISSING,
+        absent="slider-crank",
+    )
+    name: str = field(str, "Name of the cylinder", default="cylinder 1", absent="cylinder 1, cylinder 2, …")
+    _like = alternative(
+        str, "Name of a cylinder above, which this one equals but for what stands here", absent="none", key="like"
+    )
+    _piston = alternative(Inline(RecordForm(Piston)), "The cylinder's own piston", key="piston")
+    _tandem = alternative(
+        [RecordForm(Piston, inline_too=True)],
+        "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
+        absent="none",
+        key="tandem",
+    )
     pistons: tuple[Piston, ...] = ()
-    masses: Masses | None = None
-    friction: Friction | None = None
-    inclination: float | None = None
-    crank_position: float = 0.0
-    bank_angle: float = 0.0
-    axial_position: float | None = None
-    counterweights: SharedCounterweights | tuple[Counterweight, ...] = ()
-    ram_force: RamForce | None = None
-    moment: Moment | None = None
-    cycle: str | None = None
-    point: RodPoint | None = None
+    masses: Masses | None = field(Masses, "Masses of the moving parts", absent="no inertia")
+    friction: Friction | None = field(
+        Friction, "Friction of crosshead, piston rings, pins and journals, or a force", absent="no friction"
+    )
+    inclination: float | None = field(
+        "angle",
+        "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft, beyond it leaning over",
+        least=-180,
+        most=180,
+        absent="weight left out",
+    )
+    crank_position: float = field(
+        "angle",
+        "Angle by which this crank follows crank 1",
+        default=0.0,
+        absent="0 deg; 360 deg in a four-stroke cycle where the firing intervals are then more even",
+    )
+    bank_angle: float = field(
+        "angle",
+        "Angle from the stroke line of cylinder 1 to this one, in the sense of rotation",
+        "γ",
+        default=0.0,
+        least=-360,
+        most=360,
+        absent="0 deg",
+    )
+    axial_position: float | None = field("length", "Place along the shaft", "z", absent="free moments left out")
+    counterweights: SharedCounterweights | tuple[Counterweight, ...] = counterweights()
+    ram_force: RamForce | None = field(
+        RamForce, "Force on a ram against its motion, constant on each stroke", absent="none"
+    )
+    moment: Moment | None = field(
+        Moment, "Moment against the motion of a mechanism whose output only swings or turns", absent="none"
+    )
+    cycle: str | None = field(
+        tuple(CYCLES), "Working cycle of this cylinder, among others", absent="that of the machine"
+    )
+    point: RodPoint | None = field(
+        RodPoint,
+        "A point of the connecting rod or coupler, of which place, velocity and acceleration are told",
+        absent="none",
+    )
 
-    KEYS: ClassVar[Keys] = {
-        "name": Key(Text(), "Name of the cylinder", absent="cylinder 1, cylinder 2, …"),
-        "like": Key(Text(), "Name of a cylinder above, which this one equals but for what stands here", absent="none"),
-        "mechanism": Key(
-            Variant("slider-crank", MECHANISMS, _OTHER_NAMES),
-            "Kind of crank mechanism",
-            absent="slider-crank",
-        ),
-        "inclination": Key(
-            Physical("angle", least=-180, most=180),
-            "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft, beyond it leaning over",
-            absent="weight left out",
-        ),
-        "piston": Key(Inline(Record(Piston)), "The cylinder's own piston"),
-        "tandem": Key(
-            Listing(Record(Piston, inline_too=True)),
-            "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
-            absent="none",
-        ),
-        "masses": Key(Record(Masses), "Masses of the moving parts", absent="no inertia"),
-        "friction": Key(
-            Record(Friction),
-            "Friction of crosshead, piston rings, pins and journals, or a force",
-            absent="no friction",
-        ),
-        "crank_position": Key(
-            Physical("angle"),
-            "Angle by which this crank follows crank 1",
-            absent="0 deg; 360 deg in a four-stroke cycle where the firing intervals are then more even",
-        ),
-        "bank_angle": Key(
-            Physical("angle", least=-360, most=360),
-            "Angle from the stroke line of cylinder 1 to this one, in the sense of rotation",
-            "γ",
-            absent="0 deg",
-        ),
-        "axial_position": Key(Physical("length"), "Place along the shaft", "z", absent="free moments left out"),
-        "counterweights": COUNTERWEIGHTS,
-        "ram_force": Key(
-            Record(RamForce),
-            "Force on a ram against its motion, constant on each stroke",
-            absent="none",
-        ),
-        "moment": Key(
-            Record(Moment),
-            "Moment against the motion of a mechanism whose output only swings or turns",
-            absent="none",
-        ),
-        "point": Key(
-            Record(RodPoint),
-            "A point of the connecting rod or coupler, of which place, velocity and acceleration are told",
-            absent="none",
-        ),
-        "cycle": Key(
-            Choice(tuple(CYCLES)), "Working cycle of this cylinder, among others", absent="that of the machine"
-        ),
-    }
+    @classmethod
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        like = "'like' stands in a list of 'cylinders', which has another one above"
+        yield Rule("like", bool(given.get("like")), like)
+        alone = "a tandem piston stands beside the cylinder's own one; give its 'bore'"
+        yield Rule("tandem", bool(given.get("tandem")) and "piston" not in given, alone)
 
     @classmethod
     def of_keys(
         cls, piston: Piston | None = None, tandem: tuple[Piston, ...] = (), like: str = "", **keys: Any
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
-        if like:
-            refused("'like' stands in a list of 'cylinders', which has another one above", "like")
-        if tandem and piston is None:
-            refused("a tandem piston stands beside the cylinder's own one; give its 'bore'", "tandem")
-        return cls(pistons=() if piston is None else (piston, *tandem), **{"name": "", "crank_position": None, **keys})
+        pistons = () if piston is None else (piston, *tandem)
+        return cls(pistons=pistons, **{"name": "", "crank_position": None, **keys})
 
-    def __post_init__(self) -> None:
-        at_point = self.point.faults_on(self.mechanism) if self.point else ()
-        refuse(*(fault.below(("point",)) for fault in at_point))
-        refuse(*_of_output(self), *(_of_rod(self) if self.mechanism.slides else ()))
+    def faults(self) -> Iterator[Fault]:
+        """Yield which parts do not fit the mechanism, after what is wrong with single numbers."""
+        yield from super().faults()
+        at_point = [fault.below(("point",)) for fault in self.point.faults_on(self.mechanism)] if self.point else []
+        yield from at_point
+        if not at_point:
+            yield from _of_output(self)
+            yield from _of_rod(self) if self.mechanism.slides else ()
 
 
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Fault]:

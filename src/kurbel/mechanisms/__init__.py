@@ -4,16 +4,18 @@ A mechanism is one file with one class, named in `kurbel.mechanisms.kinds`. None
 whatever numbers the crank angle has. `Mechanism` lists what a new one must supply.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
+
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Described, Keys
+from kurbel.declared.keys import Described, Keys, Rule
 from kurbel.declared.quantities import Lists
 from kurbel.declared.quantity import Quantity
-from kurbel.errors import Fault, UsageError, refuse
+from kurbel.errors import UsageError
 from kurbel.numerics.extreme import Extreme
 
 if TYPE_CHECKING:
@@ -101,6 +103,7 @@ class Mechanism(Described):
     """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
 
     def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
         own = [one for one in cls.__mro__ if issubclass(one, Mechanism) and one is not Mechanism]
         given = {name for one in own for name in (*vars(one), *getattr(one, "__annotations__", ()))}
         missing = [name for name in _REQUIRED if name not in given]
@@ -133,8 +136,6 @@ class Mechanism(Described):
 
         Here by search between the dead centres, to the rounding of `coordinate`.
         """
-        import numpy as np
-
         from kurbel.crank_angle import CrankAngle
         from kurbel.numerics.roots import bracketed_roots
 
@@ -229,7 +230,7 @@ class Mechanism(Described):
         return ()
 
 
-_REQUIRED = ("name", "KEYS", "crank", "stroke", "dead_centres", "coordinate", "slope", "curvature")
+_REQUIRED = ("name", "crank", "stroke", "dead_centres", "coordinate", "slope", "curvature")
 
 
 def quantities_of(mechanism: Mechanism) -> Lists:
@@ -244,7 +245,9 @@ def lists_of(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...]) -> Lis
     return Lists.of(dict.fromkeys(offer.quantity for offer in offers), dict.fromkeys(key_values))
 
 
-def check_lengths(**lengths: float | None) -> None:
-    """Raise RuleError for every length that is not positive and finite; None is one that is not given."""
-    wrong = [name for name, value in lengths.items() if value is not None and not 0 < value < float("inf")]
-    refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
+def finite(record: Described, *names: str) -> Iterator[Rule]:
+    """Yield the rule that these lengths are finite; what is not given is None."""
+    for name in names:
+        value = vars(record)[name]
+        if value is not None:
+            yield Rule(name, np.logical_not(np.isfinite(value)), "must be finite")

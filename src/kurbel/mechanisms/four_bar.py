@@ -1,17 +1,16 @@
 """Four-bar linkage: the crank-rocker (Bogenschubkurbel), R ch. 14 A, and the drag link, whose rocker turns too."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import positive
-from kurbel.declared.keys import Keys
 from kurbel.declared.quantity import Quantity
+from kurbel.declared.record import Rule, field
 from kurbel.declared.unit_systems import show
-from kurbel.errors import refused
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, on_request
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, finite, on_request
 from kurbel.mechanisms.coupler import Coupler
 from kurbel.mechanisms.four_bar_loop import Loop
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
@@ -50,10 +49,10 @@ class FourBar(Mechanism):
     shorter than the other two (Grashof): no other crank turns fully.
     """
 
-    crank: float
-    coupler: float
-    rocker: float
-    frame: float
+    crank: float = field("length", "Crank radius", "a", above=0, required=True)
+    coupler: float = field("length", "Length of the coupler", "b", above=0, required=True)
+    rocker: float = field("length", "Length of the rocker", "c", above=0, required=True)
+    frame: float = field("length", "Distance of the rocker's pivot from the shaft", "d", above=0, required=True)
 
     name: ClassVar[str] = "four-bar"
     slides: ClassVar[bool] = False
@@ -64,23 +63,19 @@ class FourBar(Mechanism):
         _transmission("transmission_max", "max", "Largest transmission angle"),
     )
     far_pin: ClassVar[str] = "rocker_pin"
-    KEYS: ClassVar[Keys] = {
-        "crank": positive("length", "Crank radius", "a", required=True),
-        "coupler": positive("length", "Length of the coupler", "b", required=True),
-        "rocker": positive("length", "Length of the rocker", "c", required=True),
-        "frame": positive("length", "Distance of the rocker's pivot from the shaft", "d", required=True),
-    }
 
-    def __post_init__(self) -> None:
+    def rules(self) -> Iterator[Rule]:
+        yield from finite(self, "crank", "coupler", "rocker", "frame")
         # among equals the crank comes first
-        links = {name: float(getattr(self, name)) for name in ("crank", "frame", "coupler", "rocker")}
-        check_lengths(**links)
-        shortest, *others, longest = sorted(links, key=lambda name: links[name])
+        links = {"crank": self.crank, "frame": self.frame, "coupler": self.coupler, "rocker": self.rocker}
+        if not all(map(math.isfinite, links.values())):
+            return
+        shortest, *others, longest = sorted(links, key=links.__getitem__)
         gap = math.fsum((*(links[name] for name in others), -links[shortest], -links[longest]))
         # lengths that were written in decimals meet a change point only within their rounding
         rounding = 2 * math.ulp(links[longest])
         if gap <= rounding or shortest not in ("crank", "frame"):
-            refused(self._locked(shortest, longest, gap, rounding), "crank")
+            yield Rule("crank", True, self._locked(shortest, longest, gap, rounding))
 
     def _locked(self, shortest: str, longest: str, gap: float, rounding: float) -> str:
         def named(name: str) -> str:

@@ -1,14 +1,14 @@
 """Parallel crank (Parallelkurbeltrieb), R ch. 14 A: two equal cranks and a coupler as long as the frame."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import not_negative, positive
-from kurbel.declared.keys import Keys, check
 from kurbel.declared.quantity import Quantity
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_motion
+from kurbel.declared.record import Rule, field
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, finite, own_motion
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
 
@@ -45,9 +45,9 @@ class ParallelCrank(Mechanism):
     RuleError for lengths that are not positive.
     """
 
-    crank: float
-    frame: float
-    coupler_mass: float | None = None
+    crank: float = field("length", "Radius of both cranks", "R", above=0, required=True)
+    frame: float = field("length", "Distance of the shafts; the coupler is as long", "d", above=0, required=True)
+    coupler_mass: float | None = field("mass", "Mass of the coupler", "m", least=0, absent="no inertia of the coupler")
 
     name: ClassVar[str] = "parallel-crank"
     slides: ClassVar[bool] = False
@@ -66,15 +66,9 @@ class ParallelCrank(Mechanism):
         KeyOffer(_B_COUPLER, lambda one, motion: _squared(motion.omega, one.crank)),
         KeyOffer(_INERTIA, lambda one, forces: _squared(forces.omega, one.coupler_mass, one.crank)),
     )
-    KEYS: ClassVar[Keys] = {
-        "crank": positive("length", "Radius of both cranks", "R", required=True),
-        "frame": positive("length", "Distance of the shafts; the coupler is as long", "d", required=True),
-        "coupler_mass": not_negative("mass", "Mass of the coupler", "m", absent="no inertia of the coupler"),
-    }
 
-    def __post_init__(self) -> None:
-        check_lengths(crank=self.crank, frame=self.frame)
-        check(self.KEYS, {"coupler_mass": self.coupler_mass})
+    def rules(self) -> Iterator[Rule]:
+        return finite(self, "crank", "frame")
 
     @property
     def stroke(self) -> float:

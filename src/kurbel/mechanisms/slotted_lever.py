@@ -1,16 +1,15 @@
 """Slotted lever (schwingende Kurbelschleife): the quick return of shapers, R p. 615, and Whitworth's rotating lever."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Physical, positive
-from kurbel.declared.keys import Key, Keys
+from kurbel.declared.record import Rule, field
 from kurbel.declared.unit_systems import show
-from kurbel.errors import refused
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths
-from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, check_pin, pin_pressure, sum_along
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, finite
+from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, pin_diameter, pin_length, pin_pressure, sum_along
 from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import SWING_OFFERS, SWING_VALUES, Swing
@@ -40,54 +39,48 @@ class SlottedLever(Mechanism):
     Raises RuleError for e = r, and for a link that does not reach the ram or gets into line with the lever.
     """
 
-    crank: float
-    frame: float
-    lever: float | None = None
-    link: float = math.inf
-    ram_height: float | None = None
-    pin_diameter: float | None = None
-    pin_length: float | None = None
+    crank: float = field("length", "Crank radius", "r", above=0, required=True)
+    frame: float = field("length", "Distance of the lever's pivot from the shaft", "e", above=0, required=True)
+    lever: float | None = field(
+        "length", "Length of the lever, pivot to end", "R_l", above=0, absent="angles and times only: no ram"
+    )
+    link: float = field(
+        "length",
+        "Length of the connecting link from the lever's end to the ram",
+        "l",
+        default=math.inf,
+        above=0,
+        words=(("infinite", math.inf),),
+        absent="fork head sliding along the ram",
+    )
+    ram_height: float | None = field(
+        "length",
+        "Height of the ram's line above the lever's pivot; needs `link`",
+        "h",
+        absent="half-way between the highest and the lowest point of the lever's end",
+    )
+    pin_diameter: float | None = pin_diameter()
+    pin_length: float | None = pin_length()
 
     name: ClassVar[str] = "slotted-lever"
     OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *BLOCK_OFFERS)
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (*SWING_VALUES, pin_pressure())
     quick_return: ClassVar[bool] = True
-    KEYS: ClassVar[Keys] = {
-        "crank": positive("length", "Crank radius", "r", required=True),
-        "frame": positive("length", "Distance of the lever's pivot from the shaft", "e", required=True),
-        "lever": positive("length", "Length of the lever, pivot to end", "R_l", absent="angles and times only: no ram"),
-        "link": Key(
-            Physical("length", above=0, words=(("infinite", math.inf),)),
-            "Length of the connecting link from the lever's end to the ram",
-            "l",
-            absent="fork head sliding along the ram",
-        ),
-        "ram_height": Key(
-            Physical("length"),
-            "Height of the ram's line above the lever's pivot; needs `link`",
-            "h",
-            absent="half-way between the highest and the lowest point of the lever's end",
-        ),
-        **PIN_KEYS,
-    }
 
-    def __post_init__(self) -> None:
-        check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
-        if not (self.slides or self._forked):
-            refused("has no lever's end to hang on; give 'lever' with it", "link")
-        check_pin(self.pin_diameter, self.pin_length)
-        if self.crank == self.frame:
-            same = show(self.crank, "length")
-            refused(f"{same} is also the crank: the pin would pass through the lever's pivot", "frame")
-        if math.isinf(self.link) and self.ram_height is not None:
-            refused("has no meaning for a fork head; give 'link' with it", "ram_height")
-        if not math.isfinite(self._height):
-            refused("must be finite", "ram_height")
-        if not self._forked:
-            check_lengths(link=self.link)
-            fault = self._full_turn_fault() if self.rotates else self._swing_fault()
-            if fault:
-                refused(f"{show(self.link, 'length')} {fault}", "link")
+    def rules(self) -> Iterator[Rule]:
+        yield from finite(self, "crank", "frame", "lever")
+        yield from self.contradictions()
+        hanging = not (self.slides or self._forked)
+        yield Rule("link", hanging, "has no lever's end to hang on; give 'lever' with it")
+        yield from finite(self, "pin_diameter", "pin_length")
+        same = "{frame} is also the crank: the pin would pass through the lever's pivot"
+        yield Rule("frame", self.crank == self.frame, same)
+        fork = self._forked and self.ram_height is not None
+        yield Rule("ram_height", fork, "has no meaning for a fork head; give 'link' with it")
+        if not hanging and self.crank != self.frame:
+            yield from finite(self, "ram_height")
+            fault = "" if self._forked else self._full_turn_fault() if self.rotates else self._swing_fault()
+            yield Rule("link", bool(fault), f"{{link}} {fault}")
 
     def _full_turn_fault(self) -> str:
         if math.fsum((self.link, -self._end, -abs(self._height))) > 0:
