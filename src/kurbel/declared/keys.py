@@ -10,6 +10,8 @@ from dataclasses import fields
 from types import MappingProxyType
 from typing import Any, ClassVar, NamedTuple, Union
 
+import numpy as np
+
 from kurbel.arrays import Flags
 from kurbel.declared.reading import REFUSED, Reading, Tree
 from kurbel.declared.unit_systems import show
@@ -61,6 +63,15 @@ class Form(ABC):
     def numbers(self, texts: Sequence[str]) -> list[float] | None:
         """Return what texts become that are plain numbers, all of them; None where each must be read by itself."""
         return None
+
+    @property
+    def is_number(self) -> bool:
+        """Whether what stands under a key becomes a number, so that many machines have an array there."""
+        return False
+
+    def of_numbers(self, numbers: Any) -> Any:
+        """Return what a number in the base of its kind, or those of many machines, becomes."""
+        return numbers
 
     def read(self, reading: Reading, value: Any, path: Path) -> Any:
         """Return what a value of the tree becomes, or REFUSED after noting every fault."""
@@ -217,11 +228,26 @@ class Rule(NamedTuple):
     broken: Union[bool, Flags]
     sentence: str
     numbers: Mapping[str, Any] = MappingProxyType({})
+    at_key: bool = False
+
+    @classmethod
+    def of(cls, fault: Fault) -> "Rule":
+        """Return a fault that was found by itself as a rule that is broken."""
+        plain = fault.message.replace("{", "{{").replace("}", "}}")
+        return cls(fault.path, True, plain, at_key=fault.at_key)
+
+    def below(self, *path: Any) -> "Rule":
+        """Return it as seen from further up."""
+        return self._replace(place=(*path, *self.path))
+
+    @property
+    def path(self) -> Path:
+        """Where it is broken, from its record on."""
+        return self.place if isinstance(self.place, tuple) else (self.place,)
 
     def fault(self, record: "Described | None", row: int = 0) -> Fault:
         """Return what is wrong with one of the machines, its numbers filled in, also from the entries of a record."""
-        place = self.place if isinstance(self.place, tuple) else (self.place,)
-        return Fault(place, self.sentence.format_map(_Numbers(record, self.numbers, row)))
+        return Fault(self.path, self.sentence.format_map(_Numbers(record, self.numbers, row)), self.at_key)
 
 
 class _Numbers(dict[str, Any]):
@@ -298,14 +324,14 @@ class Described:
     def faults(self) -> Iterator[Fault]:
         """Yield what is wrong with the record of one machine: the bounds, or else the rules."""
         beyond = list(self._out_of_bounds())
-        yield from beyond or (rule.fault(self) for rule in self.rules() if rule.broken)
+        yield from beyond or (rule.fault(self) for rule in self.rules() if np.ndim(rule.broken) == 0 and rule.broken)
 
     def _out_of_bounds(self) -> Iterator[Fault]:
         defaults = {one.name: one.default for one in fields(self)}  # type: ignore[arg-type]
         for name, key in self.KEYS.items():
-            value = vars(self).get(key.attribute)
+            value: Any = vars(self).get(key.attribute)
             given = value is not None and value is not defaults.get(key.attribute)
-            if given and (wrong := key.form.out_of_bounds(value)):
+            if given and np.ndim(value) == 0 and (wrong := key.form.out_of_bounds(value)):
                 yield Fault((name,), f"{value:g} {wrong}")
 
     @classmethod

@@ -9,6 +9,8 @@ and no quotient of values from a file leaves their range. They hold for the file
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from kurbel.errors import Fault, Path
 
 Factor = tuple[float, float]
@@ -72,16 +74,16 @@ MOST_ITEMS = 100
 """Items of one list, such as cylinders."""
 
 
-def out_of_size(value: float, kind: str) -> str:
-    """Return in what way a value in the base of its kind is beyond what a machine file may hold; '' if it is not.
+def out_of_size(value: Any, kind: str) -> str:
+    """Return in what way a value in the base of its kind, or any of many, is beyond what a machine file may hold.
 
     >>> out_of_size(1e-200, "length")
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
     """
     smallest, largest, unit, *_ = KINDS[kind]
-    if not abs(value) <= largest:
+    if not np.all(abs(value) <= largest):
         return f"is too large; {_held(kind)} at most {largest:g} {unit}".rstrip()
-    if 0 < abs(value) < smallest:
+    if np.any((value != 0) & (abs(value) < smallest)):
         return f"is too small; {_held(kind)} 0 or at least {smallest:g} {unit}".rstrip()
     return ""
 

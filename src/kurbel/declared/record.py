@@ -1,15 +1,25 @@
 """How a record of the machine file says its entries: one `field` or `alternative` each, and rules beside them."""
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
+
+import numpy as np
 
 from kurbel.declared.forms import Choice, Count, Listing, Number, Physical, Text, Truth
 from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.keys import Described as Record
 from kurbel.declared.keys import Form, Key, Rule
 
-__all__ = ["Record", "Rule", "alternative", "entry", "field"]
+__all__ = ["Record", "Rule", "alternative", "entry", "field", "first_of"]
+
+
+def first_of(rules: Iterator[Rule]) -> Iterator[Rule]:
+    """Yield rules of which only the first that is broken counts."""
+    before: Any = False
+    for rule in rules:
+        yield rule._replace(broken=rule.broken & np.logical_not(before))
+        before = before | rule.broken
 
 
 def field(form: Any, text: str, symbol: str = "", *, default: Any = ..., key: str = "", **more: Any) -> Any:

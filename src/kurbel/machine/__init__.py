@@ -11,6 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import (
     Alike,
@@ -27,7 +29,7 @@ from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.forms.figures import MACHINE, Expected, scoped
 from kurbel.declared.quantity import Quantity, by_id
 from kurbel.declared.reading import REFUSED, shown
-from kurbel.declared.record import Record, alternative, field
+from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
 from kurbel.machine.crankshaft import Crankshaft
@@ -57,7 +59,7 @@ def _names(cylinders: Sequence[Cylinder]) -> list[str]:
 
 
 def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: Sequence[Cylinder] | EqualCylinders) -> list[Fault]:
-    names = _names(cylinders if isinstance(cylinders, tuple) else cylinders.cylinders)
+    names = _names(cylinders.cylinders if isinstance(cylinders, EqualCylinders) else cylinders)
     return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
 
 
@@ -230,66 +232,55 @@ class Machine(Record):
     @classmethod
     def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
         """Return what is wrong with the shaft line, where other keys could not be read."""
-        shaft = values.get("shaft")
+        shaft: Any = values.get("shaft")
         cylinders: Any = values.get("cylinders", (values.get("cylinder", REFUSED),))
         unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
         unread = REFUSED in values.values() and isinstance(shaft, tuple) and not unknown
         return _shaft_faults(shaft, cylinders) if unread else []
 
-    def faults(self) -> Iterator[Fault]:
-        """Yield what is wrong with the machine as a whole, after its single numbers."""
-        yield from super().faults()
-        yield from self._faults()
-
-    def _faults(self) -> list[Fault]:
-        faults = []
-        if not self.cylinders and self.effort is None and self.shaft is None:
-            message = "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"
-            faults.append(Fault((), f"{message}, or 'effort', a turning-moment diagram known from elsewhere"))
-        if self.cylinders and self.effort is not None:
-            faults.append(Fault(("effort",), "'effort' stands instead of cylinders; leave one of them out"))
-        names = [cylinder.name for cylinder in self.cylinders]
-        for index, name in enumerate(names):
-            if name in names[:index]:
-                faults.append(Fault(("cylinders", index, "name"), f"two cylinders are called '{name}'"))
-            if name == MACHINE:
-                message = f"'{MACHINE}' stands for the whole machine in 'limits' and 'expect'; give another name"
-                faults.append(Fault(("cylinders", index, "name"), message))
-        scopes = tuple(dict.fromkeys((MACHINE, *names)))
-        for key, id, figure in (*(("limits", *one) for one in self.limits), *(("expect", *one) for one in self.expect)):
-            if (scope := scoped(id)[0]) and scope not in scopes:
-                hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
-                written = getattr(figure, "name", "") or id
-                faults.append(Fault((key, written), f"no cylinder is called '{shown(scope)}'{hint}", at_key=True))
-        faults += [fault for index in range(len(self.cylinders)) for fault in self._cycle_faults(index)]
+    def rules(self) -> Iterator[Rule]:
+        """Yield what must not be of the machine as a whole."""
+        nothing = not self.cylinders and self.effort is None and self.shaft is None
+        none = "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"
+        yield Rule((), nothing, f"{none}, or 'effort', a turning-moment diagram known from elsewhere")
+        both = bool(self.cylinders) and self.effort is not None
+        yield Rule("effort", both, "'effort' stands instead of cylinders; leave one of them out")
+        yield from self._name_rules()
+        for index, cylinder in enumerate(self.cylinders):
+            for number, piston in enumerate(cylinder.pistons):
+                inside = ("tandem", number - 1) if number else ()
+                rules = piston.indicator_rules(self.cycle_of_piston(cylinder, number), self.ambient)
+                yield from (rule.below("cylinders", index, *inside) for rule in rules)
         for index, cylinder in enumerate(self.cylinders):
             rubbing = cylinder.friction.faults_beside(self.crankshaft) if cylinder.friction else ()
-            faults += [fault.below(("cylinders", index, "friction")) for fault in rubbing]
-        faults += crowded(self.cylinders)
+            yield from (Rule.of(fault.below(("cylinders", index, "friction"))) for fault in rubbing)
+        yield from crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
-                faults.append(Fault((key, getattr(diagram, "key", "points")), message))
-        return [*faults, *self._shaft_faults()]
-
-    def _shaft_faults(self) -> Iterator[Fault]:
-        if self.shaft is None:
-            return
-        if self.coupling is not None:
+                yield Rule.of(Fault((key, getattr(diagram, "key", "points")), message))
+        if self.shaft is not None:
             message = "'coupling' is a shaft line of two masses, and 'shaft' another one; leave one of them out"
-            yield Fault(("coupling",), message)
-        if any(mass.flywheel for mass in self.shaft.masses) and not (self.flywheel and self.flywheel.inertia):
-            yield Fault(("shaft",), "the shaft line has a 'flywheel'; give the machine one with its 'inertia'")
+            yield Rule("coupling", self.coupling is not None, message)
+            inertia = self.flywheel.inertia if self.flywheel else None
+            without = any(mass.flywheel for mass in self.shaft.masses) and not (inertia is not None and np.all(inertia))
+            yield Rule("shaft", without, "the shaft line has a 'flywheel'; give the machine one with its 'inertia'")
 
-    def _cycle_faults(self, index: int) -> list[Fault]:
-        """A four-stroke cycle needs four-line cards, a two-stroke one two-line cards; some need absolute pressures."""
-        cylinder = self.cylinders[index]
-        return [
-            fault.below(("cylinders", index))
-            for number, piston in enumerate(cylinder.pistons)
-            for fault in piston.indicator_faults(
-                self.cycle_of_piston(cylinder, number), self.ambient, () if number == 0 else ("tandem", number - 1)
-            )
-        ]
+    def _name_rules(self) -> Iterator[Rule]:
+        """Yield the rules of the names of cylinders, and of those in limits and expectations."""
+        names = [cylinder.name for cylinder in self.cylinders]
+        for index, name in enumerate(names):
+            place = ("cylinders", index, "name")
+            yield Rule.of(Fault(place, f"two cylinders are called '{name}'"))._replace(broken=name in names[:index])
+            whole = f"'{MACHINE}' stands for the whole machine in 'limits' and 'expect'; give another name"
+            yield Rule(place, name == MACHINE, whole)
+        scopes = tuple(dict.fromkeys((MACHINE, *names)))
+        for key, figures in (("limits", self.limits), ("expect", self.expect)):
+            for id, figure in figures:
+                if (scope := scoped(id)[0]) and scope not in scopes:
+                    hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
+                    written = getattr(figure, "name", "") or id
+                    message = f"no cylinder is called '{shown(scope)}'{hint}"
+                    yield Rule.of(Fault((key, written), message, at_key=True))
 
     def cycle_of(self, cylinder: Cylinder) -> str:
         """Return the working cycle of a cylinder: its own, or that of the machine."""

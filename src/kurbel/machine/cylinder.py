@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Inline, Listing, OneOf, Variant
 from kurbel.declared.forms import Record as RecordForm
-from kurbel.declared.record import Record, Rule, alternative, field
-from kurbel.declared.unit_systems import show
+from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.machine.friction import Friction
@@ -137,28 +137,31 @@ class Cylinder(Record):
         pistons = () if piston is None else (piston, *tandem)
         return cls(pistons=pistons, **{"name": "", "crank_position": None, **keys})
 
-    def faults(self) -> Iterator[Fault]:
-        """Yield which parts do not fit the mechanism, after what is wrong with single numbers."""
-        yield from super().faults()
-        at_point = [fault.below(("point",)) for fault in self.point.faults_on(self.mechanism)] if self.point else []
+    def rules(self) -> Iterator[Rule]:
+        """Yield which parts do not fit the mechanism."""
+        at_point = [rule.below("point") for rule in self.point.rules_on(self.mechanism)] if self.point else []
         yield from at_point
-        if not at_point:
-            yield from _of_output(self)
+        if not any(rule.broken for rule in at_point):
+            yield from map(Rule.of, _of_output(self))
             yield from _of_rod(self) if self.mechanism.slides else ()
 
 
-def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Fault]:
-    """Yield a fault for every cylinder that stands where another one does, on one stroke line and at one place."""
-    first: dict[tuple[float, float], str] = {}
+def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
+    """Yield the rule that no cylinder stands where another one does, on one stroke line and at one place."""
+    message = "stands where '{other}' does, {place:length} along the shaft, on the same stroke line; give another"
     for index, one in enumerate(cylinders):
-        if one.axial_position is None:
-            continue
-        where = round(one.axial_position, 9), round(one.bank_angle % 360.0, 6) % 360.0
-        if where in first:
-            place = f"{show(one.axial_position, 'length')} along the shaft, on the same stroke line"
-            message = f"stands where '{first[where]}' does, {place}; give another 'axial_position' or 'bank_angle'"
-            yield Fault(("cylinders", index, "axial_position"), message)
-        first.setdefault(where, one.name)
+        if one.axial_position is not None:
+            yield from first_of(_apart(index, one, other, message) for other in cylinders[:index])
+
+
+def _apart(index: int, one: Cylinder, other: Cylinder, message: str) -> Rule:
+    place = ("cylinders", index, "axial_position")
+    if one.axial_position is None or other.axial_position is None:
+        return Rule(place, False, "")
+    same = np.abs(one.axial_position - other.axial_position) < 1e-9
+    same = same & np.equal(np.round(one.bank_angle - other.bank_angle, 6) % 360.0, 0)
+    numbers = {"other": other.name, "place": one.axial_position}
+    return Rule(place, same, f"{message} 'axial_position' or 'bank_angle'", numbers)
 
 
 def may_lock(cylinder: Cylinder) -> bool:
@@ -190,31 +193,32 @@ _INSTEAD = {
 """What else to do where nothing slides that could have this key."""
 
 
-def _of_rod(cylinder: Cylinder) -> Iterator[Fault]:
+def _of_rod(cylinder: Cylinder) -> Iterator[Rule]:
     """Friction of a crosshead needs a side force N and a guide for it; the mass of a rod needs a rod."""
     mechanism, masses, friction = cylinder.mechanism, cylinder.masses, cylinder.friction
-    if friction and friction.rings and not cylinder.pistons:
-        yield Fault(("friction", "rings"), "rings rub on the bore; give the cylinder a 'bore'")
-    if friction is not None and friction.crosshead is not None and not (mechanism.has_rod and mechanism.guided):
-        reason = "crosshead guide" if mechanism.has_rod else "connecting rod to press a crosshead on its guide"
-        yield Fault(("friction", "crosshead"), f"a {mechanism.name} has no {reason}; leave 'crosshead' out")
-    for key in friction.of_pins if friction and not mechanism.has_rod else ():
-        yield Fault(("friction", key), f"a {mechanism.name} has no connecting rod; leave '{key}' out")
-    if masses is not None and masses.connecting_rod is not None and not mechanism.has_rod:
-        message = f"a {mechanism.name} has no connecting rod; give what goes to and fro as 'other'"
-        yield Fault(("masses", "connecting_rod"), message)
-    elif masses is not None and masses.connecting_rod and (message := _off_rod(masses.connecting_rod, mechanism)):
-        yield Fault(("masses", "connecting_rod", "center_of_gravity"), message)
+    kind, has_rod = mechanism.name, mechanism.has_rod
+    if friction is not None:
+        on_bore = friction.rings is not None and not cylinder.pistons
+        yield Rule(("friction", "rings"), on_bore, "rings rub on the bore; give the cylinder a 'bore'")
+        reason = "crosshead guide" if has_rod else "connecting rod to press a crosshead on its guide"
+        unguided = friction.crosshead is not None and not (has_rod and mechanism.guided)
+        yield Rule(("friction", "crosshead"), unguided, f"a {kind} has no {reason}; leave 'crosshead' out")
+        for key in friction.of_pins:
+            yield Rule(("friction", key), not has_rod, f"a {kind} has no connecting rod; leave '{key}' out")
+    rod = masses.connecting_rod if masses else None
+    if rod is not None:
+        message = f"a {kind} has no connecting rod; give what goes to and fro as 'other'"
+        yield Rule(("masses", "connecting_rod"), not has_rod, message)
+        if has_rod and rod.center_of_gravity is not None:
+            yield from _on_rod(rod, mechanism.rod_length)
 
 
-def _off_rod(rod: ConnectingRod, mechanism: Mechanism) -> str:
-    """Return what is wrong with the place of the centre of gravity of a rod, or an empty text."""
-    if rod.center_of_gravity is None:
-        return ""
-    if math.isinf(mechanism.rod_length):
-        return "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+def _on_rod(rod: ConnectingRod, length: Any) -> Iterator[Rule]:
+    """Yield the rules of the place of the centre of gravity of a rod of this length in m."""
+    place = ("masses", "connecting_rod", "center_of_gravity")
+    endless = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+    yield Rule(place, np.isinf(length), endless)
     # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
-    if rod.center_of_gravity > mechanism.rod_length:
-        place, length = show(rod.center_of_gravity, "length"), show(mechanism.rod_length, "length")
-        return f"{place} from the crosshead pin is beyond the crank pin: the rod is {length} long"
-    return ""
+    beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"
+    numbers = {"at": rod.center_of_gravity, "length": length}
+    yield Rule(place, rod.center_of_gravity > length, beyond, numbers)

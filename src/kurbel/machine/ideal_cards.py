@@ -10,10 +10,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Union
 
+import numpy as np
+
 from kurbel.declared.forms import Number
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import Record, Rule, alternative, field
-from kurbel.declared.unit_systems import show
 
 CLEARANCE = Number("the stroke", least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
@@ -39,25 +40,26 @@ def _order(key: str, high: Any, low_name: str, low: Any) -> Rule:
     return Rule(key, high <= low, sentence, {"high": high, "low": low})
 
 
-def after_polytrope(pressure: float, volume: float, next_volume: float, exponent: float) -> float:
+def after_polytrope(pressure: Any, volume: Any, next_volume: Any, exponent: Any) -> Any:
     """Return P (V/V′)^n: the pressure after a change of volume along P V^n = const; P absolute, V in any unit.
 
     >>> after_polytrope(1.0, 8.0, 1.0, 1.0)
     8.0
     """
-    return (
-        math.exp(exponent * math.log(volume / next_volume)) * pressure
-        if exponent != 1
-        else pressure * volume / next_volume
-    )
+    if any(map(np.ndim, (volume, next_volume, exponent))):
+        power = np.exp(exponent * np.log(volume / next_volume))
+        return np.where(np.equal(exponent, 1), pressure * volume / next_volume, power * pressure)
+    if exponent == 1:
+        return pressure * volume / next_volume
+    return math.exp(exponent * math.log(volume / next_volume)) * pressure
 
 
-def _vacuum_fault(lift: float, **pressures: float | None) -> str:
-    """Return what to say of pressures that are not above the perfect vacuum; lift makes them absolute."""
+def _above_vacuum(lift: Any, **pressures: Any) -> Iterator[Rule]:
+    """Yield the rule that pressures are above the perfect vacuum; lift makes them absolute."""
     for name, pressure in pressures.items():
-        if pressure is not None and pressure + lift <= 0:
-            return f"{name}: {show(pressure, 'pressure')} is not above the vacuum, as p V^n needs"
-    return ""
+        if pressure is not None:
+            sentence = f"{name}: {{pressure:pressure}} is not above the vacuum, as p V^n needs"
+            yield Rule((), pressure + lift <= 0, sentence, {"pressure": pressure})
 
 
 class _TwoStroke(Record):
@@ -73,12 +75,12 @@ class _TwoStroke(Record):
         if REFUSED in given.values() and high is not REFUSED and low is not REFUSED:
             yield _order(cls.higher, high, cls.lower, low)
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
-        if cycle != "two-stroke":
-            return f"a {type(self).__name__.lower()} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
+    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+        """Yield what does not fit the cycle of the machine, or the absolute pressures."""
+        two = f"a {type(self).__name__.lower()} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
+        yield Rule((), cycle != "two-stroke", two)
         both = (self.higher, self.lower)
-        return _vacuum_fault(lift, **{key: vars(self)[key] for key in self.KEYS if key in both})
+        yield from _above_vacuum(lift, **{key: vars(self)[key] for key in self.KEYS if key in both})
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -126,23 +128,15 @@ class Compressor(_TwoStroke):
     def rules(self) -> Iterator[Rule]:
         yield _order("delivery", self.delivery, "suction", self.suction)
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
-        if (fault := super().fault_in(cycle, lift)) or not self.clearance:
-            return fault
-        top = after_polytrope(self.suction + lift, 1 + self.clearance, self.clearance, self.exponent) - lift
-        if self.delivery < top:
-            return ""
-        return f"delivery: the piston compresses to {show(top, 'pressure')} only; such a compressor delivers nothing"
-
-
-def _peak_fault(peak: float | None, card: "_Engine", lift: float) -> str:
-    """Return what to say of a peak below the end of the compression; lift makes the pressures absolute."""
-    compressed = after_polytrope(card.intake + lift, 1 + card.clearance, card.clearance, card.exponent) - lift
-    # as much as rounding of the clearance may take from a peak that is just that pressure
-    if peak is None or peak >= compressed - 1e-9 * abs(compressed):
-        return ""
-    return f"peak: {show(peak, 'pressure')} is below the end of the compression ({show(compressed, 'pressure')})"
+    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+        """Yield what does not fit the cycle or the absolute pressures; also a delivery that is never reached."""
+        yield from super().rules_in(cycle, lift)
+        c = self.clearance
+        with np.errstate(all="ignore"):
+            enclosed = np.where(np.equal(c, 0), np.nan, c)
+            top = after_polytrope(self.suction + lift, 1 + c, enclosed, self.exponent) - lift
+        nothing = "delivery: the piston compresses to {top:pressure} only; such a compressor delivers nothing"
+        yield Rule((), self.delivery >= top, nothing, {"top": top})
 
 
 def _of_ratio(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -215,13 +209,17 @@ class _Engine(Record):
         """Pressure of the exhaust stroke in Pa."""
         return self.intake if self.exhaust is None else self.exhaust
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine or the absolute pressures, or an empty text."""
-        return (
-            _no_exhaust_stroke(self.exhaust, cycle)
-            or _vacuum_fault(lift, intake=self.intake, exhaust=self.exhaust)
-            or _peak_fault(self.peak, self, lift)
-        )
+    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+        """Yield what does not fit the cycle or the absolute pressures; also a peak below the compression."""
+        two = "a two-stroke engine has no exhaust stroke; leave it out, or write 'cycle: four-stroke' at the top"
+        yield Rule((), self.exhaust is not None and cycle != "four-stroke", f"exhaust: {two}")
+        yield from _above_vacuum(lift, intake=self.intake, exhaust=self.exhaust)
+        if self.peak is not None:
+            end = after_polytrope(self.intake + lift, 1 + self.clearance, self.clearance, self.exponent) - lift
+            below = "peak: {peak:pressure} is below the end of the compression ({end:pressure})"
+            # as much as rounding of the clearance may take from a peak that is just that pressure
+            low = self.peak < end - 1e-9 * abs(end)
+            yield Rule((), low, below, {"peak": self.peak, "end": end})
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -259,12 +257,6 @@ class Diesel(_Engine):
     )
     exponent: float = _compression_exponent()
     expansion_exponent: float = _exponent("Exponent of the expansion", "that of the compression")
-
-
-def _no_exhaust_stroke(exhaust: float | None, cycle: str) -> str:
-    if exhaust is None or cycle == "four-stroke":
-        return ""
-    return "exhaust: a two-stroke engine has no exhaust stroke; leave it out, or write 'cycle: four-stroke' at the top"
 
 
 IdealCard = Union[Steam, Compressor, Otto, Diesel]

@@ -9,7 +9,6 @@ from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import Record, Rule, alternative, field
-from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, refuse
 from kurbel.machine.drawn import Drawn
 from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, Otto, Steam
@@ -26,8 +25,8 @@ class Chamber(Protocol):
         """The working cycles that it can be part of."""
         ...
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine, or pressures that `lift` makes absolute (Pa); or ''."""
+    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+        """Yield what does not fit the cycle of the machine, or pressures that `lift` makes absolute (Pa)."""
         ...
 
 
@@ -144,17 +143,19 @@ class Card(Record):
         """The one cycle that has so many lines."""
         return tuple(cycle for cycle, lines in STROKES.items() if len(lines) == len(self.lines))
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine, or what no polytropic line can be drawn through; or ''."""
+    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+        """Yield what does not fit the cycle of the machine, or what no polytropic line can be drawn through."""
         wanted = STROKES[cycle]
-        if len(self.lines) != len(wanted):
-            return f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
+        lines = f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
+        yield Rule((), len(self.lines) != len(wanted), lines)
         lowest = min(pressure for line in self.lines for pressure in line.pressures)
-        if self.interpolate == "polytropic" and lowest + lift <= 0:
-            return f"{show(lowest, 'pressure')} is not above the vacuum, as p V^n needs; write 'interpolate: linear'"
-        if lowest + lift < 0:
-            return f"{show(lowest, 'pressure')} is below the vacuum, which is at {show(0.0 - lift, 'pressure')}"
-        return ""
+        numbers = {"lowest": lowest, "vacuum": 0.0 - lift}
+        if self.interpolate == "polytropic":
+            above = "{lowest:pressure} is not above the vacuum, as p V^n needs; write 'interpolate: linear'"
+            yield Rule((), lowest + lift <= 0, above, numbers)
+        else:
+            below = "{lowest:pressure} is below the vacuum, which is at {vacuum:pressure}"
+            yield Rule((), lowest + lift < 0, below, numbers)
 
 
 def _cycle_of(given: Iterable[str]) -> str:

@@ -3,9 +3,9 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
-from kurbel.declared.record import Record, Rule, field
-from kurbel.errors import Fault, Path
+from kurbel.declared.record import Record, Rule, field, first_of
 from kurbel.machine.indicator import Chamber, Indicator
 
 
@@ -57,11 +57,8 @@ class Piston(Record):
         fits = all(cycle in each for each in given)
         return cycle if fits or not all("two-stroke" in each for each in given) else "two-stroke"
 
-    def indicator_faults(self, cycle: str, ambient: float, path: Path) -> list[Fault]:
-        """Return what of the indicator does not fit the cycle of the machine or the ambient pressure in Pa."""
+    def indicator_rules(self, cycle: str, ambient: Any) -> Iterator[Rule]:
+        """Yield the first thing at each end that does not fit the cycle or the ambient pressure in Pa."""
         lift = 0.0 if self.indicator and self.indicator.absolute else ambient
-        return [
-            Fault((*path, "indicator", end), message)
-            for end, chamber in self.chambers.items()
-            if (message := chamber.fault_in(cycle, lift))
-        ]
+        for end, chamber in self.chambers.items():
+            yield from (rule.below("indicator", end) for rule in first_of(chamber.rules_in(cycle, lift)))

@@ -1,10 +1,11 @@
 """A point of the connecting rod or coupler, of which the motion is asked."""
 
-import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-from kurbel.declared.record import Record, field
-from kurbel.errors import Fault
+import numpy as np
+
+from kurbel.declared.record import Record, Rule, field
 from kurbel.mechanisms import Mechanism
 
 
@@ -35,10 +36,9 @@ class RodPoint(Record):
         """Return the distance along the rod in m from the crank pin toward the other one."""
         return self.along if self.origin == "crank_pin" else mechanism.coupler_length - self.along
 
-    def faults_on(self, mechanism: Mechanism) -> tuple[Fault, ...]:
-        """Return what keeps the point from being one of this mechanism."""
-        if math.isinf(mechanism.coupler_length):
-            return (Fault((), f"this {mechanism.name} has no connecting rod of a length, of which it were a point"),)
-        if self.origin in ("crank_pin", mechanism.far_pin):
-            return ()
-        return (Fault(("from",), f"the pins of a {mechanism.name} are crank_pin and {mechanism.far_pin}"),)
+    def rules_on(self, mechanism: Mechanism) -> Iterator[Rule]:
+        """Yield what keeps the point from being one of this mechanism."""
+        endless = np.isinf(mechanism.coupler_length)
+        yield Rule((), endless, f"this {mechanism.name} has no connecting rod of a length, of which it were a point")
+        other = np.logical_not(endless) & (self.origin not in ("crank_pin", mechanism.far_pin))
+        yield Rule("from", other, f"the pins of a {mechanism.name} are crank_pin and {mechanism.far_pin}")

@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.forms import Record
-from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, glued_hint, kind_of
+from kurbel.declared.forms.records import Maker
+from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, glued_hint, kind_of
 from kurbel.errors import Fault
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
@@ -46,17 +47,21 @@ def reading_of(origin: Origin) -> Reading:
     return Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
 
 
-def read_machine(origin: Origin, reading: Reading | None = None) -> Machine:
-    """Return the machine that a file describes; errors: see `load`; reading: see `reading_of`."""
-    reading = reading or reading_of(origin)
+def read_machine(origin: Origin) -> Machine:
+    """Return the machine that a file describes; errors: see `load`."""
+    return replace(read_values(origin, reading_of(origin)).made, origin=origin)  # type: ignore[no-any-return]
+
+
+def read_values(origin: Origin, reading: Reading) -> Given:
+    """Return what a file says, with the records that were made of it; errors: see `load`; reading: see `reading_of`."""
     tree = parse(origin.text, reading)
     known = len(reading.faults)  # YAML has told their places
     overrides = set_over(tree, origin)
-    machine = REFUSED if tree is REFUSED else _machine(reading, tree, origin.stem)
+    given = REFUSED if tree is REFUSED else _given(reading, tree, origin.stem)
     if reading.faults:
         raise origin.error(*reading.faults[:known], *_located(origin.text, reading.faults[known:], overrides))
-    assert isinstance(machine, Machine)
-    return replace(machine, origin=origin)
+    assert isinstance(given, Given)
+    return given
 
 
 def set_over(tree: Any, origin: Origin) -> "list[Override]":
@@ -70,10 +75,12 @@ def set_over(tree: Any, origin: Origin) -> "list[Override]":
     return read
 
 
-def _machine(reading: Reading, tree: Any, stem: str) -> Any:
+def _given(reading: Reading, tree: Any, stem: str) -> Any:
     try:
         if isinstance(tree, dict):
-            return ROOT.read(reading, {"name": stem, **tree}, ())
+            given = ROOT.read(reading, {"name": stem, **tree}, ())
+            Maker(reading).made(given)
+            return given
         if isinstance(tree, Plain) and not tree:
             return reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")
         return reading.fault((), f"expected lines such as 'crank: 400 mm', got {kind_of(tree)}{glued_hint(tree)}")

@@ -119,6 +119,8 @@ class SliderCrank(Mechanism):
         crank, rod, offset = self.crank, self.rod, abs(self.offset)
         apart = np.isfinite(crank) & (rod > 0) & np.isfinite(offset)
         yield Rule("crank", ~apart, "crank and rod must be positive, crank and offset finite")
+        if not np.any(apart):
+            return
         short = apart & np.isfinite(rod) & (total(rod, -crank, -offset) <= self._rounding)
         numbers = {"reach": offset}
         reach = "{rod} does not reach: it must be longer than crank and offset together ({crank} + {reach:length})"

@@ -77,8 +77,9 @@ class SlottedLever(Mechanism):
         yield Rule("frame", self.crank == self.frame, same)
         fork = self._forked and self.ram_height is not None
         yield Rule("ram_height", fork, "has no meaning for a fork head; give 'link' with it")
-        if not hanging and self.crank != self.frame:
-            yield from finite(self, "ram_height")
+        yield from finite(self, "ram_height")
+        lengths = (self.crank, self.frame, self.lever or 0.0, self.ram_height or 0.0)
+        if not hanging and all(map(math.isfinite, lengths)) and self.crank != self.frame:
             fault = "" if self._forked else self._full_turn_fault() if self.rotates else self._swing_fault()
             yield Rule("link", bool(fault), f"{{link}} {fault}")
 
