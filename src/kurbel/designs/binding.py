@@ -118,7 +118,7 @@ class Binder:
                 numbers[place] = values
             else:
                 others[place] = values
-        whole = np.array([row for row in range(count) if row not in found.failures], dtype=int)
+        whole = np.delete(np.arange(count), [*found.failures])
         for rows in _grouped([*others.values()], whole):
             words = {place: column[rows[0]] for place, column in others.items()}
             self._bind(rows, words, numbers, found)
@@ -241,7 +241,9 @@ def _structures(machine: Machine, fit: Flags) -> Iterator[Indices]:
     codes: list[Array] = []
 
     def coded(numbers: Array) -> Array:
-        codes.append((numbers == 0) + 2.0 * np.isinf(numbers))
+        code = (numbers == 0) + 2.0 * np.isinf(numbers)
+        if (code != code[0]).any():
+            codes.append(code)
         return numbers
 
     changed(machine, coded, {})
@@ -262,6 +264,8 @@ def _column(values: Array) -> Any:
 
 def _grouped(columns: Sequence[Sequence[Any]], rows: Indices) -> list[Indices]:
     """Return the rows with the same values in all columns together."""
+    if not columns:
+        return [rows] if len(rows) else []
     groups: dict[tuple[int, ...], list[int]] = {}
     for row in rows.tolist():
         groups.setdefault(tuple(id(column[row]) for column in columns), []).append(row)
