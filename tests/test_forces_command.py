@@ -260,7 +260,7 @@ def test_a_limit_of_something_absent_is_a_fault() -> None:
     assert "limits.loss_crosshead" in result.stderr
 
 
-def test_what_a_machine_does_not_need_is_not_imported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_machine_does_not_need_is_not_imported(tmp_path: Path) -> None:
     plain = tmp_path / "plain.yaml"
     plain.write_text(DEMO, encoding="utf-8")
     loaded = modules_after(["forces", str(plain), "-f", "csv"])

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags, Indices
+from kurbel.arrays import Array, Flags, Indices, Indivisible
 from kurbel.declared.forms.records import TOO_EXTREME, Maker, too_extreme
 from kurbel.declared.keys import Described, Form, Rule
 from kurbel.declared.numerals import NUMBER
@@ -56,7 +56,8 @@ class _Slot(NamedTuple):
     @property
     def numeric(self) -> bool:
         """Whether one varied key is all that stands here, and what it becomes is a number."""
-        return len(self.varied) == 1 and not self.varied[0][1] and self.form.is_number
+        alone = len(self.varied) == 1 and not self.varied[0][1]
+        return alone and self.form.is_number and not isinstance(self.given.made, Indivisible)
 
     def read(self, texts: Sequence[str], folder: str) -> Any:
         """Return what texts of its varied keys become, or Unbound, unraised."""
