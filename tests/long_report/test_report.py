@@ -17,7 +17,7 @@ from click.testing import CliRunner, Result
 from pages import page_of, page_of_case
 
 from kurbel.cli import kurbel
-from kurbel.cli.report import Progress
+from kurbel.cli.pages import Progress
 from kurbel.machine_file import loads
 from kurbel.machine_file.given import given
 from kurbel.report.keys import every_place, meaning

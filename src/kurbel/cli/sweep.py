@@ -7,9 +7,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from kurbel.cli.completion import complete_override
-from kurbel.cli.output_options import format_of, machine_file, output_option, stacked, units_option, with_bar
-from kurbel.cli.readings import words
+from kurbel.cli.group import to_stderr
+from kurbel.cli.options import (
+    complete_override,
+    format_of,
+    machine_file,
+    output_option,
+    stacked,
+    units_option,
+    with_bar,
+    words,
+)
 from kurbel.render import Look
 
 if TYPE_CHECKING:
@@ -168,7 +176,6 @@ class _Asked(NamedTuple):
 
     def run(self) -> None:
         """Compute and write the rows."""
-        from kurbel.cli import to_stderr
         from kurbel.designs.chosen import read_aim, read_condition, summary, unbettered
         from kurbel.designs.plan import shard
         from kurbel.designs.sweep import Sweep

@@ -9,9 +9,8 @@ and no quotient of values from a file leaves their range. They hold for the file
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from kurbel.errors import Fault, Path
+from kurbel.numerics.arithmetic import every, some
 
 Factor = tuple[float, float]
 """A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""
@@ -81,9 +80,9 @@ def out_of_size(value: Any, kind: str) -> str:
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
     """
     smallest, largest, unit, *_ = KINDS[kind]
-    if not np.all(abs(value) <= largest):
+    if not every(abs(value) <= largest):
         return f"is too large; {_held(kind)} at most {largest:g} {unit}".rstrip()
-    if np.any((value != 0) & (abs(value) < smallest)):
+    if some((value != 0) & (abs(value) < smallest)):
         return f"is too small; {_held(kind)} 0 or at least {smallest:g} {unit}".rstrip()
     return ""
 
