@@ -24,9 +24,9 @@ from kurbel.errors import UsageError
 from kurbel.render import FORMATS, Look, json_text
 from kurbel.render.formats import pieces, render
 from kurbel.render.output import write_file
-from kurbel.report import shown
+from kurbel.report import frame
 from kurbel.report.angles import MOST_ROWS, check_rows, stepped
-from kurbel.report.forces import forces_report
+from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 from representative import few, law_of_each
@@ -292,7 +292,7 @@ def peak(work: Callable[[], object]) -> tuple[object, int]:
 
 
 def test_columns_are_computed_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shown, "_AT_ONCE", 100)
+    monkeypatch.setattr(frame, "_AT_ONCE", 100)
     case, angles = Case(loads(MACHINE + PRESSURE)), stepped(0.02, 360)
     forces_report(case, Frame("forces", [0.0], ("P", "T"), "si"))  # the extremes, and what is imported
     _, needed = peak(lambda: forces_report(case, Frame("forces", angles, ("P", "T"), "si")))

@@ -62,7 +62,7 @@ def _key_values(results: Results, caption: str) -> str:
 
     from kurbel.render import Look
     from kurbel.render.html import key_values
-    from kurbel.report.shown import shown_key_values
+    from kurbel.report.frame import shown_key_values
 
     with np.errstate(all="ignore"):
         try:

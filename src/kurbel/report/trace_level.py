@@ -6,10 +6,10 @@ from collections.abc import Callable
 import numpy as np
 
 from kurbel.numerics.roots import bracketed_roots
-from kurbel.report.notes import LARGEST_PEAK
 from kurbel.report.trace_readings import ENGINE, Reading, in_bar, zero_text
 from kurbel.solver.trace import AS_GIVEN, COMPRESSION, Supposed, exponent
 
+LARGEST_PEAK = 300e5  # Pa; of combustion engines
 _NEAR_AMBIENT = 0.7, 1.3
 _SENSIBLE = 1.2, 1.4
 """Exponents of a compression of air or mixture; less is wet or leaks, more than that of air cannot be."""
