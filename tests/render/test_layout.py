@@ -6,7 +6,6 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from unicodedata import combining, east_asian_width
 
 import pytest
 from hypothesis import given
@@ -14,9 +13,8 @@ from hypothesis import strategies as st
 
 from kurbel.render import Look
 from kurbel.render.book import _book_sizes, _fitting_sizes
-from kurbel.render.charset import _NARROW, Charset, width
 from kurbel.render.formats import render
-from kurbel.render.prose import folded
+from kurbel.render.text import Charset, folded, width
 from kurbel.report.zusammenstellung import zusammenstellung
 from render.sample_report import ONE, REPORT, texts
 
@@ -129,11 +127,6 @@ def test_charset_always_encodes(text: str, encoding: str) -> None:
 def test_same_text_every_time() -> None:
     for look in (Look(), Look("csv"), Look("json"), Look("markdown")):
         assert render(REPORT, look) == render(REPORT, look)
-
-
-def test_what_kurbel_writes_takes_one_cell_each_by_the_tables_of_unicode_too() -> None:
-    assert {"−", "φ", "⁶", "½", "∠"} <= _NARROW
-    assert [one for one in _NARROW if combining(one) or east_asian_width(one) in "WF" or not one.isprintable()] == []
 
 
 def test_width_counts_cells() -> None:

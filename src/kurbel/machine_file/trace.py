@@ -7,16 +7,29 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import Factor, Point
 from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE
-from kurbel.machine.trace import Pegging
 from kurbel.machine_file.motored import Motored
 from kurbel.machine_file.samples import Layout, layout_keys, samples_of
+from kurbel.traces.correct import Pegging, Trace
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-    from kurbel.machine.trace import Trace
     from kurbel.machine_file.whole_cycle import Samples
 
 _LAYOUT = layout_keys("pressure")
+
+
+class KnownLevel(Described):
+    """What becomes a `Pegging`."""
+
+    KEYS: ClassVar[Keys] = {
+        "angle": Key(Physical("angle"), "Crank angle from the (firing) dead centre", required=True),
+        "pressure": Key(Physical("pressure"), "Pressure there, as `pressures` says", required=True),
+    }
+
+    @classmethod
+    def of_keys(cls, angle: float, pressure: float) -> Pegging:
+        """Return where the level is known."""
+        return Pegging(angle, pressure)
 
 
 class Measured(Described):
@@ -46,7 +59,7 @@ class Measured(Described):
         "scale": Key(Number(), "Pressure, in the unit, for 1 of the file, such as bar for a volt", absent="1"),
         "offset": Key(Physical("pressure"), "Pressure that is added after the scale", absent="0 bar"),
         "pegging": Key(
-            OneOf(Choice(("ambient",)), Record(Pegging)),
+            OneOf(Choice(("ambient",)), Record(KnownLevel)),
             "Where the level of every cycle is known; `ambient`: at the dead centre where the compression begins",
             absent="pressures as measured",
         ),
@@ -76,9 +89,8 @@ class Measured(Described):
         clearance: float | None = None,
         compression_ratio: float | None = None,
         **layout: Any,
-    ) -> "Trace":
+    ) -> Trace:
         """Return the trace that these keys describe, its file read."""
-        from kurbel.machine.trace import Trace
 
         against = angle_sense == "against"
         gauge = _Gauge(unit, scale, offset)
@@ -100,8 +112,10 @@ class Measured(Described):
             level=drift == "linear",
             pegging=Pegging() if isinstance(pegging, str) else pegging,
             against=against,
+            unit=unit[0] / unit[1],
             scale=scale,
             offset=offset,
+            column=laid_out.columns[0] if file else 0,
         )
 
 

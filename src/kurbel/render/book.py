@@ -4,9 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from kurbel.render import Look
-from kurbel.render.charset import left, right, width
-from kurbel.render.lines import BLANK, Line, Piece, line
 from kurbel.render.sheet import Row, Sheet
+from kurbel.render.text import BLANK, Line, Piece, left, line, right, width
 
 _NINE = 9  # the book breaks after 80°
 _GAP = 2

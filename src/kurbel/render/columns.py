@@ -3,9 +3,8 @@
 from collections.abc import Iterable, Iterator, Sequence
 
 from kurbel.render import Look
-from kurbel.render.charset import left, right, width
-from kurbel.render.lines import BLANK, Line, Piece, line
 from kurbel.render.sheet import Row, Sheet
+from kurbel.render.text import BLANK, Line, Piece, left, line, right, width
 
 _GAP = 3
 

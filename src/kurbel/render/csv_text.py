@@ -82,7 +82,7 @@ def _place_rows(report: Report, look: Look) -> Iterator[list[str]]:
     for part, table in tables:
         texts = {head(column): [_number(v, look.digits, look) for v in column.values] for column in table.columns}
         texts |= {
-            one: [_harmless(look.charset.text(name)) for name in names]
+            one: [_harmless(look.charset.data(name)) for name in names]
             for one, names in zip(table.heads, zip(*table.names))
         }
         blank = [""] * len(table.names)
@@ -98,7 +98,7 @@ def head(column: Column) -> str:
 
 def _name(part: Part, look: Look) -> str:
     if isinstance(part.name, str):
-        return _harmless(look.charset.text(part.name))
+        return _harmless(look.charset.data(part.name))
     return _number(whole_if_integral(part.name), None, look)
 
 

@@ -8,10 +8,10 @@ from kurbel.render.csv_text import csv_text
 from kurbel.render.html import html
 from kurbel.render.json_text import json_text
 from kurbel.render.latex import latex
-from kurbel.render.lines import plain
 from kurbel.render.markdown import markdown
 from kurbel.render.output import stdout_charset, stdout_width, write_coloured, write_out
 from kurbel.render.page import page
+from kurbel.render.text import plain
 from kurbel.report.tables import Report
 
 _WRITERS: dict[str, Callable[[Report, Look], Iterable[str]]] = {

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from kurbel.render import Look
 from kurbel.render.document import ON_PAPER, Table, document, key_value_table
-from kurbel.render.prose import measures
 from kurbel.render.sheet import MARK, Row
+from kurbel.render.text import measures
 from kurbel.report.tables import KeyValue, Report
 
 INK, PAPER, FAINT, RULE, SHADE = (

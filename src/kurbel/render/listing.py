@@ -4,9 +4,8 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from kurbel.render import Look
-from kurbel.render.charset import left, width
-from kurbel.render.lines import plain
-from kurbel.render.prose import folded, sentence
+from kurbel.render.prose import sentence
+from kurbel.render.text import folded, left, plain, width
 
 if TYPE_CHECKING:
     from kurbel.report.check import Checked

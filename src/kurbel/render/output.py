@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.charset import Charset
+from kurbel.render.text import Charset
 
 if TYPE_CHECKING:
-    from kurbel.render.lines import Line
+    from kurbel.render.text import Line
 
 _MOST_COLOURED_LINES = 400
 

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from kurbel.render import Look
-from kurbel.render.lines import BLANK, Line, line
-from kurbel.render.prose import folded, prose
+from kurbel.render.prose import prose
 from kurbel.render.sheet import sheets
+from kurbel.render.text import BLANK, Line, folded, line
 from kurbel.report.alike import told_once
 from kurbel.report.tables import Report
 

@@ -5,10 +5,9 @@ from dataclasses import replace
 
 from kurbel.render import Look
 from kurbel.render.columns import blocks
-from kurbel.render.lines import Line, line
 from kurbel.render.numbers import Scale, alone, angle, cell, scale_of
-from kurbel.render.prose import folded
 from kurbel.render.sheet import Row
+from kurbel.render.text import Line, folded, line
 from kurbel.report.tables import Column, PlaceTable, Report, Value
 
 _GAP = 2

@@ -2,20 +2,17 @@
 
 import re
 from collections.abc import Collection, Iterator
-from functools import cache
 from typing import NamedTuple
 
 from kurbel.declared.quantity import NOISE_POWER
 from kurbel.render import Look
-from kurbel.render.charset import Charset, left, right, width
-from kurbel.render.lines import Line, Piece, line
 from kurbel.render.numbers import angle, single
 from kurbel.render.sheet import part_name
+from kurbel.render.text import Line, Piece, folded, left, line, right, width
 from kurbel.report.tables import KeyValue, LeftOut, Part, Report
 
 _LONGEST = 16  # of a number, or two angles; a longer list stands out, its sentence on the next line
 _MOST_LISTED = 12
-_NO_BREAK = "\N{NO-BREAK SPACE}"
 _LEAST_BESIDE = 24  # narrower than this a sentence is folded below its head instead
 
 
@@ -138,31 +135,6 @@ def sentence_text(text: str, look: Look) -> str:
     squared = re.sub(r"(?<=[a-z])\^2", "²", text) if "^2" in text else text  # compiled only where it is needed
     text = look.charset.text(squared if look.charset.has(squared) else text)
     return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if look.comma else text
-
-
-def folded(text: str, cells: int | None) -> list[str]:
-    """Return a text in lines of so many cells, where they are given; no word is broken, no unit leaves its number."""
-    if cells is None or width(text) <= cells:
-        return [text]
-    from textwrap import wrap
-
-    kept = measures().sub(lambda found: found[0].replace(" ", _NO_BREAK), text)
-    return [one.replace(_NO_BREAK, " ") for one in wrap(kept, cells, break_long_words=False, break_on_hyphens=False)]
-
-
-@cache
-def measures() -> re.Pattern[str]:
-    """Return the pattern of a number with its unit, which stay in one line.
-
-    >>> measures().findall("within 10 % of 2.35 kN m at 5 points")
-    ['10 %', '2.35 kN m']
-    """
-    from kurbel.declared.unit_systems import SYSTEMS
-
-    of_kinds = [each for system in SYSTEMS.values() for each in system.values()]
-    units = {unit for each in of_kinds for unit in ([each] if isinstance(each, str) else each)}
-    printed = {"%", "°", *units, *map(Charset().unit, units)} - {""}
-    return re.compile(rf"\S*\d  ?(?:{'|'.join(map(re.escape, sorted(printed, key=len, reverse=True)))})(?!\w)")
 
 
 def sentence(head: str, text: str, look: Look) -> Iterator[Line]:

@@ -6,8 +6,8 @@ from functools import cached_property
 from itertools import groupby
 
 from kurbel.render import Look
-from kurbel.render.charset import width
 from kurbel.render.numbers import Scale, angle_scale, cell, decimal, scale_of, whole_if_integral
+from kurbel.render.text import width
 from kurbel.report.tables import Column, Part, Report, Value
 
 MARK = "*"

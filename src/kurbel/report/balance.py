@@ -1,4 +1,4 @@
-"""The report of `kurbel balance`: unbalanced forces and moments over the crank angle, their orders, the best weights."""
+"""The report of `kurbel balance`: unbalanced forces and moments over the crank angle, orders, the best weights."""
 
 import math
 from collections.abc import Iterator, Sequence

@@ -35,7 +35,7 @@ class Entry(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """A limit or an expectation: its path in the file, the key value in SI, the bound, whose value it is, if it holds."""
+    """A limit or an expectation: its path in the file, the value in SI, the bound, whose value it is, if it holds."""
 
     path: Path
     quantity: Quantity

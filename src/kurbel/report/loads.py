@@ -1,4 +1,4 @@
-"""The reports of `kurbel bearings` and `kurbel stress`: the loads on pins and bearings, and how they strain the shaft."""
+"""The reports of `kurbel bearings` and `kurbel stress`: the loads on pins and bearings, and stresses in the shaft."""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -4,9 +4,9 @@ These are warnings, not errors, since the file may be right. Every command shows
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import chain, islice, pairwise
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -16,12 +16,11 @@ from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card
 from kurbel.machine.piston import Piston
-from kurbel.report import trace_level, trace_place, trace_samples
 from kurbel.report.alike import grouped, together
-from kurbel.report.trace_readings import Reading
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.trace import TracePressure
+from kurbel.traces.checks import doubt
 
 
 class Note(NamedTuple):
@@ -188,20 +187,16 @@ _TAKEN = 0.3, 1.0
 """Indicated over brake power of a machine that is driven."""
 _GOOD = 0.85
 """Mechanical efficiency assumed for the number of cylinders that the brake power needs."""
-_JUDGES: tuple[Callable[[Reading], str], ...] = (*trace_samples.JUDGES, *trace_place.JUDGES, *trace_level.JUDGES)
 
 
 def trace_warnings(forces: CylinderForces) -> Iterator[str]:
-    """Yield the one warning on each trace of a cylinder, if any: on its samples, its angles, or its pressures.
-
-    What is judged later may only look wrong because of what comes before.
-    """
+    """Yield the one warning on each trace of a cylinder, if any."""
     for gas in forces.drive.gas:
         for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
             if isinstance(pressure, TracePressure):
-                reading = Reading(pressure)
-                found = filter(None, (judge(reading) for judge in _JUDGES))
-                yield from (f"{gas.piston.name}, {end}: {text}" for text in islice(found, 1))
+                text = doubt(pressure.trace, pressure.setting, pressure.each)
+                if text:
+                    yield f"{gas.piston.name}, {end}: {text}"
 
 
 def brake_warnings(case: Case) -> Iterator[str]:
@@ -230,6 +225,7 @@ _CLOSED = 1e-9
 """An energy residual beyond this is no rounding."""
 _COARSE = 0.01
 """An energy residual beyond this is more than an indicator may miss by its spacing."""
+_LARGEST_PEAK = 300e5  # Pa; of combustion engines
 _LEAST_REVERSAL = 15.0, 0.03
 """Degrees of crank angle, and share of the larger load, that API 618 requires of the reversed rod load."""
 
@@ -254,10 +250,10 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
             yield f"{quantity.text[0].lower()}{quantity.text[1:]}: {shown} is above {most}"
     peak = forces.p_max.value if forces.p_max else 0.0
     # pumps and compressors have more, and traces are judged on their own
-    if peak > trace_level.LARGEST_PEAK and not traced and (forces.mean_pressure or 0.0) > 0:
+    if peak > _LARGEST_PEAK and not traced and (forces.mean_pressure or 0.0) > 0:
         yield (
             f"a pressure of {show(peak, 'pressure')} is more than engines have, at most "
-            f"{show(trace_level.LARGEST_PEAK, 'pressure')}; is its unit right?"
+            f"{show(_LARGEST_PEAK, 'pressure')}; is its unit right?"
         )
     yield from chain(_reversal_warnings(forces), _guide_warnings(forces))
 
