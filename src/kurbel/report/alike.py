@@ -3,11 +3,13 @@
 import re
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import groupby
+from os.path import commonprefix
 from typing import TypeVar
 
 from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Report, Value
 
-_DIGITS = 1e-9
+_NUMBERED = re.compile(r"(.*\D)(\d{1,9})")
+_NINE_DIGITS = 1e-9
 Item = TypeVar("Item")
 
 
@@ -16,15 +18,29 @@ def together(names: Sequence[str]) -> str:
 
     >>> together(["cylinder 1", "cylinder 2", "cylinder 3", "cylinder 6"]), together(["HP", "LP"])
     ('cylinders 1–3, 6', 'HP, LP')
+    >>> together(["pin of left 1", "pin of right 1", "pin of left 2", "pin of right 2"])
+    'pin of left 1, 2, right 1, 2'
     """
-    found = [re.fullmatch(r"(.*\D)(\d{1,9})", name) for name in names]
-    stems = {one.group(1) for one in found if one}
-    if len(names) == 1 or len(stems) > 1 or None in found:
-        return ", ".join(names)
-    runs = groupby(enumerate(int(one.group(2)) for one in found if one), lambda pair: pair[1] - pair[0])
+    texts = [_numbered(group) for group in grouped(names, _stem)]
+    common = commonprefix(texts) if len(texts) > 1 else ""
+    shared = common[: common.rfind(" of ") + 4] if " of " in common else ""
+    return shared + ", ".join(text.removeprefix(shared) for text in texts)
+
+
+def _stem(name: str) -> str:
+    found = _NUMBERED.fullmatch(name)
+    return found.group(1) if found else name
+
+
+def _numbered(names: Sequence[str]) -> str:
+    """Return names of one stem with their numbers, runs of them from the first to the last."""
+    if len(names) == 1:
+        return names[0]
+    numbers = [int(found.group(2)) for name in names if (found := _NUMBERED.fullmatch(name))]
+    runs = groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
     spans = [[number for _, number in run] for _, run in runs]
     texts = (f"{span[0]}–{span[-1]}" if len(span) > 2 else ", ".join(map(str, span)) for span in spans)
-    return f"{stems.pop().replace('cylinder ', 'cylinders ')}{', '.join(texts)}"
+    return f"{_stem(names[0]).replace('cylinder ', 'cylinders ')}{', '.join(texts)}"
 
 
 def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
@@ -118,7 +134,7 @@ def _near(some: Sequence[Value], others: Sequence[Value]) -> bool:
     """Whether values are equal to nine digits of the largest of them."""
     if some == others:
         return True
-    slack = _DIGITS * max((abs(value) for value in some if value is not None), default=0.0)
+    slack = _NINE_DIGITS * max((abs(value) for value in some if value is not None), default=0.0)
     return len(some) == len(others) and all(
         a == b or (a is not None and b is not None and abs(a - b) <= slack) for a, b in zip(some, others)
     )

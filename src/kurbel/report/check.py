@@ -164,14 +164,16 @@ def _turning_entries(machine: Machine) -> Iterator[Entry]:
     stages = turning_stages(machine)
     yield _computed(stages)
     yield from _without(missing(stages))
+    yield Entry("load", _load(machine))
+
+
+def _load(machine: Machine) -> str:
     load = machine.load
     if load is None:
-        yield Entry("load", "constant")
-    elif load.diagram:
-        yield Entry("load", f"a diagram of {len(load.diagram.angles)} points")
-    else:
-        power = f"torque as the speed to the power {load.power:g}"
-        yield Entry("load", power if load.slip is None else f"slip {load.slip:g}")
+        return "constant"
+    if load.diagram:
+        return f"a diagram of {len(load.diagram.angles)} points"
+    return f"slip {load.slip:g}" if load.slip is not None else f"torque as the speed to the power {load.power:g}"
 
 
 def _crankshaft_entries(case: Case) -> Iterator[Entry]:
