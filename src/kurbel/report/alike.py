@@ -3,7 +3,6 @@
 import re
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import groupby
-from os.path import commonprefix
 from typing import TypeVar
 
 from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Report, Value
@@ -22,8 +21,8 @@ def together(names: Sequence[str]) -> str:
     'pin of left 1, 2, right 1, 2'
     """
     texts = [_numbered(group) for group in grouped(names, _stem)]
-    common = commonprefix(texts) if len(texts) > 1 else ""
-    shared = common[: common.rfind(" of ") + 4] if " of " in common else ""
+    head, of, _ = texts[0].rpartition(" of ")
+    shared = head + of if all(text.startswith(head + of) for text in texts) else ""
     return shared + ", ".join(text.removeprefix(shared) for text in texts)
 
 
