@@ -237,7 +237,7 @@ def _pieces(node: Any, line_end: str, look: Look) -> Iterator[str]:
             yield ("," if index else "{" if is_object else "[") + deeper
             yield f"{_written(key, look)}: " if is_object else ""
             yield from _pieces(child, deeper, look)
-        yield line_end + ("}" if is_object else "]")
+        yield "}" if is_object else "]"
 
 
 def _holds_object(node: Any) -> bool:
