@@ -20,7 +20,7 @@ NEEDLESS = (
     (["--help"], ("machine", "mechanisms", "solver", "declared.quantities")),
     (["example"], ("report.check", "machine", "mechanisms", "declared.quantities")),
     (["table"], ("machine", "solver", "report.check")),
-    (["forces", WATERWORKS, "-f", "csv"], ("report.notes", "report.guide", "solver.stress", "solver.torsion")),
+    (["forces", WATERWORKS, "-f", "csv"], ("solver.stress", "solver.torsion")),
     (["balance", WATERWORKS], ("solver.stress", "solver.torsion")),
 )
 

@@ -38,7 +38,7 @@ def motion(asked: Asked) -> None:
     What slides has x, c, b; what swings has theta, theta_dot, theta_ddot. Without a speed in FILE only the
     positions are printed. Key values are exact and do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.motion import motion_report
+    from kurbel.report.crank import motion_report
 
     case = asked.case()
     asked.write(motion_report(case, asked.frame("motion", 360.0, len(case.cylinders))))
@@ -59,7 +59,7 @@ def forces(asked: Asked, cycle: int | None, each_cycle: bool, spreads: Spreads) 
     count positive. At a jump of the pressure the value just after it stands in the table. Key values are exact and
     do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.forces import cycles_report, forces_report
+    from kurbel.report.crank import cycles_report, forces_report
 
     case = asked.case()
     if cycle is not None:
@@ -93,7 +93,7 @@ def flywheel(asked: Asked, spreads: Spreads) -> None:
     inertia forces in it. E is the excess of the work over that of the resistance, omega the speed under the load of
     FILE, which may depend on it. Key values are exact and do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.flywheel import flywheel_report
+    from kurbel.report.turning import flywheel_report
 
     case = asked.case()
     frame = asked.frame("flywheel", 360.0 * case.machine.revolutions)
@@ -112,7 +112,7 @@ def stress(asked: Asked, places_only: bool, spreads: Spreads) -> None:
     von Mises (sigma_v). Key values are exact and do not depend on --step. FILE needs 'crankshaft', one cylinder and
     a pressure; it may be - for standard input.
     """
-    from kurbel.report.stress import stress_report
+    from kurbel.report.loads import stress_report
 
     case = asked.case()
     frame = asked.frame("stress", 360.0 * case.machine.revolutions)
@@ -129,7 +129,7 @@ def bearings(asked: Asked) -> None:
     throw stands for every throw of a machine with several. --cylinder takes the name of a pin or bearing. Key values
     are exact and do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.bearings import bearings_report
+    from kurbel.report.loads import bearings_report
 
     case = asked.case()
     asked.write(bearings_report(case, asked.frame("bearings", 360.0 * case.machine.revolutions)))
@@ -167,7 +167,7 @@ def harmonics(asked: Asked, orders: tuple[float, ...] | None, speeds: tuple[floa
     piece between the corners of the cards. t is the tangential pressure |M|/(R A). Major orders are those in which all
     cranks pull together. FILE may be - for standard input.
     """
-    from kurbel.report.harmonics import harmonics_report
+    from kurbel.report.turning import harmonics_report
 
     asked.write(harmonics_report(asked.case(), asked.frame("harmonics", 360.0), orders, speeds))
 
@@ -190,7 +190,7 @@ def torsion(
     M_shaft,tau prints them over the crank angle. FILE needs 'shaft', or a 'coupling' behind a 'flywheel'; it may be -
     for standard input.
     """
-    from kurbel.report.torsion import Wanted, torsion_report
+    from kurbel.report.turning import Wanted, torsion_report
 
     case = asked.case()
     frame = asked.frame("torsion", 360.0 * case.machine.revolutions)
@@ -215,6 +215,7 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
     there. As json every fault, limit, figure and warning has file, line, column, key, message and severity.
     """
     from kurbel.report.check import checked
+    from kurbel.solver.case import Case
 
     written = format_of(format, file_name)
     if written == "json":
@@ -224,7 +225,7 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
     from kurbel.render.output import stdout_look, write_out
     from kurbel.render.page import listing
 
-    result = checked(_loaded(file, overrides, file_name))
+    result = checked(Case(_loaded(file, overrides, file_name)))
     look = Look() if file_name else stdout_look()
     look = replace(look, width=width or look.width)
     sections = [(one.title, [(entry.what, entry.text) for entry in one.entries]) for one in result.told_once]
@@ -251,6 +252,7 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
     from kurbel.render.data import findings_json
     from kurbel.render.output import refuse_overwriting, stdout_look, write_out
     from kurbel.report.check import checked, faults_found, findings
+    from kurbel.solver.case import Case
 
     refuse_overwriting(file_name, (file,))
     try:
@@ -259,7 +261,7 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
         found, status = faults_found(file, error), error.exit_status
     else:
         refuse_overwriting(file_name, machine.trace_files)
-        result = checked(machine)
+        result = checked(Case(machine))
         found = findings(machine, result, located)
         status = min((error.exit_status for error in result.errors), default=BROKEN if result.broken else DONE)
     listed = [one._asdict() for one in found.findings]
