@@ -27,6 +27,7 @@ from kurbel.render import Look
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
+    from kurbel.solver.case import Case
 
 
 @click.command()
@@ -208,24 +209,28 @@ def torsion(
 )
 @output_option
 @width_option
-def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: str | None, width: int | None) -> int:
+def check(
+    file: str, case_name: str, overrides: tuple[str, ...], format: str | None, file_name: str | None, width: int | None
+) -> int:
     """Read the machine in FILE and say what will be computed, what is left out and why.
 
-    Where the file gives 'limits', hold the key values to them; where it gives 'expect', compare them with the figures
-    there. As json every fault, limit, figure and warning has file, line, column, key, message and severity.
+    Where the file gives 'limits', hold the key values to them, in every one of its 'cases'; where it gives 'expect',
+    compare them with the figures there. As json every fault, limit, figure and warning has file, line, column, key,
+    message and severity.
     """
     from kurbel.report.check import checked
     from kurbel.solver.case import Case
 
     written = format_of(format, file_name)
     if written == "json":
-        return _as_json(file, overrides, file_name)
+        return _as_json(file, case_name, overrides, file_name)
     if written != "table":
         raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
     from kurbel.render.output import stdout_look, write_out
     from kurbel.render.page import listing
 
-    result = checked(Case(_loaded(file, overrides, file_name)))
+    machine = _loaded(file, case_name, overrides, file_name)
+    result = checked(Case(machine), _in_cases(machine, case_name))
     look = Look() if file_name else stdout_look()
     look = replace(look, width=width or look.width)
     sections = [(one.title, [(entry.what, entry.text) for entry in one.entries]) for one in result.told_once]
@@ -236,9 +241,9 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
     return BROKEN if result.broken else DONE
 
 
-def _loaded(file: str, overrides: tuple[str, ...], file_name: str | None = None) -> "Machine":
+def _loaded(file: str, case_name: str, overrides: tuple[str, ...], file_name: str | None = None) -> "Machine":
     """Read the machine, whose uncertainties are told of what stands in the file."""
-    machine = loaded(file, overrides, file_name)
+    machine = loaded(file, case_name, overrides, file_name)
     if machine.uncertainty:
         from kurbel.designs.uncertainty import given_uncertainty
 
@@ -246,7 +251,17 @@ def _loaded(file: str, overrides: tuple[str, ...], file_name: str | None = None)
     return machine
 
 
-def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> int:
+def _in_cases(machine: "Machine", case_name: str) -> "list[Case]":
+    """Return the machine in each of its load cases; none where it is in one already."""
+    from kurbel.machine_file.reader import read_machine
+    from kurbel.solver.case import Case
+
+    origin = machine.origin
+    names = [one.name for one in machine.cases] if origin and not case_name else []
+    return [Case(read_machine(origin._replace(case=name))) for name in names if origin]
+
+
+def _as_json(file: str, case_name: str, overrides: tuple[str, ...], file_name: str | None) -> int:
     """Write all findings, those of a file that cannot be read, too, and return the status."""
     from kurbel.machine_file.positions import located
     from kurbel.render.data import findings_json
@@ -256,12 +271,13 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
 
     refuse_overwriting(file_name, (file,))
     try:
-        machine = _loaded(file, overrides)
+        machine = _loaded(file, case_name, overrides)
+        cases = _in_cases(machine, case_name)
     except KurbelError as error:
         found, status = faults_found(file, error), error.exit_status
     else:
         refuse_overwriting(file_name, machine.trace_files)
-        result = checked(Case(machine))
+        result = checked(Case(machine), cases)
         found = findings(machine, result, located)
         status = min((error.exit_status for error in result.errors), default=BROKEN if result.broken else DONE)
     listed = [one._asdict() for one in found.findings]
