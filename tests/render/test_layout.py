@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.render import Look
-from kurbel.render.book import _book_sizes, _fitting_sizes
 from kurbel.render.formats import render
+from kurbel.render.page import book_sizes, fitting_sizes
 from kurbel.render.text import Charset, folded, width
 from kurbel.report.zusammenstellung import zusammenstellung
 from render.sample_report import ONE, REPORT, texts
@@ -50,12 +50,12 @@ def test_golden(name: str, kept: Callable[[Path, str], str]) -> None:
     ("count", "sizes"), [(0, [0]), (1, [1]), (9, [9]), (10, [10]), (11, [9, 2]), (19, [9, 10]), (37, [9, 9, 9, 10])]
 )
 def test_blocks_as_in_the_book(count: int, sizes: list[int]) -> None:
-    assert _book_sizes(count) == sizes
+    assert book_sizes(count) == sizes
 
 
 @given(st.integers(1, 400), st.integers(-5, 60))
 def test_blocks_that_fit_are_even_and_complete(count: int, most: int) -> None:
-    sizes = _fitting_sizes(count, most)
+    sizes = fitting_sizes(count, most)
     assert sum(sizes) == count
     assert max(sizes) <= max(most, 1)
     assert max(sizes) - min(sizes) <= 1

@@ -9,7 +9,7 @@ from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.machine_file.motored import Motored
 from kurbel.machine_file.samples import Layout, layout_keys, samples_of
-from kurbel.traces.correct import Pegging, Trace
+from kurbel.traces.correct import KnownLevel, Trace
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 _LAYOUT = layout_keys("pressure")
 
 
-class KnownLevel(Described):
-    """What becomes a `Pegging`."""
+class Pegging(Described):
+    """What becomes a `KnownLevel`."""
 
     KEYS: ClassVar[Keys] = {
         "angle": Key(Physical("angle"), "Crank angle from the (firing) dead centre", required=True),
@@ -27,9 +27,9 @@ class KnownLevel(Described):
     }
 
     @classmethod
-    def of_keys(cls, angle: float, pressure: float) -> Pegging:
+    def of_keys(cls, angle: float, pressure: float) -> KnownLevel:
         """Return where the level is known."""
-        return Pegging(angle, pressure)
+        return KnownLevel(angle, pressure)
 
 
 class Measured(Described):
@@ -59,7 +59,7 @@ class Measured(Described):
         "scale": Key(Number(), "Pressure, in the unit, for 1 of the file, such as bar for a volt", absent="1"),
         "offset": Key(Physical("pressure"), "Pressure that is added after the scale", absent="0 bar"),
         "pegging": Key(
-            OneOf(Choice(("ambient",)), Record(KnownLevel)),
+            OneOf(Choice(("ambient",)), Record(Pegging)),
             "Where the level of every cycle is known; `ambient`: at the dead centre where the compression begins",
             absent="pressures as measured",
         ),
@@ -84,7 +84,7 @@ class Measured(Described):
         angle_sense: str = "with",
         scale: float = 1.0,
         offset: float = 0.0,
-        pegging: "Pegging | str | None" = None,
+        pegging: KnownLevel | str | None = None,
         drift: str | None = None,
         clearance: float | None = None,
         compression_ratio: float | None = None,
@@ -110,7 +110,7 @@ class Measured(Described):
             completed=samples.completed,
             clearance=1 / (compression_ratio - 1) if compression_ratio else clearance,
             level=drift == "linear",
-            pegging=Pegging() if isinstance(pegging, str) else pegging,
+            pegging=KnownLevel() if isinstance(pegging, str) else pegging,
             against=against,
             unit=unit[0] / unit[1],
             scale=scale,

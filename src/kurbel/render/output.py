@@ -1,5 +1,6 @@
 """Where the text goes: standard output, a terminal, or a file; and what its encoding and width are."""
 
+import codecs
 import errno
 import os
 import stat
@@ -76,8 +77,9 @@ def write_stdout(texts: Iterable[str], encoding: str | None = None) -> None:
     try:
         if hasattr(stdout, "buffer"):
             stdout.flush()
-            for text in texts:
-                stdout.buffer.write(text.encode(encoding or stdout.encoding or "utf-8", "replace"))
+            encoder = codecs.getincrementalencoder(encoding or stdout.encoding or "utf-8")("replace")
+            for text in texts:  # one byte order mark at most
+                stdout.buffer.write(encoder.encode(text))
         else:
             stdout.writelines(texts)
         stdout.flush()

@@ -30,7 +30,6 @@ class Note(NamedTuple):
     text: str
 
 
-@np.errstate(all="ignore")
 def machine_notes(case: Case) -> tuple[Note, ...]:
     """Return all warnings on a machine, each once: on what was given, on measurements, and on results."""
     machine, cylinders = case.machine, case.machine.cylinders
@@ -41,7 +40,8 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
     found += [Note(one.name, text) for one in cylinders for text in _size_warnings(one)]
     found += [Note(None, text) for text in pin_warnings(machine)]
     if machine.effort or any(one.pistons or one.masses or one.ram_force or one.moment for one in cylinders):
-        found += _on_results(case)
+        with np.errstate(all="ignore"):
+            found += _on_results(case)
     return tuple(dict.fromkeys(found))
 
 

@@ -41,6 +41,10 @@ _FEW_SAMPLES = 600
 """Below, the straight lines between samples are so long that more nodes are needed along each."""
 
 
+_CANCELLED = 1e-13
+"""Share of the terms of a sum below which nothing but rounding is left of it."""
+
+
 class Reading:
     """A trace in its chamber: what checks judge it by, pressures in Pa, angles in degrees after the dead centre.
 
@@ -82,13 +86,16 @@ class Reading:
         angles = self.after if after is None else after
         p = self.p if pressures is None else pressures
         if self.trace.even:
-            torque = p * self._slope(angles)
-            return float(np.radians(np.diff(angles)) @ (torque[:-1] + torque[1:]) / 2)
-        along = rule(10 if len(p) < _FEW_SAMPLES else 4)
-        share = (1 + along.nodes[:, np.newaxis]) / 2
-        between = angles[:-1] + share * np.diff(angles)
-        values = (p[:-1] + share * np.diff(p)) * self._slope(between)
-        return float(along.weights @ values @ np.radians(np.diff(angles)) / 2)
+            rate = p * self._slope(angles)
+            terms = np.radians(np.diff(angles)) * (rate[:-1] + rate[1:]) / 2
+        else:
+            along = rule(10 if len(p) < _FEW_SAMPLES else 4)
+            share = (1 + along.nodes[:, np.newaxis]) / 2
+            between = angles[:-1] + share * np.diff(angles)
+            values = (p[:-1] + share * np.diff(p)) * self._slope(between)
+            terms = along.weights @ values * np.radians(np.diff(angles)) / 2
+        total = float(terms.sum())
+        return total if abs(total) > _CANCELLED * float(np.abs(terms).sum()) else 0.0
 
     def _slope(self, after: Array) -> Array:
         """Return dz/dφ of the stroke fraction, so many degrees after the chamber's dead centre."""
@@ -274,6 +281,8 @@ _NEAR_VACUUM = 0.1
 """Share of the ambient below which an absolute low level is none."""
 _UNITS = {"Pa": 1.0, "mbar": 1e2, "kPa": 1e3, "psi": 6894.757293168, "at": 98066.5, "bar": 1e5, "MPa": 1e6}
 _POWERS = (0.001, 0.01, 0.1, 10.0, 100.0, 1000.0)
+_SAME_UNIT = 0.05
+"""Share by which units differ at most that cannot be told apart, as at and bar."""
 _NO_UNIT = 0.5
 """What a power of ten that makes no unit of another must fit better, in logarithms."""
 
@@ -304,8 +313,8 @@ def _unit(reading: Reading) -> str:
         if setting.cycle == 360 or not _hardly_compresses(reading):
             return ""
         can = f"four strokes compress more than from {in_bar(low)}"
-    factor, unit = _likely_unit(reading, 2 * compressed)
-    if factor == 1 or not bounds[0] <= reading.peak * factor + setting.lift <= max(bounds[1], setting.ambient):
+    factor, unit = _likely_unit(reading, 2 * compressed, (bounds[0], max(bounds[1], setting.ambient)))
+    if factor == 1:
         return ""
     what = f"{1 / factor:.3g} times too large" if factor < 1 else f"{factor:.3g} times too small"
     named = f" (unit: {unit} fits)" if unit else ""
@@ -325,28 +334,22 @@ def _hardly_compresses(reading: Reading) -> bool:
     return 0 < low < _NEAR_VACUUM * ambient and as_gauge <= _ENGINE
 
 
-def _likely_unit(reading: Reading, aimed: float) -> tuple[float, str]:
-    """Return the factor on the pressures that fits best, and the unit that it makes of theirs, or ''.
+def _likely_unit(reading: Reading, aimed: float, bounds: tuple[float, float]) -> tuple[float, str]:
+    """Return the factor on the pressures that fits best, and the unit that it makes of theirs, or ''; 1 if none does.
 
     Judged by how far, in logarithms, the absolute peak is from the one aimed at, and an absolute low level from the
     ambient.
     """
     lift, ambient, unit = reading.setting.lift, reading.setting.ambient, reading.trace.unit
-
-    def misfit(factor: float) -> float:
-        peak = (reading.peak * factor + lift) / aimed
-        low = 1.0 if lift else reading.low * factor / max(ambient, 1.0)
-        return abs(math.log(max(peak, 1e-300))) + abs(math.log(low) if low > 0 else 0.0)
-
-    named = {round(size / unit, 9): name for name, size in _UNITS.items() if abs(size / unit - 1) > _EVEN_UNIT}
-    judged = [(misfit(factor), factor, name) for factor, name in named.items()]
-    judged += [(misfit(factor) + _NO_UNIT, factor, "") for factor in _POWERS if factor not in named]
-    _, factor, name = min([*judged, (misfit(1.0), 1.0, "")])
-    return factor, name
-
-
-_EVEN_UNIT = 0.05
-"""Share by which units differ at least that are told apart: not at and bar."""
+    names = {round(size / unit, 9): name for name, size in _UNITS.items() if abs(size / unit - 1) > _SAME_UNIT}
+    judged = []
+    for factor in {*names, *_POWERS}:
+        peak, low = reading.peak * factor + lift, 1.0 if lift else reading.low * factor / max(ambient, 1.0)
+        if bounds[0] <= peak <= bounds[1] and peak > 0:
+            misfit = abs(math.log(peak / aimed)) + abs(math.log(max(low, 1e-3)))
+            judged.append((misfit + (0.0 if factor in names else _NO_UNIT), factor))
+    _, factor = min(judged, default=(0.0, 1.0))
+    return factor, names.get(factor, "")
 
 
 # the place of the peak

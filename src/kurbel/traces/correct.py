@@ -24,7 +24,7 @@ _ROUNDING = 1e-9  # of a period
 
 
 @dataclass(frozen=True)
-class Pegging:
+class KnownLevel:
     """Where the level of a trace is known: angle in degrees from the (firing) dead centre, pressure in Pa.
 
     Piezoelectric sensors measure changes of pressure only. None for both: the ambient, at the dead centre where the
@@ -59,7 +59,7 @@ class Trace:
     completed: bool = False
     clearance: float | None = None
     level: bool = False
-    pegging: Pegging | None = None
+    pegging: KnownLevel | None = None
     against: bool = False
     unit: float = 1.0
     scale: float = 1.0
@@ -217,7 +217,7 @@ def _line_at_zero(angles: Array, samples: Array) -> Array:
     return np.asarray(samples.mean(axis=1) - slopes * angles.mean())
 
 
-def _lift(trace: Trace, samples: Array, pegging: Pegging, setting: Setting) -> Array:
+def _lift(trace: Trace, samples: Array, pegging: KnownLevel, setting: Setting) -> Array:
     """Return what is added (m, 1) in Pa to every cycle, so that it has the known pressure where that is known."""
     inner, outer = setting.mechanism.dead_centres()
     if pegging.angle is not None and pegging.pressure is not None:
