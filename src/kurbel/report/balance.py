@@ -151,5 +151,6 @@ def _weight_tables(balance: MachineBalance, system: str) -> Iterator[PlaceTable]
 
 def _weight(name: str, one: Weight, square: float = 0.0) -> Row:
     """Return the row of a weight; square: ω² of a wheel, which it loads and lifts."""
+    place = {} if one.place is None else {"axial_position": one.place}
     blow = {"hammer_blow": abs(one.product) * square} if square else {}
-    return (name,), {"axial_position": one.place, "product": abs(one.product), "angle": _phase(one.product), **blow}
+    return (name,), {**place, "product": abs(one.product), "angle": _phase(one.product), **blow}

@@ -261,7 +261,7 @@ def shown_column(
 
     beside: the largest value in SI that is to have the same unit. Raises UsageError if one is not finite.
     """
-    given = np.frombuffer(values) if isinstance(values, array) else np.array([v for v in values if v is not None])
+    given = np.frombuffer(values) if isinstance(values, array) else np.array([v for v in values if v is not None], dtype=float)
     if not (np.isfinite(given).all() and math.isfinite(size)):
         raise too_large(quantity)
     largest = max(given.max(initial=0.0), -given.min(initial=0.0))
@@ -290,7 +290,7 @@ def place_table(
     headed: bool = False,
     alone: int = 0,
 ) -> PlaceTable:
-    """Return a table of places; declared: its quantities by id, of which one without any value is left out.
+    """Return a table of places; declared: its quantities by id, of which one is left out if no row has it.
 
     Orders and numbers of modes are written as such, 1.5, but 1 and 2; a distance in thousandths. alone: the digits of
     values of which each has a scale of its own, with one unit for each kind of quantity.
@@ -298,11 +298,11 @@ def place_table(
     values = {quantity: [of.get(id) for _, of in rows] for id, quantity in declared.items()}
     columns = []
     for quantity, each in values.items():
-        if any(value is not None for value in each):
+        if any(quantity.id in of for _, of in rows):
             alike = [
                 abs(v) for other, some in values.items() if other.kind == quantity.kind for v in some if v is not None
             ]
-            column = shown_column(quantity, each, system, beside=max(alike) if alone else 0.0)
+            column = shown_column(quantity, each, system, beside=max(alike, default=0.0) if alone else 0.0)
             decimals = 3 if quantity.id == "distance" else None
             if quantity.id in ("order", "mode"):
                 decimals = int(any(value and value % 1 for value in each))

@@ -1,7 +1,7 @@
 """The reports of `kurbel flywheel`, `harmonics` and `torsion`: what turns the shaft, and how it twists."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import repeat
 from typing import NamedTuple
@@ -347,6 +347,10 @@ def _at_critical(found: ShaftVibration, critical: Sequence[Critical]) -> list[_A
     return amplitudes
 
 
+def _known(values: Mapping[str, float | None]) -> dict[str, float]:
+    return {id: value for id, value in values.items() if value is not None}
+
+
 def _largest(values: Iterable[float | None]) -> float | None:
     return max((value for value in values if value is not None), default=None)
 
@@ -363,13 +367,13 @@ def _critical_table(critical: Sequence[Critical], amplitudes: Sequence[_Amplitud
             "M_vibratory": torque,
             "tau_vibratory": tension,
         }
-        rows.append((("near" if one.near else "",), values))
+        rows.append((("near" if one.near else "",), _known(values)))
     return place_table("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows, system)
 
 
 def _pieces_table(found: ShaftVibration, system: str) -> PlaceTable:
     """Return torques and stresses in the pieces at the working speed."""
-    rows: list[Row] = [((piece.name,), {id: getattr(piece, id) for id in PIECES}) for piece in found.pieces]
+    rows: list[Row] = [((piece.name,), _known({id: getattr(piece, id) for id in PIECES})) for piece in found.pieces]
     title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
     return place_table("pieces", title, ("piece",), PIECES, rows, system)
 
@@ -380,7 +384,7 @@ def _speeds_table(found: ShaftVibration, speeds: Sequence[float], system: str) -
     for piece, amplitudes in enumerate(zip(*_at_speeds(found, speeds))):
         for speed, (torque, tension) in zip(speeds, amplitudes):
             values = {"speed": speed, "M_vibratory": torque, "tau_vibratory": tension}
-            rows.append(((found.piece_name(piece),), values))
+            rows.append(((found.piece_name(piece),), _known(values)))
     title = "Vibratory torque over the speed, all these orders together"
     return place_table("speeds", title, ("piece",), SPEEDS, rows, system)
 
