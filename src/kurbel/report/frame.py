@@ -261,7 +261,11 @@ def shown_column(
 
     beside: the largest value in SI that is to have the same unit. Raises UsageError if one is not finite.
     """
-    given = np.frombuffer(values) if isinstance(values, array) else np.array([v for v in values if v is not None], dtype=float)
+    given = (
+        np.frombuffer(values)
+        if isinstance(values, array)
+        else np.array([v for v in values if v is not None], dtype=float)
+    )
     if not (np.isfinite(given).all() and math.isfinite(size)):
         raise too_large(quantity)
     largest = max(given.max(initial=0.0), -given.min(initial=0.0))
