@@ -54,7 +54,7 @@ def told_once(report: Report) -> Report:
 
     Pins and bearings are equal if their key values are, at whatever crank angles they are loaded.
     """
-    if report.group not in ("cylinders", "bearings"):
+    if len(report.parts) < 2 or report.group not in ("cylinders", "bearings"):
         return report
     bearings = report.group == "bearings"
     groups = grouped(report.parts, _bearing if bearings else _cylinder)
@@ -103,8 +103,8 @@ def _figures(key_values: Iterable[KeyValue]) -> Hashable:
     )
 
 
-def _nine_digits(values: Iterable[Value]) -> Hashable:
-    """Return values relative to the largest of them, and that, rounded to nine digits."""
-    given = tuple(values)
-    largest = max((abs(value) for value in given if value is not None), default=0.0) or 1.0
-    return f"{largest:.9g}", *(None if value is None else round(value / largest, 9) for value in given)
+def _nine_digits(values: Sequence[Value]) -> Hashable:
+    """Return the largest of these values, and a hash of all relative to it, both rounded to nine digits."""
+    largest = max((abs(value) for value in values if value is not None), default=0.0) or 1.0
+    relative = tuple(None if value is None else round(value / largest, 9) for value in values)
+    return f"{largest:.9g}", hash(relative)  # of a long table the values themselves would take much memory
