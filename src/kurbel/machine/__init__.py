@@ -202,13 +202,6 @@ class Machine(Record):
         default=(),
         absent="none told",
     )
-    cases: tuple[LoadCase, ...] = field(
-        [LoadCase],
-        "Load cases: `--case NAME` computes one, `kurbel check` checks the limits in all, `kurbel sweep --cases` has a "
-        "row for each",
-        default=(),
-        absent="one case, the file as it is",
-    )
     rotation: str | None = field(
         ("over", "under"),
         "Sense in which a lying machine turns: over, the crank pin rising from the inner dead centre, so that an "
@@ -217,6 +210,13 @@ class Machine(Record):
         also=("direction", "sense"),
     )
     origin: Origin | None = None
+    cases: tuple[LoadCase, ...] = field(
+        [LoadCase],
+        "Load cases: `--case NAME` computes one, `kurbel check` checks the limits in all, `kurbel sweep --cases` has a "
+        "row for each",
+        default=(),
+        absent="one case, the file as it is",
+    )
 
     @classmethod
     def of_keys(
