@@ -80,6 +80,7 @@ def _outcome(file: str, overrides: tuple[str, ...], file_name: str | None) -> _O
     from kurbel.designs.uncertainty import given_uncertainty
     from kurbel.render.output import refuse_overwriting
     from kurbel.report.check import checked
+    from kurbel.solver.case import Case
 
     try:
         machine = loaded(file, overrides)
@@ -88,7 +89,7 @@ def _outcome(file: str, overrides: tuple[str, ...], file_name: str | None) -> _O
     except KurbelError as error:
         return _Outcome(file, error=error)
     refuse_overwriting(file_name, machine.trace_files)
-    return _Outcome(file, machine, checked(machine))
+    return _Outcome(file, machine, checked(Case(machine)))
 
 
 def _error(outcome: _Outcome) -> KurbelError | None:
