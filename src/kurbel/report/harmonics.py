@@ -139,7 +139,7 @@ def _speed_tables(
 
 def _uniform(found: Orders) -> bool:
     """Return whether no order is there, at no speed."""
-    return not any(one.amplitudes.any() for one in found if one)
+    return not any(one.amplitudes.any() for one in (found.gas, found.inertia) if one)
 
 
 def _notes(found: MachineOrders) -> Iterable[str]:
