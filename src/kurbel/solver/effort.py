@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags, Indices
+from kurbel.arrays import Array, Flags
 from kurbel.crank_angle import unit_vector
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
@@ -40,8 +40,6 @@ _UNIFORM = 1e-14
 """Relative to the largest torque: load and effort that differ by less over the whole cycle are equal."""
 _BALANCED = 1e-9
 """Relative difference below which the means of effort and load are equal."""
-_LEVEL = 16 * float(np.finfo(float).eps)
-"""Relative to the work of all lobes: maxima, or minima, of E that differ by less are equal."""
 
 
 def inertia_torque(state: State) -> Any:
@@ -88,6 +86,7 @@ class TurningEffort:
         self.machine, self.cylinders, self.count = machine, tuple(cylinders), count
         self.refused: Flags = np.zeros(count or 1, dtype=bool)
         self.cycle = 360.0 * machine.revolutions
+        self.diagram = machine.load.diagram if machine.load else None
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         # the cylinders in which a force acts, those together that work alike
         acting = [forces for forces in cylinders if forces.drive.has_force]
@@ -100,24 +99,10 @@ class TurningEffort:
         return float(values[0]) if self.count is None else np.where(self.refused, np.nan, values)
 
     @cached_property
-    def given(self) -> Diagram | HarmonicTorque | None:
-        """The effort that is known from elsewhere; None where cylinders give it."""
-        effort = self.machine.effort
-        if isinstance(effort, Harmonics):
-            return HarmonicTorque(effort, self.cycle)
-        return None if effort is None else Diagram(effort, self.cycle)
-
-    @cached_property
-    def diagram(self) -> Diagram | None:
-        """The load that is given by points; None for another load."""
-        points = self.machine.load.diagram if self.machine.load else None
-        return None if points is None else Diagram(points, self.cycle)
-
-    @cached_property
     def pieces(self) -> Pieces:
         """The cycle in pieces on which every torque is a polynomial. Raises UsageError where no force acts."""
         name, speed, count = self.machine.name, self.machine.speed, self.count or 1
-        if not self.groups and not self.given:
+        if not self.groups and not self.machine.effort:
             raise UsageError(f"{name}: no force acts, so that nothing turns the shaft; kurbel check says why")
         if speed is not None:
             beyond = (speed != 0) & ((speed <= _SLOWEST) | (speed >= 1 / _SLOWEST))
@@ -125,7 +110,8 @@ class TurningEffort:
             if self.count is None and beyond:
                 size = "large" if speed > 1 else "small"
                 raise UsageError(f"{name}: a speed of {show(speed, 'speed')} is too {size} to compute with")
-        breaks = np.concatenate([np.zeros(0), *(one.breaks for one in (self.given, self.diagram) if one)])
+        known = [corners(one, self.cycle) for one in (self.machine.effort, self.diagram) if one]
+        breaks = np.concatenate([np.zeros(0), *known])
         cuts = Angles(np.repeat(np.arange(count), len(breaks)), np.tile(breaks, count))
         if not self.groups:
             return Pieces.between(cuts, count, self.cycle)
@@ -158,14 +144,14 @@ class TurningEffort:
     @cached_property
     def indicated(self) -> Array:
         """The torque M in N m without the losses of the machine."""
-        if self.given:
-            return self.given.at(self.pieces.degrees, self.pieces.middle)
+        if self.machine.effort:
+            return torque_on(self.machine.effort, self.pieces)
         return self.sampled([Term(1.0, group) for group in self.groups])
 
     @cached_property
     def drives(self) -> Any:
         """Whether any piston drives; for a given effort, whether its mean does."""
-        if self.given:
+        if self.machine.effort:
             return self.result(self._mean_of(self.indicated)) >= 0
         return any_of(group[0].drive.drives for group in self.groups)
 
@@ -200,7 +186,7 @@ class TurningEffort:
     @cached_property
     def M(self) -> Array:
         """The turning effort in N m, with the losses of the machine; see `share`."""
-        if self.given:
+        if self.machine.effort:
             return np.asarray(self.indicated * self.pieces.of(self.share(None)))
         return self.indicated if not some(self.machine.efficiency != 1) else self.sampled(self.terms)
 
@@ -224,7 +210,7 @@ class TurningEffort:
     @cached_property
     def _given_load(self) -> Array:
         assert self.diagram
-        return self.diagram.at(self.pieces.degrees, self.pieces.middle)
+        return torque_on(self.diagram, self.pieces)
 
     @cached_property
     def deficit(self) -> Array:
@@ -296,31 +282,15 @@ class ExcessWork:
         return np.asarray(found - pieces.of(gained) * (pieces.degrees / pieces.cycle))
 
     @cached_property
-    def _to_and_fro(self) -> Array:
-        """Work in J of all lobes, each counted positive, (n,): the size of the terms of E."""
-        return self.pieces.integral(np.abs(self.torque))
-
-    @cached_property
     def crossings(self) -> Angles:
         """Crank angles in degrees at which the effort crosses the load, by a jump or through zero."""
         # an effort that equals the load over a while differs from it by the rounding of the effort
         return self.pieces.zeros(self.torque, self._size)
 
-    def at(self, machine: Indices, degrees: Array) -> Array:
-        """Return E in J at crank angles (k,) in degrees of these machines."""
-        uneven = np.bincount(self.crossings.machine, minlength=self.pieces.count)[machine] > 0
-        found = self.pieces.at(self.E, machine, degrees)
-        return np.asarray(unless_cancelled(np.where(uneven, found, 0.0), self._to_and_fro[machine]))
-
-    @cached_property
-    def _heights(self) -> Array:
-        """E in J at the crossings."""
-        return self.at(*self.crossings)
-
     @cached_property
     def lobes(self) -> Array:
         """Work in J of every lobe from its crossing to the next, cyclically; positive ones speed the machine up."""
-        machine, heights = self.crossings.machine, self._heights
+        machine, heights = self.crossings.machine, self.pieces.at(self.E, *self.crossings)
         following = np.roll(heights, -1)
         following[np.flatnonzero(np.diff(machine, append=-1))] = heights[np.flatnonzero(np.diff(machine, prepend=-1))]
         return np.asarray(following - heights)
@@ -328,16 +298,13 @@ class ExcessWork:
     @cached_property
     def summits(self) -> tuple[Array, Array, Array, Array]:
         """Largest and smallest E in J with their angles, the first of equal ones, (n,); nan where E is the same."""
-        machine, found = self.crossings.machine, []
-        for sign in (1.0, -1.0):
-            heights, best = sign * self._heights, np.full(self.pieces.count, -np.inf)
-            np.maximum.at(best, machine, heights)
-            reached = np.flatnonzero(heights >= (best - _LEVEL * self._to_and_fro)[machine])
-            whose, first = np.unique(machine[reached], return_index=True)
-            summit = np.full((2, self.pieces.count), np.nan)
-            summit[:, whose] = self._heights[reached[first]], self.crossings.degrees[reached[first]]
-            found += [*summit]
-        return found[0], found[1], found[2], found[3]
+        size = self.pieces.integral(np.abs(self.torque))  # work of all lobes, each counted positive
+        high, high_at, low, low_at = (one[0] for one in self.pieces.extremes(self.E[None], size[None]))
+        even = size == 0
+        return tuple(
+            np.where(even, np.nan, one)
+            for one in (high, np.mod(high_at, self.pieces.cycle), low, np.mod(low_at, self.pieces.cycle))
+        )
 
     @cached_property
     def dE(self) -> Array:
@@ -345,36 +312,28 @@ class ExcessWork:
         return np.nan_to_num(self.summits[0] - self.summits[2], nan=0.0)
 
 
-class Diagram:
-    """A torque by points, straight between them, that repeats from its last angle on; cycle: of the machine.
+# torques that are known from elsewhere
 
-    breaks: the angles of its corners over the cycle in degrees.
+
+def corners(given: Effort | Harmonics, cycle: float) -> Array:
+    """Return the angles in degrees between which a torque is smooth; of waves so many that pieces resolve them."""
+    if isinstance(given, Harmonics):
+        highest = max(1.0, *(order for order, _, _ in given.terms))
+        return np.linspace(0.0, cycle, math.ceil(cycle / 90 * highest) + 1)
+    return np.add.outer(np.arange(0.0, cycle, given.angles[-1]), given.angles).ravel()
+
+
+def torque_on(given: Effort | Harmonics, pieces: Pieces) -> Array:
+    """Return a torque in N m on pieces: M = mean + Σ c cos νφ + s sin νφ, or points with straight lines between them.
+
+    Points repeat from their last angle on; at a jump the side counts that holds the middle of a piece.
     """
-
-    def __init__(self, points: Effort, cycle: float) -> None:
-        angles, torques = np.array(points.angles), np.array(points.torques)
-        self._period, kept = float(angles[-1]), np.diff(angles) > 0
-        self._starts, self._torques = angles[:-1][kept], torques[:-1][kept]
-        self._rises = np.diff(torques)[kept] / np.diff(angles)[kept]
-        self.breaks = np.add.outer(np.arange(0.0, cycle, self._period), self._starts).ravel()
-
-    def at(self, degrees: Array, within: Array) -> Array:
-        """Return the torque in N m at crank angles (…, n) in degrees, on the sides of jumps that hold `within` (n,)."""
-        turn = self._period * np.floor(within / self._period)
-        piece = np.searchsorted(self._starts, within - turn, side="right") - 1
-        return np.asarray(self._torques[piece] + self._rises[piece] * (degrees - turn - self._starts[piece]))
-
-
-class HarmonicTorque:
-    """A torque by harmonics, M = mean + Σ c cos νφ + s sin νφ; breaks: angles in degrees that cut its waves."""
-
-    def __init__(self, given: Harmonics, cycle: float) -> None:
-        self._mean, (self._orders, cos, sin) = given.mean, np.array(given.terms).T
-        self._amplitudes = cos - 1j * sin
-        # the nodes of one piece resolve a quarter of the shortest period
-        self.breaks = np.linspace(0.0, cycle, math.ceil(cycle / 90 * max(1.0, float(self._orders.max()))) + 1)
-
-    def at(self, degrees: Array, within: Array) -> Array:
-        """Return the torque in N m at crank angles (…, n) in degrees."""
-        waves = unit_vector(np.multiply.outer(degrees, self._orders)) @ self._amplitudes
-        return np.asarray(self._mean + waves.real)
+    if isinstance(given, Harmonics):
+        orders, cos, sin = np.array(given.terms).T
+        waves = unit_vector(np.multiply.outer(pieces.degrees, orders)) @ (cos - 1j * sin)
+        return np.asarray(given.mean + waves.real)
+    angles, torques = np.array(given.angles), np.array(given.torques)
+    turn = angles[-1] * np.floor(pieces.middle / angles[-1])
+    line = np.searchsorted(angles, pieces.middle - turn, side="right") - 1
+    rise = (torques[line + 1] - torques[line]) / (angles[line + 1] - angles[line])
+    return np.asarray(torques[line] + rise * (pieces.degrees - turn - angles[line]))

@@ -73,8 +73,6 @@ class MachineTurning(Results):
 
     def _column(self, column: str, phi: Array, within: Array) -> Array | None:
         """Return a column of the only machine at crank angles (k,); None for one that is left out."""
-        if column == "E":
-            return self.excess.at(np.zeros(len(phi), dtype=np.intp), phi)
         found = self._samples_of(column)
         return None if found is None else self.effort.at(*found, phi, within)
 

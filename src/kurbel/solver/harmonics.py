@@ -182,7 +182,7 @@ class MachineOrders:
     @cached_property
     def machine(self) -> Orders:
         """Those of the turning effort, with the losses of the machine."""
-        if self.effort.given:
+        if self.effort.machine.effort:
             known = self.spectra(self.effort.pieces, [self.effort.M])
             parts, moving = np.concatenate((known, 0 * known)), False
             size = np.abs(parts).max(axis=(0, 1))

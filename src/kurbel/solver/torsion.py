@@ -105,7 +105,7 @@ def excitation(found: MachineOrders, line: ShaftLine) -> Excitation:
         gas[place] += own[1:]
         inertia[place] += moved[1:] / one.share  # without losses
         means[place] += (own + moved)[0].real
-    if effort.given:
+    if effort.machine.effort:
         gas[0], means[0] = found.machine.gas.amplitudes, found.M_mean
     if effort.diagram:
         gas[line.load] -= found.spectra(effort.pieces, [effort.load])[0, 1:]
@@ -128,7 +128,7 @@ def driving(effort: TurningEffort, line: ShaftLine) -> Array:
                 terms += [Term(share, here), *effort.lost(here)]
                 terms += [Term(1 - share, here, inertia_torque)] if share != 1 and moves(here) else []
         torque += effort.sampled(terms)
-    if effort.given:
+    if effort.machine.effort:
         found[0] = effort.M
     if effort.diagram:
         found[line.load] -= effort.load
