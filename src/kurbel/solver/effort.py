@@ -25,7 +25,7 @@ from kurbel.machine import Machine
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.machine.turning import Effort, Harmonics
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
-from kurbel.numerics.pieces import Angles, Pieces, common
+from kurbel.numerics.pieces import Angles, Pieces, SampledExtremes, common
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State, reduced_inertia
@@ -296,20 +296,16 @@ class ExcessWork:
         return np.asarray(following - heights)
 
     @cached_property
-    def summits(self) -> tuple[Array, Array, Array, Array]:
-        """Largest and smallest E in J with their angles, the first of equal ones, (n,); nan where E is the same."""
+    def summits(self) -> SampledExtremes:
+        """Largest and smallest E in J with their angles, the first of equal ones, (1, n); nan where E is the same."""
         size = self.pieces.integral(np.abs(self.torque))  # work of all lobes, each counted positive
-        high, high_at, low, low_at = (one[0] for one in self.pieces.extremes(self.E[None], size[None]))
-        even = size == 0
-        return tuple(
-            np.where(even, np.nan, one)
-            for one in (high, np.mod(high_at, self.pieces.cycle), low, np.mod(low_at, self.pieces.cycle))
-        )
+        found = self.pieces.extremes(self.E[None], size[None])
+        return SampledExtremes(*(np.where(size == 0, np.nan, one) for one in found))
 
     @cached_property
     def dE(self) -> Array:
         """ΔE in J, the largest swing of the excess work, (n,)."""
-        return np.nan_to_num(self.summits[0] - self.summits[2], nan=0.0)
+        return np.asarray(np.nan_to_num(self.summits.largest[0] - self.summits.smallest[0], nan=0.0))
 
 
 # torques that are known from elsewhere
@@ -320,7 +316,7 @@ def corners(given: Effort | Harmonics, cycle: float) -> Array:
     if isinstance(given, Harmonics):
         highest = max(1.0, *(order for order, _, _ in given.terms))
         return np.linspace(0.0, cycle, math.ceil(cycle / 90 * highest) + 1)
-    return np.add.outer(np.arange(0.0, cycle, given.angles[-1]), given.angles).ravel()
+    return np.asarray(np.add.outer(np.arange(0.0, cycle, given.angles[-1]), given.angles).ravel())
 
 
 def torque_on(given: Effort | Harmonics, pieces: Pieces) -> Array:

@@ -19,7 +19,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.collocation import Standstill, Unsettled
-from kurbel.numerics.extreme import Extreme, Extremes
+from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces
 from kurbel.numerics.roots import rising_root
 from kurbel.solver.coupling import ElasticCoupling, natural_order
@@ -151,20 +151,13 @@ class MachineTurning(Results):
         """Work in J of the lobes between the crossings."""
         return self._of_each(self.excess.lobes)
 
-    def _summit(self, first: int) -> Extreme | None:
-        """Return an extreme of E with its angle; None where the only machine has no excess."""
-        value, degrees = map(self.effort.result, self.excess.summits[first : first + 2])
-        return None if self.effort.count is None and math.isnan(value) else Extreme(value, degrees)
+    @cached_property
+    def _summits(self) -> Extremes | None:
+        """Largest and smallest E with their angles; None where the only machine has no excess."""
+        return self.excess.summits.each(self.effort.result)[0] if self.excess.torque.any() else None
 
-    @property
-    def E_max(self) -> Extreme | None:
-        """Largest excess work in J since angle 0; None where there is none."""
-        return self._summit(0)
-
-    @property
-    def E_min(self) -> Extreme | None:
-        """Smallest excess work in J since angle 0; None where there is none."""
-        return self._summit(2)
+    E_max = passed_on("_summits", "largest", "Largest excess work in J since angle 0; None where there is none.")
+    E_min = passed_on("_summits", "smallest", "Smallest excess work in J since angle 0; None where there is none.")
 
     @property
     def dE(self) -> Any:
