@@ -1,6 +1,5 @@
 """`kurbel check`: reads a machine, says what will be computed, and holds it against its limits."""
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
@@ -42,8 +41,7 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
     from kurbel.render.page import listing
 
     result = checked(_loaded(file, overrides, file_name))
-    look = Look() if file_name else stdout_look()
-    look = replace(look, width=width or look.width)
+    look = Look(width=width) if file_name else stdout_look(Look(width=width))
     sections = [(one.title, [(entry.what, entry.text) for entry in one.entries]) for one in result.told_once]
     write_out((listing(result.title, sections, look),), file_name)
     if result.errors:  # all of them, as one of the gravest kind
@@ -80,5 +78,7 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
         found = findings(machine, result, located)
         status = min((error.exit_status for error in result.errors), default=BROKEN if result.broken else DONE)
     listed = [one._asdict() for one in found.findings]
-    write_out(findings_json(found.machine, found.provenance, listed, Look() if file_name else stdout_look()), file_name)
+    write_out(
+        findings_json(found.machine, found.provenance, listed, Look() if file_name else stdout_look(Look())), file_name
+    )
     return status

@@ -7,7 +7,7 @@ from kurbel.render import Look
 from kurbel.render.data import csv_text, json_text
 from kurbel.render.html import html
 from kurbel.render.markup import Latex, Markdown, document
-from kurbel.render.output import stdout_charset, stdout_width, write_coloured, write_out
+from kurbel.render.output import stdout_look, write_coloured, write_out
 from kurbel.render.page import page
 from kurbel.render.text import plain
 from kurbel.report.tables import Report
@@ -41,10 +41,12 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
     A terminal gets as many angles to a block as fit its width, and colours where they are wanted; a pipe gets plain
     text, of a width only where it is asked for. Raises UsageError where it cannot be written.
     """
-    look = replace(look, encoding="utf-8")
-    if file_name is None or file_name == "-":
-        encoding = "utf-8" if look.format in _ALWAYS_UTF_8 else stdout_charset().encoding
-        look = replace(look, encoding=encoding, width=look.width or stdout_width())
+    if file_name is not None and file_name != "-":
+        look = replace(look, encoding="utf-8")
+    else:
+        look = stdout_look(look)
+        if look.format in _ALWAYS_UTF_8:
+            look = replace(look, encoding="utf-8")
         if look.format == "table" and write_coloured(page(report, look), look):
             return
     write_out(pieces(report, look), file_name, look.encoding)

@@ -123,22 +123,17 @@ def angle(value: float, comma: bool = False) -> str:
     return decimal(_shortest(value, 2), comma)
 
 
-def exact(value: float, digits: int | None = None) -> str:
-    """Return all digits of a value (or as many as asked for), the way Python and every spreadsheet read them back.
+def rounded(value: Value, digits: int | None) -> Value:
+    """Return the value to this many significant digits; counts and None, or without `digits` all, as they are.
 
-    >>> exact(0.1), exact(5), exact(-0.0), exact(0.12345, 2)
-    ('0.1', '5', '0.0', '0.12')
+    >>> rounded(0.1, None), rounded(5, 2), rounded(-0.0, None), rounded(0.12345, 2)
+    (0.1, 5, 0.0, 0.12)
     """
-    return repr(rounded(value, digits))
-
-
-def rounded(value: float, digits: int | None) -> float:
-    """Return the value to this many significant digits, whole counts and values without `digits` as they are."""
-    if isinstance(value, int):
+    if value is None or isinstance(value, int):
         return value
     return float(value if digits is None else f"{value:.{digits}g}") + 0.0
 
 
-def whole_if_integral(value: float) -> float:
+def whole_if_integral(value: Value) -> Value:
     """Return 10 for 10.0, so that angles and ratios are written as people write them."""
-    return int(value) if math.isfinite(value) and abs(value) < 1e15 and value == int(value) else value
+    return int(value) if value is not None and abs(value) < 1e15 and value == int(value) else value
