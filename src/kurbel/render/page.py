@@ -70,36 +70,34 @@ def _blocks(
     side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int, between: Iterable[Line] = ()
 ) -> Iterator[Line]:
     """Yield block under block, each with the side columns and as many others as fit the width, at least one."""
-    beside = [(one, max(width(one.symbol), width(one.unit), one.width)) for one in side]
-    block = beside
+    block = list(side)
     for one in columns:
-        wide = max(width(one.symbol), width(one.unit), one.width)
-        if look.width is not None and sum(cells + gap for _, cells in block) + wide > look.width and block != beside:
+        wide = sum(column.whole_width + gap for column in block) + one.whole_width
+        if look.width is not None and wide > look.width and len(block) > len(side):
             yield from _block(block, look, gap)
             yield from between
-            block = beside
-        block = [*block, (one, wide)]
+            block = list(side)
+        block.append(one)
     yield from _block(block, look, gap)
 
 
-def _block(block: Sequence[tuple[TextColumn, int]], look: Look, gap: int) -> Iterator[Line]:
-    ruled = line(look.charset.text("─") * (sum(wide + gap for _, wide in block) - gap), "rule")
+def _block(columns: Sequence[TextColumn], look: Look, gap: int) -> Iterator[Line]:
+    ruled = line(look.charset.text("─") * (sum(one.whole_width + gap for one in columns) - gap), "rule")
+    layout = [(" " * gap * (k > 0), one.whole_width, one.words) for k, one in enumerate(columns)]
 
     def row(texts: Iterable[str], role: str) -> Line:
-        pieces: list[Piece] = []
-        for text, (column, wide) in zip(texts, block):
-            between = " " * gap if pieces else ""
-            if column.words:
-                pieces.append(Piece(between + left(text, wide), "name"))
-            else:
-                pieces.append(Piece(between + right(text, wide), "mark" if text.endswith(MARK) else role))
-        return tuple(pieces)
+        return tuple(
+            Piece(before + left(text, wide), "name")
+            if words
+            else Piece(before + right(text, wide), "mark" if text.endswith(MARK) else role)
+            for text, (before, wide, words) in zip(texts, layout)
+        )
 
-    yield row((one.symbol for one, _ in block), "head")
-    if any(one.unit for one, _ in block):
-        yield row((one.unit for one, _ in block), "unit")
+    yield row((one.symbol for one in columns), "head")
+    if any(one.unit for one in columns):
+        yield row((one.unit for one in columns), "unit")
     yield ruled
-    for texts in zip(*(one.cells() for one, _ in block)):
+    for texts in zip(*(one.cells() for one in columns)):
         yield row(texts, "cell")
     yield ruled
 

@@ -32,6 +32,11 @@ class TextColumn(NamedTuple):
     pad: str = ""
 
     @property
+    def whole_width(self) -> int:
+        """Width of the widest of its cells, symbol and unit."""
+        return max(width(self.symbol), width(self.unit), self.width)
+
+    @property
     def words(self) -> bool:
         """Whether it holds words, which are flush left."""
         return self.kind != "number"
