@@ -248,7 +248,7 @@ def _written(node: Any, look: Look) -> str:
 _TEXT = {"type": "string"}
 _TEXTS = {"type": "array", "items": _TEXT}
 _NUMBER = {"type": ["number", "null"]}
-_ANGLE = {"type": "number", "description": "crank angle in degrees at which it stands"}
+_ANGLE = {"type": "number", "description": "crank angle of the extreme in degrees"}
 
 
 def _ref(name: str) -> dict[str, str]:
@@ -300,7 +300,7 @@ _DEFINITIONS = {
         rows={
             "type": "array",
             "items": {"type": "object", "additionalProperties": _TEXT},
-            "description": "names of the rows, absent where the first column tells them",
+            "description": "names of the rows, absent if the first column names them",
         },
     ),
     "part": _object({"name": _TEXT, **_RESULTS}, **_TABLES),

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from kurbel.report.tables import Value
 
 DIGITS = 4
-"""Significant digits of the largest value of a row where nothing else is asked for."""
+"""Significant digits of the largest value of a row by default."""
 
 _LARGE = 7  # from 1e7 on, and below 1e-4, a row gets its power of ten into the head
 _SMALL = -4
@@ -23,7 +23,7 @@ class Scale(NamedTuple):
 def scale_of(values: Iterable[Value], digits: int | None = None) -> Scale:
     """Return the scale that shows so many significant digits of the largest value.
 
-    Where no digits are asked for there are four, and whole numbers keep all of theirs; else they are rounded too.
+    By default there are four, and whole numbers keep all of theirs; with `digits` they are rounded, too.
 
     >>> scale_of([1.2, -0.014]), scale_of([81134.0]), scale_of([81134.0], 2)
     (Scale(decimals=3, exponent=0), Scale(decimals=0, exponent=0), Scale(decimals=-3, exponent=0))
@@ -46,13 +46,13 @@ def _power(value: float, digits: int) -> int:
 
 
 def angle_scale(values: Iterable[Value]) -> Scale:
-    """Return the fewest decimals that tell all these angles, at most six."""
+    """Return the fewest decimals that distinguish all these angles, at most six."""
     texts = (_shortest(value, 6) for value in values if value is not None)
     return Scale(max((len(text.partition(".")[2]) for text in texts), default=0))
 
 
 def cell(value: Value, scale: Scale, comma: bool = False) -> str:
-    """Return the value as it stands in a table; an exact zero is `0` as in the book, no value is empty.
+    """Return the value as a table shows it; an exact zero is `0` as in the book, no value is empty.
 
     >>> cell(-0.0142, Scale(3)), cell(-0.0001, Scale(3)), cell(0.0, Scale(3)), cell(0.5, Scale(3), comma=True)
     ('-0.014', '0.000', '0', '0,500')
@@ -87,7 +87,7 @@ def _shortest(value: float, decimals: int) -> str:
 
 
 def single(value: float, digits: int | None = None, comma: bool = False) -> tuple[str, int]:
-    """Return a value that stands alone, and the power of ten that belongs behind it.
+    """Return a single value, and its power of ten.
 
     >>> single(0.8), single(2.4e7), single(-1.1e-16)
     (('0.8000', 0), ('2.400', 7), ('-1.100', -16))

@@ -130,22 +130,22 @@ def write_file(file_name: str, texts: Iterable[str]) -> None:
 
 @contextmanager
 def replaced(file_name: str) -> Iterator[str]:
-    """Yield the path to write to: a new file beside the wanted one, which takes its place once it is whole.
+    """Yield the path to write to: a new file next to the wanted one, which replaces it once it is whole.
 
     What is no file, such as a pipe or /dev/stdout, is written to as it is.
     """
     if not (target := whole_file(file_name)):
         yield file_name
         return
-    beside = os.path.join(os.path.dirname(target), f".kurbel-{os.urandom(8).hex()}{os.path.splitext(file_name)[1]}")
+    new = os.path.join(os.path.dirname(target), f".kurbel-{os.urandom(8).hex()}{os.path.splitext(file_name)[1]}")
     try:
-        os.close(os.open(beside, os.O_CREAT | os.O_EXCL, 0o666))
-        take_mode(beside, target)
-        yield beside
-        os.replace(beside, target)
+        os.close(os.open(new, os.O_CREAT | os.O_EXCL, 0o666))
+        take_mode(new, target)
+        yield new
+        os.replace(new, target)
     except BaseException:  # an interrupt, too, leaves nothing behind
         with suppress(OSError):
-            os.unlink(beside)
+            os.unlink(new)
         raise
 
 

@@ -56,7 +56,7 @@ def _rows(sheet: Sheet, look: Look) -> Iterator[Line]:
 
 
 def _places(table: PlaceTable, look: Look) -> Iterator[Line]:
-    """Yield a line for each named place, under the title; without names the first column says which row it is."""
+    """Yield a line for each named place, under the title; without names the first column names the rows."""
     yield from (line(one, "name") for one in folded(look.charset.text(table.title), look.width))
     names, columns = place_table(table, look)
     side = names if table.headed else [one._replace(symbol="") for one in names]
