@@ -13,6 +13,7 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import parse
+from kurbel.machine_file.zeroed_units import without_zeros
 
 if TYPE_CHECKING:
     from kurbel.machine_file.overrides import Override
@@ -85,7 +86,7 @@ def set_over(tree: Any, origin: Origin) -> "list[Override]":
 def _given(reading: Reading, tree: Any, stem: str) -> Any:
     try:
         if isinstance(tree, dict):
-            given = ROOT.read(reading, {"name": stem, **tree}, ())
+            given = ROOT.read(reading, {"name": stem, **without_zeros(tree, reading)}, ())
             Maker(reading).made(given)
             return given
         if isinstance(tree, Plain) and not tree:
