@@ -159,7 +159,7 @@ class _Asked(NamedTuple):
         """Raise click.UsageError for options that do not go together."""
         named = self.file_name not in (None, "-")
         for wrong, message in (
-            (not (self.vary or self.cases), "--vary says which values the designs have; or give --cases."),
+            (not (self.vary or self.cases), "Missing option '--vary', which says what varies; or give --cases."),
             (self.cases and self.case_name, "--cases has every load case, --case one; leave one of them out."),
             (self.top and not self.sort, "--top N takes the first rows of --sort ID; give --sort too."),
             (self.sobol and not self.sample, "--sobol is a way to draw a sample; give --sample N too."),
