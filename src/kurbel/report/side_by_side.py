@@ -1,7 +1,6 @@
 """Two machines side by side: what they were given differently, key values with their differences, pictures in pairs."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from itertools import zip_longest
 from operator import itemgetter
@@ -17,8 +16,8 @@ from kurbel.report.alike import grouped, together
 from kurbel.report.commands import subjects_of
 from kurbel.report.document import Document, Grid, Pair, Section
 from kurbel.report.frame import Subject
+from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures_if_any
-from kurbel.report.pictures.source import Wish
 from kurbel.report.provenance import provenance
 from kurbel.report.whole import COMMANDS, Command, Given, Progress
 from kurbel.solver.case import Case
@@ -71,9 +70,9 @@ def _of_command(cases: Sequence[Case], command: Command, system: str) -> Iterato
             yield Grid(together(names) if len(told) > 1 else "Key values", heads, rows, (1, 2, 4), (3,))
     for declared in PICTURES:
         if declared.command == command.word:
-            drawn = [_had(partial(pictures_if_any, case, declared, Wish(system))) for case in cases]
+            drawn = [_had(partial(pictures_if_any, case, declared, PictureOptions(system))) for case in cases]
             # each picture is named as its machine is here
-            called = [[replace(one, machine=name) for one in ones] for ones, name in zip(drawn, _names(cases))]
+            called = [[one._replace(machine=name) for one in ones] for ones, name in zip(drawn, _names(cases))]
             yield from (Pair(left, right) for left, right in zip_longest(*called))
 
 

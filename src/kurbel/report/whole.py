@@ -15,8 +15,8 @@ from kurbel.report.commands import report_of
 from kurbel.report.document import Document, Grid, Item, Section
 from kurbel.report.frame import Frame
 from kurbel.report.keys import every_place, meaning
+from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures_if_any
-from kurbel.report.pictures.source import Wish
 from kurbel.report.provenance import provenance
 from kurbel.report.tables import LeftOut, Report
 from kurbel.solver.case import Case
@@ -83,7 +83,7 @@ def _section(case: Case, command: Command, system: str, step: float, left_out: l
     except UsageError as error:
         left_out.append(LeftOut(command.title, str(error).removeprefix(f"{case.machine.name}: ")))
         return None
-    return Section(command.word, command.title, (*_pictures_of(case, command.word, Wish(system)), table))
+    return Section(command.word, command.title, (*_pictures_of(case, command.word, PictureOptions(system)), table))
 
 
 def _table(case: Case, command: Command, system: str, step: float) -> Report | str:
@@ -95,12 +95,12 @@ def _table(case: Case, command: Command, system: str, step: float) -> Report | s
     return report
 
 
-def _pictures_of(case: Case, command: str, wish: Wish) -> Iterator[Item]:
+def _pictures_of(case: Case, command: str, options: PictureOptions) -> Iterator[Item]:
     """Yield the pictures of one command that the machine has; of one without a solution, why."""
     for one in PICTURES:
         if one.command == command:
             try:
-                yield from pictures_if_any(case, one, wish)  # what another would show is told among what is left out
+                yield from pictures_if_any(case, one, options)  # what another would show is told among what is left out
             except NoSolutionError as error:
                 yield f"{one.title}: {error}"
 
