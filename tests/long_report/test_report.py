@@ -212,7 +212,7 @@ def test_differences_are_in_percent(tmp_path: Path) -> None:
     page = run(str(one), str(other)).stdout
     assert f"A (A) is that of {one}; A (B) is that of {other}." in text_in(page)
     # the heading, and what a reader of screens is told
-    assert text_in(page).count("A (A). Kolbenweg") == text_in(page).count("A (B). Kolbenweg") == 2
+    assert text_in(page).count("A (A). Displacement") == text_in(page).count("A (B). Displacement") == 2
 
 
 @pytest.mark.parametrize(
