@@ -241,10 +241,9 @@ def _places(frame: PanelFrame, x: Array | float, y: Array | float) -> ComplexArr
 def thinned(places: ComplexArray) -> ComplexArray:
     """Return places x + iy (n,) without those that are on a straight line between their neighbours."""
     while len(places) > 2:
-        start, chord = places[:-2], places[2:] - places[:-2]
-        off = places[1:-1] - start
-        share = np.divide(off, chord, out=np.zeros_like(off), where=chord != 0).real
-        dull = np.abs(off - np.clip(share, 0.0, 1.0) * chord) <= _STRAIGHT
+        off, chord = places[1:-1] - places[:-2], places[2:] - places[:-2]
+        share = (off * chord.conj()).real / np.maximum(np.abs(chord) ** 2, 1e-12)
+        dull = np.abs(off - np.minimum(np.maximum(share, 0.0), 1.0) * chord) <= _STRAIGHT
         if not dull.any():
             break
         order = np.arange(len(dull))  # of neighbours every other one
@@ -254,7 +253,8 @@ def thinned(places: ComplexArray) -> ComplexArray:
 
 
 def _path(places: ComplexArray) -> str:
-    return "M" + "L".join(f"{_number(one.real)} {_number(one.imag)}" for one in places.tolist())
+    rounded = (np.round(places, 1) + 0.0).tolist()
+    return "M" + "L".join([f"{one.real:g} {one.imag:g}" for one in rounded])
 
 
 def _circle(middle: complex, radius: float) -> str:
@@ -310,5 +310,4 @@ def _animated(attribute: str, values: Sequence[str]) -> str:
 
 
 def _number(value: float) -> str:
-    text = f"{value:.1f}".removesuffix(".0")
-    return "0" if text == "-0" else text
+    return f"{round(value, 1) + 0.0:g}"
