@@ -96,10 +96,7 @@ class AxisScale(NamedTuple):
 
 def scales(panel: Panel) -> tuple[AxisScale, AxisScale]:
     """Return the scales from 0 to 1 of both axes of a panel, which hold all that is drawn, with air around it."""
-    marked = np.array([(mark.x, mark.y) for mark in panel.marks]).reshape(-1, 2)
-    across = [marked[:, 0], *(curve.x for curve in panel.curves), *(shade.x for shade in panel.shades)]
-    up = [marked[:, 1], *(curve.y for curve in panel.curves)]
-    up += [line for shade in panel.shades for line in (shade.low, shade.high)]
+    across, up = panel.places
     return _scale(panel.x, across, panel.plain), _scale(panel.y, up, True)
 
 
@@ -180,7 +177,7 @@ class PanelFrame:
             x, y = (one._replace(low=one.low - more / 2, high=one.high + more / 2) for one, more in zip((x, y), spare))
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
         # how often curves cross a cell of the grid, and whether a label has it
-        shape = math.ceil(tall / medium.grain[1]), math.ceil(wide / medium.grain[0])
+        shape = [math.ceil((size - medium.dot) / cell) for size, cell in zip((tall, wide), medium.grain[::-1])]
         self._crossed, self._taken = np.zeros(shape, dtype=int), np.zeros(shape, dtype=int)
 
     def place(self, x: Any, y: Any) -> tuple[Any, Any]:

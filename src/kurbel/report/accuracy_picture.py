@@ -64,5 +64,7 @@ def _panel(
         answers = np.array([one for scene in scenes for one in (*scene, (np.nan, np.nan))])[:-1]
         curves.append(Curve(Words(method), answers[:, 0], answers[:, 1], "dots", methods.index(method)))
     rounding = Curve(Words(""), np.array([_ROUNDING, _ROUNDING]), np.array(span), "faint")
-    x = Axis(Words("error"), "", True, _LEAST, 1.0, falling=True)
-    return Panel(x, Axis(Words("time"), "ms", True, *span), (rounding, *curves), title=quantity)
+    x = Axis(Words("error"), log=True, low=_LEAST, high=1.0, falling=True)
+    return Panel(
+        x, Axis(Words("time"), unit="ms", log=True, low=span[0], high=span[1]), (rounding, *curves), title=quantity
+    )

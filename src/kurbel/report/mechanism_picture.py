@@ -6,7 +6,6 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.unit_systems import convert
 from kurbel.mechanisms import PIN, SHAFT, Point, Sketch
 from kurbel.report.picture import Axis, Curve, Panel, Words
 from kurbel.report.picture_source import PHI, Source
@@ -24,8 +23,8 @@ _Drawn = tuple[str, Words, ComplexArray]
 
 
 def mechanism(source: Source) -> Iterator[Panel]:
-    """Yield the mechanism at the requested angles, or moving, with the forces that act on it."""
-    drive, angles = source.results.drive, source.options.angles
+    """The mechanism to scale, with the forces on it."""
+    drive, angles = source.results.drive, source.angles
     if drive.mechanism.sketch(CrankAngle.of(0.0)) is None:
         return
     if angles is None:
@@ -52,12 +51,11 @@ def _panel(source: Source, degrees: Array) -> Panel:
         *_members(sketch, joints, degrees, 2 * _BLOCK * mechanism.crank),
         *_arrows(source, sketch, joints, degrees),
     ]
-    unit = source.unit("length", *joints.values())
     curves = []
     for kind, name, places in drawn:
-        shown = convert(places if (places != places[0]).any() else places[0], "length", unit)
+        shown = places if (places != places[0]).any() else places[0]
         curves.append(Curve(name, shown.real, shown.imag, kind))
-    axis = Axis(Words(""), unit)
+    axis = Axis(Words(""), "length")
     return Panel(axis, axis, tuple(curves), equal=True, plain=True)
 
 

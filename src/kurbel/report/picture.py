@@ -1,4 +1,7 @@
-"""What a picture is made of, whatever draws it: curves, shades and marks on panels with two axes, in units as shown."""
+"""What a picture is made of, whatever draws it: curves, shades and marks on panels with two axes.
+
+Panels are made in SI; `in_units` of `picture_source` gives them the units in which they are shown.
+"""
 
 from itertools import pairwise
 from typing import NamedTuple
@@ -16,13 +19,16 @@ class Words(NamedTuple):
 
 
 class Axis(NamedTuple):
-    """What runs along an axis, and its unit; log: by powers of ten; names: texts at 0, 1, … instead of numbers.
+    """What runs along an axis, its kind of quantity and unit; mark: text behind the unit; log: by powers of ten.
 
-    low, high: how far the axis must reach at least; falling: large values are on the left.
+    low, high: how far it must reach at least; falling: large values are on the left; names: texts at 0, 1, … instead of
+    numbers.
     """
 
     name: Words
-    unit: str
+    kind: str = ""
+    unit: str = ""
+    mark: str = ""
     log: bool = False
     low: float | None = None
     high: float | None = None
@@ -107,6 +113,14 @@ class Panel(NamedTuple):
     equal: bool = False
     plain: bool = False
     title: str = ""
+
+    @property
+    def places(self) -> tuple[list[Array], list[Array]]:
+        """All x and all y that are drawn."""
+        across = [curve.x for curve in self.curves] + [shade.x for shade in self.shades]
+        up = [curve.y for curve in self.curves] + [line for one in self.shades for line in (one.low, one.high)]
+        marked = np.array([(mark.x, mark.y) for mark in self.marks]).reshape(-1, 2)
+        return [*across, marked[:, 0]], [*up, marked[:, 1]]
 
     def at_moment(self, moment: int) -> "Panel":
         """Return the panel at one moment of its movement."""

@@ -9,7 +9,7 @@ from kurbel.arrays import Array
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
-from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Words
+from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Shade, Words
 from kurbel.report.shown import too_large
 from kurbel.solver.figures import Results, answered
 
@@ -18,6 +18,7 @@ FINENESS = 1 / 2000
 """By what of its height a line of points may miss a curve: less than can be seen on paper."""
 _WIDEST = 7.5  # degrees between two points at first: narrow enough that no wave hides between them
 _HALVINGS = 12
+ZERO = "0 at every angle"
 _JUMP = 1e-9  # of the height of a curve; a smaller step at a break is rounding
 
 Values = Callable[[Array, Array], Array]
@@ -78,10 +79,10 @@ def sampled(breaks: Array, values: Values) -> Sampled:
 
 
 class Source:
-    """The results of one cylinder, bearing or machine, in the units of a system."""
+    """The results of one cylinder, bearing or machine; angles: in degrees at which a mechanism is drawn, if any."""
 
-    def __init__(self, results: Any, options: PictureOptions) -> None:
-        self.results, self.options = results, options
+    def __init__(self, results: Any, angles: Sequence[float] | None) -> None:
+        self.results, self.angles = results, angles
         self.quantities: dict[str, Quantity] = {}
         self.key_values: dict[str, Quantity] = {}
         if isinstance(results, Results):  # others have no columns
@@ -115,66 +116,85 @@ class Source:
                 raise too_large(self.quantities[id])
         return found
 
+    def axis(self, id: str) -> Axis:
+        """Return the axis of a column."""
+        return Axis(self.words(id), self.quantities[id].kind)
+
     def words(self, id: str) -> Words:
-        """Return the symbol of a column."""
-        return words(self.quantities[id])
+        """Return the symbol of a column, or of a key value."""
+        quantity = self.quantities.get(id) or self.key_values[id]
+        return Words(quantity.symbol, quantity.ascii_symbol)
 
-    def unit(self, kind: str, *values: Any) -> str:
-        """Return the unit in which values in SI of one kind are shown together."""
-        return shown_unit(kind, self.options.system, max((float(np.max(np.abs(one))) for one in values), default=0.0))
-
-    def extremes(self, id: str) -> list[tuple[Quantity, Extreme]]:
-        """Return the key values that are the largest and the smallest value of a column, none of a level line."""
-        named = [self.key_values[name] for name in (f"{id}_max", f"{id}_min") if name in self.key_values]
-        found = [(quantity, answered(self.results.answering, quantity)) for quantity in named]
-        found = [(quantity, extreme) for quantity, extreme in found if isinstance(extreme, Extreme)]
+    def extremes(self, id: str) -> list[tuple[str, Extreme]]:
+        """Return the extremes of a column with the ids of these key values; none of a level line."""
+        named = [name for name in (f"{id}_max", f"{id}_min") if name in self.key_values]
+        found = [(name, answered(self.results.answering, self.key_values[name])) for name in named]
+        found = [(name, extreme) for name, extreme in found if isinstance(extreme, Extreme)]
         return found if len({extreme.value for _, extreme in found}) == len(found) else []
 
-    def axis(self, id: str, values: Array) -> Axis:
-        """Return the axis for values of a column in SI."""
-        return Axis(self.words(id), "deg" if id == PHI else self.unit(self.quantities[id].kind, values))
+    def mark(self, id: str, extreme: Extreme, x: float, y: float | None = None) -> Mark:
+        """Return an extreme, which is the key value of this id, at a place; y: its value, if none is given."""
+        figure = Figure(self.words(id), extreme.value, at_deg=extreme.degrees)
+        return Mark(x, extreme.value if y is None else y, figure)
 
     def panel(self, ids: Sequence[str], over: str = PHI, zero: bool = False) -> Panel:
         """Return a panel of columns of one kind over another column, with their extremes; zero: with the line y = 0."""
         samples = self.samples((over, *ids))
-        along, *lines = samples.values
-        kind, run = self.quantities[ids[0]].kind, self.axis(over, along)
-        unit, x = self.unit(kind, *lines), convert(along, self.quantities[over].kind, run.unit)
-        curves = [samples.curve(self.words(id), x, convert(line, kind, unit)) for id, line in zip(ids, lines)]
-        if zero:
-            curves.append(level(x))
-        marks = [mark for id in ids for mark in self.marks(id, unit, over, run.unit)]
-        name = Words(*(", ".join(symbols) for symbols in zip(*map(self.words, ids))))
-        title = "" if np.any(lines) else "0 at every angle"
-        return Panel(run, Axis(name, unit), tuple(curves), marks=tuple(marks), title=title)
+        x, *lines = samples.values
+        curves = [samples.curve(self.words(id), x, line) for id, line in zip(ids, lines)]
+        curves += [level(x)] if zero else []
+        marks = []
+        for name, extreme in (one for id in ids for one in self.extremes(id)):
+            at = np.array([extreme.degrees])
+            marks.append(self.mark(name, extreme, float(self.values((over,), at, at)[0, 0])))
+        every = Words(*(", ".join(symbols) for symbols in zip(*map(self.words, ids))))
+        y = self.axis(ids[0])._replace(name=every)
+        return Panel(self.axis(over), y, tuple(curves), marks=tuple(marks), title="" if np.any(lines) else ZERO)
 
     def panels(self, *groups: tuple[str, ...], over: str = PHI) -> Iterator[Panel]:
         """Yield a panel for each group of columns of one kind, as far as there are any."""
-        if over == PHI or self.having((over,)):
-            for group in groups:
-                if ids := self.having(group):
-                    yield self.panel(ids, over)
-
-    def marks(self, id: str, unit: str, over: str = PHI, over_unit: str = "deg") -> Iterable[Mark]:
-        """Yield the extremes of a column as marks at their exact place."""
-        for quantity, extreme in self.extremes(id):
-            at = np.array([extreme.degrees])
-            ((place,),) = self.values((over,), at, at)
-            yield mark(quantity, extreme, unit, float(convert(place, self.quantities[over].kind, over_unit)))
-
-
-def mark(quantity: Quantity, extreme: Extreme, unit: str, x: float, y: float | None = None) -> Mark:
-    """Return an extreme at a place in the units of the axes; y: its value, where none is given."""
-    value = float(convert(extreme.value, quantity.kind, unit))
-    figure = Figure(words(quantity), value, quantity.marked(unit), extreme.degrees)
-    return Mark(x, value if y is None else y, figure)
-
-
-def words(quantity: Quantity) -> Words:
-    """Return the symbol of a quantity as pictures show it."""
-    return Words(quantity.symbol, quantity.ascii_symbol)
+        if self.having((over,)) or over == PHI:
+            yield from (self.panel(ids, over) for group in groups if (ids := self.having(group)))
 
 
 def level(x: Array, height: float = 0.0, name: Words = Words("")) -> Curve:  # noqa: B008 (immutable)
     """Return a faint level line as far as x (n,) reaches."""
-    return Curve(name, np.array([x.min(), x.max()]), np.full(2, height), "faint")
+    return Curve(name, np.array([np.nanmin(x), np.nanmax(x)]), np.full(2, height), "faint")
+
+
+def in_units(panel: Panel, system: str) -> Panel:
+    """Return a panel, which is in SI, in the units of a system: one for each axis, and one for the works in shades."""
+    across, up = panel.places
+    if panel.equal:
+        across = up = [*across, *up]
+    x_unit, y_unit = _unit(panel.x.kind, system, across), _unit(panel.y.kind, system, up)
+    works = [np.array([shade.figure.value]) for shade in panel.shades if shade.figure]
+    energy = _unit("energy", system, works)
+
+    def run(values: Any) -> Any:
+        return convert(values, panel.x.kind, x_unit)
+
+    def rise(values: Any) -> Any:
+        return convert(values, panel.y.kind, y_unit)
+
+    def shown(figure: Figure, kind: str, unit: str, mark: str = "") -> Figure:
+        value = None if figure.value is None else float(convert(figure.value, kind, unit))
+        return figure._replace(value=value, unit=f"{unit} {mark}".rstrip())
+
+    curves = tuple(one._replace(x=run(one.x), y=rise(one.y)) for one in panel.curves)
+    shades = tuple(
+        Shade(run(x), rise(low), rise(high), gain, figure and shown(figure, "energy", energy))
+        for x, low, high, gain, figure in panel.shades
+    )
+    marks = tuple(
+        Mark(float(run(x)), float(rise(y)), shown(figure, panel.y.kind, y_unit, panel.y.mark))
+        for x, y, figure in panel.marks
+    )
+    axes = panel.x._replace(unit=x_unit), panel.y._replace(unit=f"{y_unit} {panel.y.mark}".rstrip())
+    return Panel(*axes, curves, shades, marks, panel.equal, panel.plain, panel.title)
+
+
+def _unit(kind: str, system: str, values: Sequence[Array]) -> str:
+    """Return the unit in which values in SI of one kind are shown together."""
+    largest = max((float(np.nanmax(np.abs(one))) for one in values if one.size), default=0.0)
+    return shown_unit(kind, system, largest) if kind else ""

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -12,7 +11,6 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.shaft import SHAFT_PARTS
-from kurbel.declared.unit_systems import convert
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.near_words import did_you_mean
@@ -20,7 +18,7 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.report.alike import together
 from kurbel.report.mechanism_picture import mechanism
 from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Picture, Shade, Words
-from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, level, mark, words
+from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, in_units, level
 from kurbel.report.tables import cylinder_meant
 from kurbel.solver.case import Case
 from kurbel.solver.gas import PistonGas
@@ -34,23 +32,15 @@ _HIGHEST = 12
 _MODES = 4
 _LONGEST_NAME = 14
 _FRAMES = {"load_throw": "throw: outward →", "load_engine": "engine: stroke line →", "load_rod": "rod: its line →"}
+_PARTS = "left: gas, weight, friction; right: inertia"
 _SENSES = "left: circles with the rotation, right: against it"
 
 # one cylinder
 
 
-def motion(source: Source) -> Iterator[Panel]:
-    """Yield displacement, velocity and acceleration of the output, or its angle with its derivatives."""
-    return source.panels(("x",), ("c",), ("b",), ("theta",), ("theta_dot",), ("theta_ddot",))
-
-
-def motion_over_stroke(source: Source) -> Iterator[Panel]:
-    """Yield velocity and acceleration over the displacement."""
-    return source.panels(("c",), ("b",), over="x")
-
-
 def piston_force(source: Source) -> Iterator[Panel]:
-    """Yield the force without inertia against the inertia line, what remains between them shaded, and that alone."""
+    """Force P_0 of gas, weight and resistance against the line of the inertia forces over the crank angle; what is
+    between them is the piston force P, shown alone below. It changes sign where both lines cross."""
     if not source.having(("P",)):
         return
     reversals = source.results.phi_reversal or ()
@@ -58,7 +48,7 @@ def piston_force(source: Source) -> Iterator[Panel]:
     if len(ids) == 2:
         panel = _remaining_force(source, source.samples((PHI, *ids), reversals), PHI)
         at = np.array(reversals)
-        heights = -convert(source.values(ids, at, at)[1], "force", panel.y.unit)
+        heights = -source.values(ids, at, at)[1]
         yield panel._replace(marks=tuple(map(_reversal, reversals, heights.tolist())))
     panel = source.panel(("P",), zero=True)
     yield panel._replace(marks=(*panel.marks, *(_reversal(angle, 0.0) for angle in reversals)))
@@ -70,14 +60,11 @@ def _reversal(angle: float, height: float) -> Mark:
 
 def _remaining_force(source: Source, samples: Sampled, over: str) -> Panel:
     """Return a panel of a force and the inertia line, or the line of no force, with what is between them shaded."""
-    along, *found = samples.values
-    unit, run = source.unit("force", *found), source.axis(over, along)
-    x = convert(along, source.quantities[over].kind, run.unit)
-    force, *inertia = (convert(line, "force", unit) for line in found)
+    x, force, *inertia = samples.values
     base = -inertia[0] if inertia else np.zeros_like(x)
     curves = [samples.curve(Words("P_0" if inertia else "P"), x, force)]
     curves += [samples.curve(Words("−P_b"), x, base)] if inertia else []
-    return Panel(run, Axis(Words("P"), unit), (*curves, level(x)), tuple(between(x, base, force)))
+    return Panel(source.axis(over), source.axis("P"), (*curves, level(x)), tuple(between(x, base, force)))
 
 
 def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
@@ -93,18 +80,14 @@ def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
 
 
 def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
-    """Yield the same over the displacement, one panel for each stroke."""
-    drive = source.results.drive
+    """The same over the displacement of the piston, stroke by stroke (R Abb. 1055)."""
+    results, drive = source.results, source.results.drive
     if len(source.having(("P", "x"))) < 2 or drive.mechanism.turns:
         return
     parts = source.having(("P_start", "P_inertia"))
     ids = ("x", *(parts if len(parts) == 2 else ("P",)))
     cycle, (inner, outer) = drive.cycle, drive.mechanism.dead_centres()
-    angles = [
-        angle + turn
-        for angle in (*source.results.breaks, *(source.results.phi_reversal or ()))
-        for turn in (0.0, cycle)
-    ]
+    bends = [angle + turn for angle in (*results.breaks, *(results.phi_reversal or ())) for turn in (0.0, cycle)]
 
     def values(degrees: Array, within: Array) -> Array:
         turned = cycle * np.floor(within / cycle)  # the end of the cycle is not its beginning
@@ -112,19 +95,29 @@ def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
 
     ends = sorted({(end + turn) % cycle for turn in range(0, int(cycle), 360) for end in (inner, outer)})
     for start, end in pairwise((*ends, ends[0] + cycle)):
-        breaks = np.array(sorted({start, *(angle for angle in angles if start < angle < end), end}))
+        breaks = np.array(sorted({start, *(angle for angle in bends if start < angle < end), end}))
         panel = _remaining_force(source, source.samples(ids, values=values, breaks=breaks), "x")
         name = "Outstroke" if math.cos(math.radians(start - inner)) > 1 - 1e-9 else "Return stroke"
         yield panel._replace(title=f"{name} {start:.4g}–{end:.4g}°")
 
 
-def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
-    """Yield the indicator card of every piston, both its ends, over the stroke or over the volume of each chamber."""
-    return (_card(source, gas, over_volume) for gas in source.results.drive.gas)
+def cards(source: Source) -> Iterator[Panel]:
+    """Pressure at both ends of the pistons over the displacement from the inner dead centre (R Abb. 1051)."""
+    for number, gas in enumerate(source.results.drive.gas):
+        panel = _card(source, gas, over_volume=False)
+        if number == 0 and (highest := source.results.p_max):
+            at = float(source.results.at(np.array([highest.degrees])).way[0])
+            panel = panel._replace(marks=(source.mark("p_max", highest, at),))
+        yield panel
+
+
+def cards_over_volume(source: Source) -> Iterator[Panel]:
+    """Pressure over the volume swept in each chamber, with the clearance where that is known."""
+    return (_card(source, gas, over_volume=True) for gas in source.results.drive.gas)
 
 
 def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
-    pistons = source.results.drive.cylinder.pistons
+    """Return the pressures of both ends of a piston over its displacement, or over the volume of each chamber."""
     ends = [(id, end) for id, end in (("p_head", gas.head), ("p_crank", gas.crank)) if end]
 
     def values(degrees: Array, within: Array) -> Array:
@@ -133,19 +126,12 @@ def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
 
     samples = source.samples(("x", *(id for id, _ in ends)), values=values)
     way, *pressures = samples.values
-    unit, kind = source.unit("pressure", *pressures), "volume" if over_volume else "length"
     places = [_volume(gas, id, way) if over_volume else way for id, _ in ends]
-    run = source.unit(kind, *places)
-    lines = [(convert(x, kind, run), convert(p, "pressure", unit)) for x, p in zip(places, pressures)]
-    curves = [samples.curve(source.words(id), x, p) for (id, _), (x, p) in zip(ends, lines)]
-    ambient = level(np.concatenate([x for x, _ in lines]), float(convert(gas.base, "pressure", unit)))
-    marks = []
-    if not over_volume and gas.piston is pistons[0] and (highest := source.results.p_max):
-        at = float(source.results.at(np.array([highest.degrees])).way[0])
-        marks.append(mark(source.key_values["p_max"], highest, unit, float(convert(at, "length", run))))
-    x, y = Axis(Words("V") if over_volume else source.words("x"), run), f"{unit} abs" if gas.absolute else unit
-    title = gas.piston.name if len(pistons) > 1 else ""
-    return Panel(x, Axis(Words("p"), y), (*curves, ambient), marks=tuple(marks), title=title)
+    curves = [samples.curve(source.words(id), x, p) for (id, _), x, p in zip(ends, places, pressures)]
+    x = Axis(Words("V"), "volume") if over_volume else source.axis("x")
+    y = Axis(Words("p"), "pressure", mark="abs" if gas.absolute else "")
+    title = gas.piston.name if len(source.results.drive.gas) > 1 else ""
+    return Panel(x, y, (*curves, level(np.concatenate(places), gas.base)), title=title)
 
 
 def _volume(gas: PistonGas, end: str, way: Array) -> Array:
@@ -158,7 +144,7 @@ def _volume(gas: PistonGas, end: str, way: Array) -> Array:
 
 
 def forces(source: Source) -> Iterator[Panel]:
-    """Yield the forces in the rod, on the guide and on the pin, and what else the mechanism offers, kind by kind."""
+    """Forces in the rod, on the guide and at the crank pin over the crank angle (R Abb. 1061, 1062)."""
     offered = [one.quantity.id for one in source.results.drive.mechanism.OFFERS if one.quantity.commands == ("forces",)]
     found = source.having(("S", "N", "D", "T", "M_out", *offered))
     for kind in dict.fromkeys(source.quantities[id].kind for id in found):
@@ -166,7 +152,7 @@ def forces(source: Source) -> Iterator[Panel]:
 
 
 def polar_effort(source: Source) -> Iterator[Panel]:
-    """Yield T drawn outward from the crank circle, which represents zero, R Abb. 1063."""
+    """Tangential force T drawn outward from the circle of the crank pin (R Abb. 1063)."""
     if not source.having(("T",)):
         return
     (force,) = source.samples(("T",)).values
@@ -184,51 +170,54 @@ def polar_effort(source: Source) -> Iterator[Panel]:
     for angle in range(0, 360, 90):
         spoke = np.array([base, 1.04 * (base + size)]) * np.exp(1j * np.radians(angle))
         rings.append((Words(f"φ = {angle}°", f"phi = {angle}"), spoke))
-    unit = source.unit("force", force)
     samples = source.samples(("T", "T"), values=tip)
-    curves = [samples.curve(source.words("T"), *convert(samples.values, "force", unit))]
-    for name, places in rings:
-        x, y = convert(np.stack([places.real, places.imag]), "force", unit)
-        curves.append(Curve(name, x, y, "faint"))
+    curve = samples.curve(source.words("T"), *samples.values)
+    faint = [Curve(name, places.real, places.imag, "faint") for name, places in rings]
     marks = []
-    for quantity, extreme in source.extremes("T"):
+    for id, extreme in source.extremes("T"):
         at = np.array([extreme.degrees])
-        marks.append(mark(quantity, extreme, unit, *convert(tip(at, at)[:, 0], "force", unit).tolist()))
-    axis = Axis(Words(""), unit)
-    yield Panel(axis, axis, tuple(curves), marks=tuple(marks), equal=True, plain=True)
+        marks.append(source.mark(id, extreme, *tip(at, at)[:, 0].tolist()))
+    axis = Axis(Words(""), "force")
+    yield Panel(axis, axis, (curve, *faint), marks=tuple(marks), equal=True, plain=True)
+
+
+def motion(source: Source) -> Iterator[Panel]:
+    """Displacement, velocity and acceleration over the crank angle (R Abb. 1047 to 1050)."""
+    return source.panels(("x",), ("c",), ("b",), ("theta",), ("theta_dot",), ("theta_ddot",))
+
+
+def motion_over_stroke(source: Source) -> Iterator[Panel]:
+    """Velocity and acceleration over the displacement (R Abb. 1049, 1050)."""
+    return source.panels(("c",), ("b",), over="x")
 
 
 # the whole machine
 
 
 def effort(source: Source) -> Iterator[Panel]:
-    """Yield the turning effort with the resistance, its lobes numbered with their work, then excess work and speed."""
-    yield _effort_and_load(source)
-    for id, mean in (("E", None), ("omega", "omega_mean"), ("M_coupling", "M_mean")):
-        if source.having((id,)):
-            panel = source.panel((id,))
-            if mean:
-                height = convert(getattr(source.results, mean), source.quantities[id].kind, panel.y.unit)
-                line = level(panel.curves[0].x, float(height), words(source.key_values[mean]))
-                panel = panel._replace(curves=(*panel.curves, line))
-            yield panel
-
-
-def _effort_and_load(source: Source) -> Panel:
+    """Turning effort of the whole machine and the resistance, its lobes numbered with their work; below them the excess
+    work and the speed (R Abb. 1064 to 1067)."""
     results = source.results
     at_crank = bool(source.having(("T",)))
-    id, kind, radius = ("T", "force", results.crank) if at_crank else ("M", "torque", 1.0)
+    id, radius = ("T", results.crank) if at_crank else ("M", 1.0)
     samples = source.samples((PHI, id, "M_load"), results.phi_crossing)
-    x, effort, load = samples.values
-    unit = source.unit(kind, effort)
-    line, base = convert(effort, kind, unit), convert(load / radius, kind, unit)
+    x, line, load = samples.values
+    base = load / radius
     level_load = results.machine.load is None or results.machine.load.diagram is None
-    name = Words("W") if at_crank else Words("M_m" if level_load else "M_W")
-    resistance = samples.curve(name, x, base)._replace(kind="faint" if level_load else "line")
+    resistance = samples.curve(Words("W" if at_crank else "M_m" if level_load else "M_W"), x, base)
+    curves = samples.curve(source.words(id), x, line), resistance._replace(kind="faint" if level_load else "line")
+    marks = tuple(source.mark(name, extreme, extreme.degrees) for name, extreme in source.extremes(id))
     shades = tuple(_numbered(source, list(between(x, base, line))))
-    curves = (samples.curve(source.words(id), x, line), resistance)
-    marks = tuple(source.marks(id, unit))
-    return Panel(Axis(source.words(PHI), "deg"), Axis(source.words(id), unit), curves, shades, marks)
+    yield Panel(source.axis(PHI), source.axis(id), curves, shades, marks)
+    for id, mean, height in (
+        ("E", "", 0.0),
+        ("omega", "omega_mean", results.omega_mean),
+        ("M_coupling", "M_mean", results.M_mean),
+    ):
+        if source.having((id,)):
+            panel = source.panel((id,))
+            line_ = (level(panel.curves[0].x, height, source.words(mean)),) if mean else ()
+            yield panel._replace(curves=(*panel.curves, *line_))
 
 
 def _numbered(source: Source, shades: list[Shade]) -> Iterator[Shade]:
@@ -237,54 +226,53 @@ def _numbered(source: Source, shades: list[Shade]) -> Iterator[Shade]:
     if not 0 < len(lobes) <= _MOST_NUMBERED:
         yield from shades
         return
-    unit = source.unit("energy", lobes)
     owners = [int(np.searchsorted(crossings, (one.x[0] + one.x[-1]) / 2) - 1) % len(lobes) for one in shades]
     for shade, owner in zip(shades, owners):
         widest = max(other.x[-1] - other.x[0] for other, one in zip(shades, owners) if one == owner)
-        work = Figure(Words(f"A_{owner + 1}"), float(convert(lobes[owner], "energy", unit)), unit)
+        work = Figure(Words(f"A_{owner + 1}"), lobes[owner])
         yield shade._replace(figure=work) if shade.x[-1] - shade.x[0] == widest else shade
 
 
+def throw_stress(source: Source) -> Iterator[Panel]:
+    """Largest combined stress of each part of the crank throw over the cycle."""
+    return source.panels(tuple(f"sigma_{part}" for part in SHAFT_PARTS))
+
+
 def torque_orders(source: Source) -> Iterator[Panel]:
-    """Yield the amplitudes of the torque by order, of gas and of inertia apart where both are known."""
+    """Amplitudes of the turning effort by order, periods per turn of the shaft."""
     found, drawn = source.results.machine, source.results.orders <= _HIGHEST
-    orders = source.results.orders[drawn].tolist()
-    yield _bars(source, orders, [np.abs(found.whole.amplitudes)[drawn]], "|M_ν|", "torque", "all")
+    orders = source.results.orders[drawn]
+    yield _bars(orders, [np.abs(found.whole.amplitudes)[drawn]], Axis(Words("|M_ν|"), "torque", low=0.0), "all")
     if found.inertia is not None:
         parts = [np.abs(one.amplitudes)[drawn] for one in (found.gas, found.inertia)]
-        yield _bars(source, orders, parts, "|M_ν|", "torque", "left: gas, weight, friction; right: inertia")
+        yield _bars(orders, parts, Axis(Words("|M_ν|"), "torque", low=0.0), _PARTS)
 
 
 def unbalanced_orders(source: Source) -> Iterator[Panel]:
-    """Yield the circles that make up the unbalanced force and moment, order by order."""
+    """The circles of each order, with the rotation and against it."""
     if source.having(("F_x",)):
         omega, free = source.results.omega, source.results.free
         for name, kind, vector in (("F", "force", free.force), ("M", "torque", free.moment)):
             if vector is not None and free.orders:
-                sizes = [[abs(vector.of(sense * n)) * omega * omega for n in free.orders] for sense in (1, -1)]
-                yield _bars(source, free.orders, sizes, name, kind, _SENSES)
+                sizes = [np.array([abs(vector.of(sense * n)) for n in free.orders]) * omega**2 for sense in (1, -1)]
+                yield _bars(free.orders, sizes, Axis(Words(name), kind, low=0.0), _SENSES)
 
 
-def _bars(source: Source, orders: Sequence[float], sizes: Sequence[Any], name: str, kind: str, title: str) -> Panel:
-    """Return one or two rows of sizes in SI as bars over orders, next to each other."""
-    unit, wide = source.unit(kind, np.array(sizes)), 0.76 / len(sizes)
+def _bars(orders: Sequence[float], sizes: Sequence[Array], y: Axis, title: str) -> Panel:
+    """Return one or two rows of sizes as bars over orders, next to each other."""
+    wide = 0.76 / len(sizes)
     shades = []
     for number, row in enumerate(sizes):
-        for place, size in enumerate(convert(np.array(row), kind, unit)):
+        for place, size in enumerate(row):
             left = place - 0.38 + number * wide
             shades.append(Shade(np.array([left, left + wide]), np.zeros(2), np.full(2, size), number == 0))
     names = tuple(f"{order:g}" for order in orders)
-    x = Axis(Words("n"), "", low=-0.6, high=len(names) - 0.4, names=names)
-    return Panel(x, Axis(Words(name), unit, low=0.0), shades=tuple(shades), title=title)
-
-
-def throw_stress(source: Source) -> Iterator[Panel]:
-    """Yield the combined stress of each part of the crank throw."""
-    return source.panels(tuple(f"sigma_{part}" for part in SHAFT_PARTS))
+    x = Axis(Words("n"), low=-0.6, high=len(names) - 0.4, names=names)
+    return Panel(x, y, shades=tuple(shades), title=title)
 
 
 def shaft_modes(source: Source) -> Iterator[Panel]:
-    """Yield the angles by which the masses of the shaft line turn in its first modes, the largest of each as one."""
+    """Angles by which the masses of the shaft line turn in its first natural vibrations."""
     found, curves = source.results, []
     places = np.arange(float(len(found.line.masses)))
     for mode in range(1, min(_MODES, found.first + len(found.modes.omegas) - 1) + 1):
@@ -293,14 +281,14 @@ def shaft_modes(source: Source) -> Iterator[Panel]:
         curves.append(Curve(Words(f"{mode}: {frequency:.4g} Hz"), places, angles / np.abs(angles).max()))
     if curves:
         names = tuple(mass.name[:_LONGEST_NAME] for mass in found.line.masses)
-        yield Panel(Axis(Words(""), "", names=names), Axis(Words("θ"), ""), (*curves, level(places)))
+        yield Panel(Axis(Words(""), names=names), Axis(Words("θ")), (*curves, level(places)))
 
 
 # tips of vectors over the cycle
 
 
 def unbalanced_vectors(source: Source) -> Iterator[Panel]:
-    """Yield the locus of the unbalanced force, and of the unbalanced moment, over a turn."""
+    """Locus of the tip of the unbalanced force, and of the unbalanced moment, over one revolution."""
     results = source.results
     for ids, id, largest in (
         (("F_x", "F_y"), "F_free_max", results.F_free_max),
@@ -308,23 +296,24 @@ def unbalanced_vectors(source: Source) -> Iterator[Panel]:
     ):
         if source.having(ids) == ids:
             at = np.array([largest.degrees if largest else 0.0])
-            tip = source.values(ids, at, at)[:, 0]
-            x, y = map(source.words, ids)
-            yield _locus(source, source.samples(ids), (x, y, y), id, largest, tip)
+            marks = _largest(source, id, largest, source.values(ids, at, at)[:, 0])
+            samples = source.samples(ids)
+            curve = samples.curve(source.words(ids[1]), *samples.values)
+            yield Panel(source.axis(ids[0]), source.axis(ids[1]), (curve,), marks=marks, equal=True)
 
 
 def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
-    """Yield the unbalanced force and moment, and the rolling moment on the frame."""
+    """Unbalanced force, unbalanced moment and rolling moment on the frame over the crank angle."""
     return source.panels(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",))
 
 
 def polar_loads(source: Source) -> Iterator[Panel]:
-    """Yield the locus of a load in each frame, the direction from which its angle counts to the right."""
-    largest = {quantity.id: extreme for quantity, extreme in source.extremes("load")}.get("load_max")
+    """Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod."""
+    largest = dict(source.extremes("load")).get("load_max")
     for frame in source.having(_FRAMES):
 
         def tip(degrees: Array, within: Array, frame: str = frame) -> Array:
-            """Return the load (2, n) in N along and across that direction; a load of nothing has none."""
+            """Return the load (2, n) along and across the direction from which its angle counts; of 0 there is none."""
             load, angle = source.values(("load", frame), degrees, within)
             angle = np.radians(np.where(load > 0, np.nan_to_num(angle), 0.0))
             return np.stack([load * np.cos(angle), load * np.sin(angle)])
@@ -333,160 +322,57 @@ def polar_loads(source: Source) -> Iterator[Panel]:
         # at a jump the largest load is on one of its sides
         sides = tip(at, at + np.array([-1e-6, 1e-6]))
         side = int(np.argmin(np.abs(np.hypot(*sides) - (largest.value if largest else 0.0))))
-        samples, names = source.samples(("load", "load"), values=tip), (Words("F"), Words("F"), source.words("load"))
-        panel = _locus(source, samples, names, "load_max", largest, sides[:, side])
-        yield panel._replace(title=_FRAMES[frame])
+        samples, axis = source.samples(("load", "load"), values=tip), Axis(Words("F"), "force")
+        curve = samples.curve(source.words("load"), *samples.values)
+        marks = _largest(source, "load_max", largest, sides[:, side])
+        yield Panel(axis, axis, (curve,), marks=marks, equal=True, title=_FRAMES[frame])
 
 
-def _locus(
-    source: Source, samples: Sampled, names: tuple[Words, Words, Words], id: str, largest: Extreme | None, tip: Array
-) -> Panel:
-    """Return the locus of a tip (2, n); names: of both axes and of the curve; tip: where the largest, called id, is."""
-    quantity = source.key_values[id]
-    unit = source.unit(quantity.kind, *samples.values)
-    x, y = convert(samples.values, quantity.kind, unit)
-    found = [largest] if largest and largest.value else []
-    marks = tuple(mark(quantity, one, unit, *convert(tip, quantity.kind, unit).tolist()) for one in found)
-    axes = Axis(names[0], unit), Axis(names[1], unit)
-    return Panel(*axes, (samples.curve(names[2], x, y),), marks=marks, equal=True)
+def _largest(source: Source, id: str, largest: Extreme | None, tip: Array) -> tuple[Mark, ...]:
+    """Return the mark of the largest vector, whose tip (2,) is given; none where all are 0."""
+    return (source.mark(id, largest, *tip.tolist()),) if largest and largest.value else ()
 
 
 # which pictures there are
 
 
 class PictureKind(NamedTuple):
-    """A picture: its word, title and sentence, the command whose results it shows, and how its panels are made.
+    """A picture: its word and title, the command whose results it shows, and the function that yields its panels.
 
-    panels: yields them from a source, none where the machine lacks what they show; across: panels next to each other.
+    The docstring of that function says what is seen. It yields nothing where the machine lacks what the picture shows.
+    across: panels next to each other.
     """
 
     id: str
     title: str
-    text: str
     command: str
     panels: Callable[[Source], Iterable[Panel]]
     across: int = 1
 
+    @property
+    def text(self) -> str:
+        """The sentence that says what is seen."""
+        return " ".join((self.panels.__doc__ or "").split())
+
 
 PICTURES = (
-    PictureKind(
-        "piston-force",
-        "Piston force",
-        "Force P_0 of gas, weight and resistance against the line of the inertia forces over the crank angle; what is "
-        "between them is the piston force P, shown alone below. It changes sign where both lines cross.",
-        "forces",
-        piston_force,
-    ),
-    PictureKind(
-        "piston-force-way",
-        "Piston force over the stroke",
-        "The same over the displacement of the piston, stroke by stroke (R Abb. 1055).",
-        "forces",
-        piston_force_over_stroke,
-    ),
-    PictureKind(
-        "card",
-        "Indicator diagram",
-        "Pressure at both ends of the pistons over the displacement from the inner dead centre (R Abb. 1051).",
-        "forces",
-        cards,
-    ),
-    PictureKind(
-        "card-volume",
-        "Indicator diagram over the volume",
-        "Pressure over the volume swept in each chamber, with the clearance where that is known.",
-        "forces",
-        partial(cards, over_volume=True),
-    ),
-    PictureKind(
-        "forces",
-        "Forces in the crank train",
-        "Forces in the rod, on the guide and at the crank pin over the crank angle (R Abb. 1061, 1062).",
-        "forces",
-        forces,
-    ),
-    PictureKind(
-        "effort-polar",
-        "Tangential force in polar form",
-        "Tangential force T drawn outward from the circle of the crank pin (R Abb. 1063).",
-        "forces",
-        polar_effort,
-    ),
-    PictureKind(
-        "effort",
-        "Turning effort",
-        "Turning effort of the whole machine and the resistance, its lobes numbered with their work; below them the "
-        "excess work and the speed (R Abb. 1064 to 1067).",
-        "flywheel",
-        effort,
-    ),
-    PictureKind(
-        "throw-stress",
-        "Stress of the crankshaft",
-        "Largest combined stress of each part of the crank throw over the cycle.",
-        "stress",
-        throw_stress,
-    ),
-    PictureKind(
-        "bearing-loads",
-        "Bearing loads in polar form",
-        "Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod.",
-        "bearings",
-        polar_loads,
-        across=2,
-    ),
-    PictureKind(
-        "orders",
-        "Turning effort by order",
-        "Amplitudes of the turning effort by order, periods per turn of the shaft.",
-        "harmonics",
-        torque_orders,
-    ),
-    PictureKind(
-        "modes",
-        "Natural modes of the shaft",
-        "Angles by which the masses of the shaft line turn in its first natural vibrations.",
-        "torsion",
-        shaft_modes,
-    ),
-    PictureKind(
-        "free-vectors",
-        "Unbalanced force and moment",
-        "Locus of the tip of the unbalanced force, and of the unbalanced moment, over one revolution.",
-        "balance",
-        unbalanced_vectors,
-    ),
-    PictureKind(
-        "free-angle",
-        "Unbalanced force and moment over the crank angle",
-        "Unbalanced force, unbalanced moment and rolling moment on the frame over the crank angle.",
-        "balance",
-        unbalanced_over_angle,
-    ),
-    PictureKind(
-        "free-orders",
-        "Unbalanced force and moment by order",
-        "The circles of each order, with the rotation and against it.",
-        "balance",
-        unbalanced_orders,
-    ),
-    PictureKind(
-        "motion",
-        "Displacement, velocity, acceleration",
-        "Displacement, velocity and acceleration over the crank angle (R Abb. 1047 to 1050).",
-        "motion",
-        motion,
-    ),
-    PictureKind(
-        "motion-way",
-        "Velocity and acceleration over the stroke",
-        "Velocity and acceleration over the displacement (R Abb. 1049, 1050).",
-        "motion",
-        motion_over_stroke,
-    ),
-    PictureKind(
-        "mechanism", "Mechanism", "The mechanism to scale, with the forces on it.", "motion", mechanism, across=2
-    ),
+    PictureKind("piston-force", "Piston force", "forces", piston_force),
+    PictureKind("piston-force-way", "Piston force over the stroke", "forces", piston_force_over_stroke),
+    PictureKind("card", "Indicator diagram", "forces", cards),
+    PictureKind("card-volume", "Indicator diagram over the volume", "forces", cards_over_volume),
+    PictureKind("forces", "Forces in the crank train", "forces", forces),
+    PictureKind("effort-polar", "Tangential force in polar form", "forces", polar_effort),
+    PictureKind("effort", "Turning effort", "flywheel", effort),
+    PictureKind("throw-stress", "Stress of the crankshaft", "stress", throw_stress),
+    PictureKind("bearing-loads", "Bearing loads in polar form", "bearings", polar_loads, across=2),
+    PictureKind("orders", "Turning effort by order", "harmonics", torque_orders),
+    PictureKind("modes", "Natural modes of the shaft", "torsion", shaft_modes),
+    PictureKind("free-vectors", "Unbalanced force and moment", "balance", unbalanced_vectors),
+    PictureKind("free-angle", "Unbalanced force and moment over the crank angle", "balance", unbalanced_over_angle),
+    PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
+    PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
+    PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
+    PictureKind("mechanism", "Mechanism", "motion", mechanism, across=2),
 )
 """The pictures, the one that says most of a machine first."""
 
@@ -564,7 +450,7 @@ def _cylinder_names(case: Case) -> tuple[str, ...]:
 def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator[Picture]:
     with np.errstate(all="ignore"):
         for source, name in _sources(case, kind, options):
-            if panels := tuple(kind.panels(source)):
+            if panels := tuple(in_units(panel, options.system) for panel in kind.panels(source)):
                 across = min(kind.across, len(panels))
                 yield Picture(kind.id, kind.title, kind.text, panels, case.machine.name, name, across)
 
@@ -573,16 +459,16 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
     """Yield what a picture is drawn from, each with the name of its cylinder or bearing; equal ones are drawn once."""
     command = kind.command
     if command in _OF_MACHINE:
-        yield Source(_OF_MACHINE[command](case), options), ""
+        yield Source(_OF_MACHINE[command](case), options.angles), ""
     elif command == "bearings":
-        yield from ((Source(part, options), part.name) for part in case.bearings.parts)
+        yield from ((Source(part, options.angles), part.name) for part in case.bearings.parts)
     else:
         wanted = [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
         for equal in gathered(wanted, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
             if command == "forces":
                 equal[0].refuse_locking()
             names = together([one.drive.name for one in equal]) if len(case.cylinders) > 1 else ""
-            yield Source(equal[0], options), names
+            yield Source(equal[0], options.angles), names
 
 
 _OF_MACHINE: dict[str, Callable[[Case], Any]] = {
