@@ -20,7 +20,7 @@ NEEDLESS = (
     (["--help"], ("cli.table", "cli.output_options", "render", "report", "declared")),
     (["example"], ("report.check", "machine", "mechanisms", "declared.quantities")),
     (["table"], ("mechanisms", "declared.quantities", "declared.units", "declared.keys", "machine", "solver")),
-    (["forces", WATERWORKS, "-f", "csv"], ("report.notes", "report.guide", "solver.stress", "solver.torsion")),
+    (["forces", WATERWORKS, "-f", "csv"], ("solver.stress", "solver.torsion")),
     (["balance", WATERWORKS], ("solver.stress", "solver.torsion")),
 )
 

@@ -9,8 +9,8 @@ from kurbel.arrays import Array
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
+from kurbel.report.frame import too_large
 from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Shade, Words
-from kurbel.report.shown import too_large
 from kurbel.solver.figures import Results, answered
 
 PHI = "phi"
