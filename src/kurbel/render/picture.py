@@ -221,7 +221,7 @@ class PanelFrame:
         found = [self._nearest(symbol(one.name, self.look), *self.place(one.x[-1], one.y[-1])) for one in faint]
         found += self._names(panel, tracks) if named else []
         for mark, (x, y) in list(zip(panel.marks, points))[:_MOST_MARKED]:
-            found.append(self._nearest(figure_text(mark.figure, self.look), x, y))
+            found.append(self._nearest(figure_text(mark.figure, self.look), x, y, led=True))
         found += self._figures()
         return [label for label in found if label]
 
@@ -235,7 +235,7 @@ class PanelFrame:
             others = np.concatenate([track for other, _, track in lines if other is not curve])
             best = own[np.abs(own[:, None] - others).min(axis=1).round(6).argmax()]
             label = self._nearest(symbol(curve.name, self.look), best.real, best.imag)
-            yield label and label._replace(look=look, far=False)
+            yield label and label._replace(look=look)
 
     def _figures(self) -> Iterator[Label | None]:
         """Yield what is written into shades: their figures, or the names alone where not each figure has the room."""
@@ -263,8 +263,11 @@ class PanelFrame:
         inside = (row >= 0) & (row < grid.shape[0]) & (column >= 0) & (column < grid.shape[1])
         grid[row[inside], column[inside]] = 1
 
-    def _nearest(self, text: str, x: float, y: float) -> Label | None:
-        """Return a label for a place on the nearest ground that no label has and no curve crosses, if there is such."""
+    def _nearest(self, text: str, x: float, y: float, led: bool = False) -> Label | None:
+        """Return a label for a place on the nearest ground that no label has and no curve crosses, if there is such.
+
+        led: a line leads to it where it is far.
+        """
         wide, tall, grain = width(text) * self.medium.letter, self.medium.line, self.medium.grain
         rows, columns = math.ceil(tall / grain[1]), math.ceil(wide / grain[0])
         if rows > self._taken.shape[0] or columns > self._taken.shape[1]:
@@ -282,7 +285,7 @@ class PanelFrame:
         self._taken[row : row + rows, max(column - 1, 0) : column + columns + 1] = 1
         start, height = float(left[column]), float(top[row, 0])
         end = min(max(x, start), start + wide), min(max(y, height), height + tall)
-        far = math.hypot(end[0] - x, end[1] - y) > 1.2 * tall
+        far = led and math.hypot(end[0] - x, end[1] - y) > 1.2 * tall
         return Label(text, start, start + wide, height, (x, y), end, far)
 
 
