@@ -25,7 +25,7 @@ from kurbel.render import Look
 if TYPE_CHECKING:
     from kurbel.accuracy.inexact import Difference
     from kurbel.machine import Machine
-    from kurbel.report.pictures import Declared
+    from kurbel.report.pictures import PictureKind
 
 _PATIENCE = 1.0
 """Seconds after which a terminal is told what is being done."""
@@ -149,11 +149,11 @@ def plot(
 
     Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked where they stand. Without -o
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
-    and pdf need matplotlib. FILE may be - for standard input.
+    and pdf need typst. FILE may be - for standard input.
     """
-    from kurbel.render.pictures.drawing import check_file, draw_file, draw_stdout
+    from kurbel.render.drawing import check_file, draw_file, draw_stdout
+    from kurbel.report.picture_source import PictureOptions
     from kurbel.report.pictures import PICTURES, pictures, pictures_of
-    from kurbel.report.pictures.source import FILE, TERMINAL, Wish
     from kurbel.solver.case import Case
 
     if listed and file_name is not None:
@@ -167,19 +167,19 @@ def plot(
     if to_file:
         check_file(file_name or "")
     case = Case(loaded(file, case_name, overrides, file_name))
-    wish = Wish(units or "metric", FILE if to_file else TERMINAL, cylinder, angles)
+    options = PictureOptions(units or "metric", cylinder, angles)
     if listed:
-        _write_list(pictures_of(case, wish))
+        _write_list(pictures_of(case, options))
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
-    drawn = pictures(case, names, wish)
+    drawn = pictures(case, names, options)
     if to_file:
         draw_file(list(drawn), look, file_name or "")
     else:
         draw_stdout(drawn, look)
 
 
-def _write_list(declared: "tuple[Declared, ...]") -> None:
+def _write_list(declared: "tuple[PictureKind, ...]") -> None:
     from kurbel.render.page import write_entries
 
     write_entries([(one.id, f"{one.title}. {one.text}") for one in declared])
@@ -212,7 +212,7 @@ def accuracy(
         raise click.UsageError("--case and --set are values over those of FILE; give the FILE.")
     if extremes:
         return _extremes(file, picture, output)
-    from kurbel.render.pictures.drawing import check_file, draw_file
+    from kurbel.render.drawing import check_file, draw_file
 
     if picture is not None:
         check_file(picture, "--plot")
@@ -223,7 +223,7 @@ def accuracy(
     report = accuracy_report(machine, quick, loads, _uncertain(machine))
     output.write(report)
     if picture is not None:
-        from kurbel.report.pictures.accuracy import accuracy_picture
+        from kurbel.report.accuracy_picture import accuracy_picture
 
         draw_file([accuracy_picture(report)], output.look, picture)
     return 0
