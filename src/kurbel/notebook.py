@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Case(solved.Case):
-    """A machine with its results; machine: one, or the path or the text of a machine file, as `load` and `loads` take."""
+    """A machine with its results; machine: one, or the path or the text of a machine file."""
 
     def __init__(self, machine: Machine | str | os.PathLike[str], count: int | None = None) -> None:
         super().__init__(machine_of(machine), count)

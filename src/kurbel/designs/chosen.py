@@ -135,7 +135,7 @@ def unbettered(rows: Iterable[Row], aims: Sequence[Aim]) -> Iterator[Row]:
 def _front(costs: Array) -> Indices:
     """Return which rows of costs (n, aims), in the order of the first, then the next, no other one betters."""
     if costs.shape[1] == 2:
-        first, second = costs.T
+        second = costs[:, 1]
         before = np.concatenate(([np.inf], np.minimum.accumulate(second)[:-1]))
         # one as good as the best before it is bettered by that, unless both are equal
         alike = np.concatenate(([False], (np.diff(costs, axis=0) == 0).all(axis=1)))

@@ -27,7 +27,7 @@ class Drawn(Record):
 
     length: float = field(
         _OnPaper("length", above=0),
-        "Length of the card on the paper; its points are in mm, or in inches as it",
+        "Length of the card on the paper",
         "l",
         required=True,
     )

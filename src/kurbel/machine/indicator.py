@@ -68,8 +68,8 @@ class Card(Record):
     )
     _drawn = alternative(
         Drawn,
-        "The paper of the card: all points are then millimetres or, with a length in inches, inches, from the card's own dead centre and from the "
-        "atmospheric line",
+        "The paper of the card: all points are then millimetres, or inches where its length is, from the card's own "
+        "dead centre and from the atmospheric line",
         instead="unit",
         key="drawn",
     )
@@ -250,9 +250,7 @@ _CHAMBER = Keyed(
         "diesel": RecordForm(Diesel),
     },
     otherwise=RecordForm(Card),
-    texts={
-        "mean_pressure": "Indicated mean pressure, in place of a card: work and power hold, forces over the angle do not"
-    },
+    texts={"mean_pressure": "Indicated mean pressure in place of a card: work and power hold, forces do not"},
 )
 _ONE_PRESSURE = Rectangular("level")
 
