@@ -1,13 +1,14 @@
 """The reports of `kurbel bearings` and `kurbel stress`: the loads on pins and bearings, and stresses in the shaft."""
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from kurbel.declared.factors import PHI
 from kurbel.declared.shaft import STRESSES
-from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
+from kurbel.report.alike import equal_loads, grouped
+from kurbel.report.frame import Frame, Row, Subject, place_table, report_on, shown_key_values
 from kurbel.report.left_out import bearing_left_out, bearings_left_out, left_out, strength_left_out
 from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import as_far_as_solved, bearing_warnings, of_machine, shell_verdict
@@ -36,6 +37,16 @@ def bearings_report(case: Case, frame: Frame) -> Report:
 def bearings_subjects(case: Case) -> list[Subject]:
     """Return every pin and main bearing."""
     return [_bearing(one) for one in _bearings(case)]
+
+
+def equal_bearings(case: Case) -> list[list[Bearing]]:
+    """Return the pins and main bearings, those together that carry equal loads."""
+
+    def load(part: Bearing) -> Hashable:
+        one = _bearing(part)
+        return equal_loads(one.name, one.of, shown_key_values(one.key_values("bearings"), "si"))
+
+    return grouped(_bearings(case), load)
 
 
 def _bearings(case: Case) -> list[Bearing]:
