@@ -77,7 +77,7 @@ def _bearing_notes(case: Case) -> Iterator[str]:
             "and 'crankshaft' as the throw of every cylinder."
         )
     if line and any(len(throw.cylinders) > 1 for throw in line.throws):
-        yield "Rods on one pin stand side by side, each on an equal part of its length; all load the pin in its middle."
+        yield "Rods on one pin are side by side, each on an equal part of its length; all load the pin in its middle."
     if any(one.masses and one.masses.undivided for one in machine.cylinders):
         yield "'reciprocating' is one sum, all of which counts as pushing on the crosshead pin."
 
@@ -125,7 +125,7 @@ def _stress_tables(strength: CrankshaftStrength, system: str) -> Iterator[PlaceT
 
 def _stress_notes(strength: CrankshaftStrength) -> Iterator[str]:
     yield (
-        "A and B are the forces of the shaft on its bearings, told in the frame that turns with the throw: "
+        "A and B are the forces of the shaft on its bearings, given in the frame that turns with the throw: "
         "D toward the shaft, T in the sense of rotation."
     )
     yield (
