@@ -9,7 +9,11 @@ import pytest
 from click.testing import CliRunner
 
 from kurbel.cli import kurbel
+from kurbel.machine_file import loads
 from kurbel.render.text import width
+from kurbel.report.picture_source import PictureOptions
+from kurbel.report.pictures import pictures
+from kurbel.solver.case import Case
 from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -61,6 +65,11 @@ def test_equally_loaded_pins_stand_once_on_a_page_and_each_for_programs() -> Non
     assert heads == [f"Key values: {kind} pin of cylinders 1–4" for kind in ("crank", "crosshead")]
     assert "each at its own crank angles" in page
     assert len(json.loads(run("bearings", "-", "-f", "json", text=EQUAL))["bearings"]) == 8
+
+
+def test_a_picture_of_equally_loaded_pins_is_drawn_once() -> None:
+    drawn = pictures(Case(loads(EQUAL)), ("bearing-loads",), PictureOptions("metric"))
+    assert [one.of for one in drawn] == ["crank pin of cylinders 1–4", "crosshead pin of cylinders 1–4"]
 
 
 def test_a_pin_of_another_load_stands_alone() -> None:

@@ -49,7 +49,7 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
     return list(groups.values())
 
 
-def told_once(report: Report) -> Report:
+def shown_once(report: Report) -> Report:
     """Return the report with its equal parts as one; its title names them if no other part is left.
 
     Pins and bearings are equal if their key values are, at whatever crank angles they are loaded.

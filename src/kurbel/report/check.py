@@ -46,7 +46,7 @@ class Checked(NamedTuple):
         return tuple(one.error for one in self.unjudged)
 
     @property
-    def told_once(self) -> list[Topic]:
+    def shown_once(self) -> list[Topic]:
         """The sections, equal cylinders in one."""
         groups = grouped(self.sections, _content)
         return [group[0]._replace(title=together([one.title for one in group])) for group in groups]
