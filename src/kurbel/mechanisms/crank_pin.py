@@ -5,10 +5,10 @@ from typing import Any
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys, check
-from kurbel.declared.quantity import Quantity
 from kurbel.mechanisms import KeyOffer, Offer, check_lengths, own_force, own_motion
 from kurbel.numerics.arithmetic import where
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import Quantity
 
 PIN_KEYS: Keys = {
     "pin_diameter": positive(
@@ -37,11 +37,11 @@ def check_pin(diameter: float | None, length: float | None) -> None:
 _SPEED = "Speed at which the block on the crank pin slides along its slot"
 _FORCE = "force of the sliding block on the crank pin"
 BLOCK_OFFERS = (
-    Offer(own_motion("c_block", "c_b", "velocity", _SPEED), lambda one, angle: one.block_slope(angle), ("omega",)),
+    Offer(own_motion("c_block", "c_b", "velocity", _SPEED), lambda one, angle: one.block_slope(angle), omega=1),
     Offer(
         own_force("F_pin", "F_z", "force", f"{_FORCE.capitalize()}, in the sense of P", called=_FORCE),
         lambda one, angle: one.pin_force_factor(angle),
-        ("along_rod",),
+        force=lambda state: state.along_rod,
     ),
 )
 """Of a mechanism with `block_slope`, the speed of the block over ω in m, and `pin_force_factor`, its force over P."""

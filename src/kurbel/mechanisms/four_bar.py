@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, on_request
@@ -18,6 +17,7 @@ from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing, turning_offers
 from kurbel.numerics.arithmetic import bearing
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import Quantity
 
 
 def _transmission(id: str, end: str, text: str) -> KeyOffer:
@@ -33,7 +33,7 @@ def _coupler_column(end: str, symbol: str, kind: str, text: str) -> Quantity:
 
 
 COUPLER_OFFERS = turning_offers(
-    "coupler_at",
+    lambda one, at: one.coupler_at(at),
     _coupler_column("", "θ_K", "angle", "Angle, from the line crank pivot → rocker pivot,"),
     _coupler_column("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
     _coupler_column("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import not_negative, positive
 from kurbel.declared.keys import Keys, check
-from kurbel.declared.quantity import Quantity
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_motion
 from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
 from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing
+from kurbel.quantity import Quantity
 
 
 def _way(id: str, symbol: str, along: str, index: int) -> Offer:
@@ -20,7 +20,7 @@ def _way(id: str, symbol: str, along: str, index: int) -> Offer:
 
 def _acceleration(id: str, symbol: str, along: str, index: int) -> Offer:
     quantity = own_motion(id, symbol, "acceleration", f"Acceleration of every coupler point {along} the frame")
-    return Offer(quantity, lambda one, angle: one.coupler_acceleration(angle)[index], ("omega", "omega"))
+    return Offer(quantity, lambda one, angle: one.coupler_acceleration(angle)[index], omega=2)
 
 
 def _squared(omega: float | None, *factors: float | None) -> float | None:

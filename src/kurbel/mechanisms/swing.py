@@ -3,9 +3,10 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from kurbel.declared.quantity import Quantity
+from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import KeyOffer, Offer, own_force
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import Quantity
 
 
 class Swing(NamedTuple):
@@ -21,33 +22,41 @@ _OF = "of the swinging member"
 
 
 def _column(id: str, symbol: str, kind: str, text: str, called: str = "") -> Quantity:
-    # in forces x gives the position of what slides
     searched = ("motion",) if called else ()
-    return Quantity(id, symbol, kind, text, "", _BOTH, searched, called, unless="slides", after="b")
+    return Quantity(id, symbol, kind, text, "", _BOTH, searched, called, after="b")
 
 
-def turning_offers(method: str, angle: Quantity, velocity: Quantity, acceleration: Quantity) -> tuple[Offer, ...]:
-    """Return how a member turns, by the name of the method of its mechanism that gives its angle and derivatives."""
+def turning_offers(
+    turning: Callable[[Any, CrankAngle], Any],
+    angle: Quantity,
+    velocity: Quantity,
+    acceleration: Quantity,
+    unless: Callable[[Any], bool] | None = None,
+) -> tuple[Offer, ...]:
+    """Return how a member turns; turning: takes a mechanism and a crank angle and returns angle and derivatives."""
+    return (
+        Offer(angle, lambda one, at: turning(one, at).degrees, unless=unless),
+        Offer(velocity, lambda one, at: turning(one, at).slope, omega=1, unless=unless),
+        Offer(acceleration, lambda one, at: turning(one, at).curvature, omega=2, unless=unless),
+    )
 
-    def factor(name: str) -> Callable[[Any, Any], Any]:
-        return lambda one, at: getattr(getattr(one, method)(at), name)
 
-    named = {"degrees": angle, "slope": velocity, "curvature": acceleration}
-    return tuple(Offer(one, factor(name), ("omega",) * order) for order, (name, one) in enumerate(named.items()))
+def _slides(results: Any) -> bool:
+    """Return whether x gives the position of what slides, in forces."""
+    return results.command == "forces" and bool(results.mechanism.slides)
 
 
 SWING_OFFERS = turning_offers(
-    "swing_at",
+    lambda one, at: one.swing_at(at),
     _column("theta", "θ", "angle", f"Angle {_OF}"),
     _column("theta_dot", "θ̇", "angular_velocity", f"Angular velocity {_OF}", "angular velocity of the swing"),
     _column("theta_ddot", "θ̈", "angular_acceleration", f"Angular acceleration {_OF}", "angular acceleration"),
+    _slides,
 )
 
 
 def _ends(mechanism: Any) -> list[Extreme]:
     """θ in degrees at the dead centres; where the member turns fully, none."""
-    from kurbel.crank_angle import CrankAngle
-
     centres = mechanism.dead_centres() if mechanism.swing is not None else ()
     return [Extreme(float(mechanism.swing_at(CrankAngle.of(end)).degrees), end % 360.0) for end in centres]
 
@@ -67,6 +76,6 @@ _CALLED = "force in the coupler"
 F_COUPLER = Offer(
     own_force("F_coupler", "F_K", "force", f"{_CALLED.capitalize()}, thrust positive", called=_CALLED, after="M_out"),
     lambda one, angle: one.coupler_force_factor(angle),
-    ("M_out",),
+    force=lambda state: state.M_out,
 )
 """Of a mechanism with `coupler_force_factor`, the force in 1/m over the moment on the swinging member."""

@@ -31,7 +31,7 @@ class YokeFrame(SliderCrank):
     guided: ClassVar[bool] = False
     OFFERS: ClassVar[tuple[Offer, ...]] = (
         *SliderCrank.OFFERS,
-        Offer(_M_BEND, lambda drive, angle: drive.bending_arm(angle), ("N",)),
+        Offer(_M_BEND, lambda drive, angle: drive.bending_arm(angle), force=lambda state: state.N),
     )
     KEYS: ClassVar[Keys] = {
         **SliderCrank.KEYS,

@@ -9,8 +9,8 @@ from kurbel.declared.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.numerics.extreme import Extreme, number_of
+from kurbel.quantities import every_quantity
 from kurbel.report.alike import grouped, together
 from kurbel.report.notes import Solved
 

@@ -36,7 +36,7 @@ def cycles_report(case: Case, system: str) -> Report:
 
 
 def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
-    if cycles := forces.indicated.cycles:
+    if forces.indicated and (cycles := forces.indicated.cycles):
         absolute = forces.drive.own_gas and forces.drive.own_gas.absolute
         names = ((str(number),) for number in range(1, len(cycles.p_max) + 1))
         found = ((one.absolute() if absolute else one, getattr(cycles, one.id).tolist()) for one in CYCLE_VALUES)
@@ -119,5 +119,4 @@ def _subject(case: Case, forces: CylinderForces, notes: Callable[[], dict[str, l
             why = "are within the noise of the trace and no Druckwechsel"
             yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
 
-    results = tuple(forces.answering)
-    return Subject(cylinder.name, results, at, forces.lists, left, lambda: notes()[cylinder.name], source=forces)
+    return Subject(cylinder.name, (forces,), at, forces.lists, left, lambda: notes()[cylinder.name], source=forces)

@@ -1,22 +1,21 @@
 """The frame of every report on a machine: from the results of a command and its declared quantities to tables."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from kurbel.declared.quantities import COMMON, Lists
-from kurbel.declared.quantity import Quantity, called
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, Nowhere, UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
+from kurbel.quantities import every_quantity
+from kurbel.quantity import Lists, Quantity, called
 from kurbel.report.provenance import provenance
 from kurbel.report.shown import shown_columns, shown_key_values
 from kurbel.report.tables import Column, Later, LeftOut, Part, PlaceTable, Report
-from kurbel.solver.figures import answered
+from kurbel.solver.figures import Results, answered
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +31,7 @@ class Subject:
     name: str
     results: tuple[Any, ...]
     at: Callable[[Any], Any] | None = None
-    lists: Lists = COMMON
+    lists: Lists = field(default_factory=every_quantity)
     left_out: Callable[[], Iterable[LeftOut]] = tuple
     warnings: Callable[[], Iterable[str]] = tuple
     place_tables: tuple[PlaceTable, ...] = ()
@@ -41,7 +40,7 @@ class Subject:
 
     def says(self, quantity: Quantity) -> bool:
         """Whether a quantity says something new here."""
-        return not (quantity.unless and any(getattr(one, quantity.unless, False) for one in self.results))
+        return not any(_says_nothing(one, quantity) for one in self.results)
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, Any]]:
         """Yield the key values of a command that it has, with their values in SI: a number, an Extreme or a tuple."""
@@ -52,14 +51,31 @@ class Subject:
 
     def answer(self, quantity: Quantity) -> Any:
         """Return what the results have for a key value, in SI; None where they have none."""
-        return answered(self.results, quantity)
+        found = (_value(one, quantity) for one in self.results)
+        return next((value for value in found if value is not None), None)
 
     def has(self, command: str) -> list[str]:
         """Return the ids of the columns of a command that it has."""
         if self.at is None:
             return []
         state = self.at(np.zeros(1))
-        return [id for id in self.lists.columns(command) if id == "phi" or getattr(state, id, None) is not None]
+        return [id for id in self.lists.columns(command) if id == "phi" or state[id] is not None]
+
+
+def _value(results: Any, quantity: Quantity) -> Any:
+    """Return a key value of results, in SI; None where they have none."""
+    if not isinstance(results, Results):
+        return answered((results,), quantity)
+    row = results.rows.key_values.get(quantity.id)
+    return None if row is None else row.of(results)
+
+
+def _says_nothing(results: Any, quantity: Quantity) -> bool:
+    """Return whether a quantity says nothing new of results."""
+    if not isinstance(results, Results):
+        return False
+    row = results.rows.key_values.get(quantity.id) or results.rows.columns.get(quantity.id)
+    return bool(row and row.unless and row.unless(results))
 
 
 def refuse_without_cylinder(machine: Machine, command: str) -> None:

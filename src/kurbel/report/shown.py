@@ -40,7 +40,7 @@ def shown_columns(
         degrees = np.append(angles[start : start + _AT_ONCE], _EVERYWHERE)
         state = at(degrees)
         for column in wanted:
-            values = degrees if column is phi else getattr(state, column.id, None)
+            values = degrees if column is phi else state[column.id]
             if values is not None:
                 rows, everywhere = np.split(np.asarray(values, dtype=float), [-len(_EVERYWHERE)])
                 found.setdefault(column, array("d")).frombytes(rows.tobytes())

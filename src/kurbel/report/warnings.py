@@ -67,7 +67,7 @@ def _bound_warnings(forces: CylinderForces) -> Iterable[str]:
     """Yield what of the mechanism's own key values is above that to which the sources let it go."""
     for offer in forces.drive.mechanism.KEY_OFFERS:
         quantity, bound = offer.quantity, offer.bound
-        found = forces.offered(quantity.id) if bound else None
+        found = offer.of(forces) if bound else None
         if bound and found and found.value > bound:
             shown, most = show(found.value, quantity.kind), show(bound, quantity.kind)
             yield f"{quantity.text[0].lower()}{quantity.text[1:]}: {shown} is above {most}"

@@ -16,22 +16,15 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.errors import NoSolutionError
 from kurbel.machine.cylinder import may_lock
-from kurbel.mechanisms import quantities_of
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, refined
 from kurbel.solver.drive import Drive
-from kurbel.solver.motion import Motion
+from kurbel.solver.figures import column_rows
 from kurbel.solver.pins import on_crosshead_pin, on_pin
 from kurbel.solver.state import State
 
 _SURE = 4.0
 """Standard deviations: the noise of thousands of samples stays below."""
-_SENSE = ("guide_sense", "curvature", "P_gas", "P")
-"""Columns that are refined before the guide force is searched for changes of side; `guide_sense` is the first."""
-_RUBBING = ("at_crank", "at_crosshead", "journals")
-"""Moments of friction in pins and journals, attributes of `Rubbing`."""
-_SMOOTH = ("curvature", "P_gas", "P", "N", "T", "D", *_RUBBING)
-"""Columns, and moments of friction, that must be polynomials on every piece."""
 
 
 class Where(NamedTuple):
@@ -45,7 +38,6 @@ class SampledCylinder:
     """A cylinder with its cycle in pieces, and the extremes and zeros of its columns."""
 
     drive: Drive
-    motion: Motion
     _last: tuple[Pieces, State]
     """Where columns were sampled last, so that `samples` need not compute them again."""
 
@@ -68,7 +60,16 @@ class SampledCylinder:
     def _cut_at_sides(self, pieces: Pieces) -> Pieces:
         """Return the pieces cut where the guide force changes sides, with and without friction in pins."""
         drive = self.drive
-        pieces, (sense, *_) = refined(pieces, lambda some: self._values_on(some, _SENSE, rubs=False))
+
+        def before(some: Pieces) -> Array:
+            state = self.drive.on(some).unrubbed
+            return _stacked(some, _sense(state), state.curvature, state.P_gas, state.P)
+
+        def rubbed(some: Pieces) -> Array:
+            state = self.drive.on(some)
+            return _stacked(some, _sense(state), *_moments(state))
+
+        pieces, (sense, *_) = refined(pieces, before)
         if drive.rubs:
             pieces = pieces.split(pieces.zeros(sense))
         if drive.pin_friction is None:
@@ -78,20 +79,18 @@ class SampledCylinder:
         unrubbed = drive.on(pieces).unrubbed
         passed = [pieces.zeros(load) for load in (on_pin(unrubbed).T, on_crosshead_pin(unrubbed).D)]
         pieces = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*passed))))
-        pieces, (sense, *_) = refined(pieces, lambda some: self._values_on(some, ("guide_sense", *_RUBBING)))
+        pieces, (sense, *_) = refined(pieces, rubbed)
         return pieces.split(pieces.zeros(sense)) if drive.rubs else pieces
-
-    def _values_on(self, pieces: Pieces, names: Iterable[str], rubs: bool = True) -> Array:
-        state = self.drive.on(pieces)
-        self._last = pieces, state
-        state = state if rubs else state.unrubbed
-        values = (_column(state, name) for name in names)
-        return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None])
 
     def _smooth(self, pieces: Pieces) -> Array:
         """Return what is to be a polynomial on every piece."""
-        offered = [one.quantity.id for one in self.drive.mechanism.OFFERS if one.quantity.extremes]
-        return self._values_on(pieces, (*(_SMOOTH if self.drive.has_force else _SMOOTH[:1]), *offered))
+        state = self.drive.on(pieces)
+        self._last = pieces, state
+        offered = [one.of(state) for one in self.drive.mechanism.OFFERS if one.quantity.extremes]
+        if not self.drive.has_force:
+            return _stacked(pieces, state.curvature, *offered)
+        forces = (state.P_gas, state.P, state.N, state.T, state.D)
+        return _stacked(pieces, state.curvature, *forces, *_moments(state), *offered)
 
     def _refuse_locking_on(self, pieces: Pieces) -> None:
         """Raise NoSolutionError with the exact angle from which on the crosshead of the only machine locks."""
@@ -119,7 +118,7 @@ class SampledCylinder:
 
     def sampled(self, column: str) -> Array | None:
         """Return a column at the nodes of the pieces, (nodes, pieces); None for one that is left out."""
-        found = getattr(self.samples, column)
+        found = self.samples[column]
         return None if found is None else np.broadcast_to(found, self.pieces.degrees.shape)
 
     @property
@@ -131,8 +130,8 @@ class SampledCylinder:
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
         """Those of every column that is declared to have extremes, as far as there is one."""
-        declared = quantities_of(self.drive.mechanism).all_columns
-        return self.extremes_over(one.id for one in declared if "forces" in one.extremes)
+        declared = column_rows(State, self.drive.mechanism.OFFERS)
+        return self.extremes_over(id for id, row in declared.items() if "forces" in row.quantity.extremes)
 
     def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
         """Return the extremes in SI of these columns, as far as there are any."""
@@ -141,30 +140,12 @@ class SampledCylinder:
             return {}
         return dict(zip(found, self.pieces.extremes(np.stack([*found.values()])).each(self.told)))
 
-    def extremes_of(self, column: str) -> Extremes | None:
-        """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
-        found = self._extremes.get(column) if self.drive.has_force else None
-        return found or self.motion.extremes_of(column)
-
-    def refuse_locking(self) -> None:
-        """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
-        if self.drive.count is None and may_lock(self.drive.cylinder):
-            self.extremes_of("N")
-
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         values = self.sampled(column)
         return None if values is None else where_is(self.pieces, values, value)
 
     # reversals
-
-    @cached_property
-    def phi_reversal(self) -> tuple[Any, ...] | None:
-        """Force reversal (Druckwechsel): crank angles in degrees at which P changes sign, through zero or by a jump.
-
-        Changes that are noise of a trace count once, at the middle one. For many machines one tuple each.
-        """
-        return self.reversals_of("P") if self.drive.has_force else None
 
     def reversals_of(self, column: str) -> tuple[Any, ...] | None:
         """Return the crank angles in degrees at which a force changes sign, not counting the noise of a trace."""
@@ -175,12 +156,6 @@ class SampledCylinder:
         if self.drive.count is not None:
             return tuple(tuple(one.tolist()) for one in changes.of_each(self.drive.count))
         return tuple(lasting(self.pieces, values, changes.degrees, _SURE * self._noise).tolist())
-
-    @property
-    def reversals_in_noise(self) -> int:
-        """How many changes of the sign of P are noise of a trace, and are not listed."""
-        values = self.sampled("P") if self._noise and self.drive.has_force else None
-        return 0 if values is None else len(self.pieces.zeros(values).degrees) - len(self.phi_reversal or ())
 
     @property
     def _noise(self) -> float:
@@ -203,12 +178,20 @@ class SampledCylinder:
         return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
 
 
-def _column(state: State, name: str) -> Any:
-    """Return a column, or a moment of friction in pins and journals; None for what is left out."""
-    if name not in _RUBBING:
-        return None if name == "guide_sense" and state.rod_angle is None else getattr(state, name)
+def _stacked(pieces: Pieces, *values: Any) -> Array:
+    """Return what there is of columns at the nodes of pieces, (q, nodes, pieces)."""
+    return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None])
+
+
+def _sense(state: State) -> Any:
+    """Return what has the sign of the guide force in N; None without a connecting rod."""
+    return None if state.rod_angle is None else state.guide_sense
+
+
+def _moments(state: State) -> tuple[Any, ...]:
+    """Return the moments of friction in pins and journals."""
     rubbing = state.rubbing
-    return None if rubbing is None else getattr(rubbing, name)
+    return () if rubbing is None else (rubbing.at_crank, rubbing.at_crosshead, rubbing.journals)
 
 
 def where_is(pieces: Pieces, values: Array, value: float) -> Where:

@@ -14,20 +14,22 @@ P here is what friction leaves. An exact rod adds the side force of its couple, 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property, reduce
-from operator import add, mul
+from operator import add
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.quantity import by_id
 from kurbel.errors import NoSolutionError
+from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.coupler import PointMotion, point_motion
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.lobatto import rule
+from kurbel.quantity import Row, column
+from kurbel.solver.figures import AtAngles, column_rows
 from kurbel.solver.gas import Pressure
 from kurbel.solver.trace import TracePressure, spread
 
@@ -36,31 +38,23 @@ if TYPE_CHECKING:
     from kurbel.solver.pins import Rubbing
 
 
-class State:
-    """A cylinder at crank angles; its attributes are named by the ids of the columns, in SI, shaped as the angles.
+class State(AtAngles):
+    """A cylinder at crank angles; its columns in SI, shaped as the angles.
 
     angle: crank angles (n,), or those at the nodes of pieces, (nodes, n); within: angles in degrees (n,) on the side of
     every jump that is meant: for pieces their middles. rubs: whether pins and journals rub. A quantity that the machine
     does not have is None.
     """
 
+    commands = ("forces",)
+
     def __init__(self, drive: Drive, angle: CrankAngle, within: Array, rubs: bool = True) -> None:
         self.drive, self.angle, self.within, self.rubs = drive, angle, within, rubs
 
-    def __getattr__(self, id: str) -> Any:
-        """Return a column that the mechanism offers; None for one that only others do."""
-        if id.startswith("_") or "drive" not in vars(self):  # pickle and copy ask before the fields are there
-            raise AttributeError(f"no column is called {id}")
-        offer = next((one for one in self.drive.mechanism.OFFERS if one.quantity.id == id), None)
-        if offer is None:
-            if id not in by_id(*every_quantity().all_columns):
-                raise AttributeError(f"no column is called {id}")
-            return None
-        times = [getattr(self, name) for name in offer.times]
-        factor = offer.factor(self.drive.mechanism, self._posed)
-        if factor is None or any(one is None for one in times):
-            return None
-        return reduce(mul, times) * factor if times else factor
+    @property
+    def rows(self) -> Mapping[str, Row]:
+        """The rows of its columns, those of the mechanism among them."""
+        return column_rows(State, self.drive.mechanism.OFFERS)
 
     @property
     def unrubbed(self) -> State:
@@ -74,7 +68,10 @@ class State:
     def _filled(self, value: Any) -> Array:
         return np.broadcast_to(np.asarray(value, dtype=float), self.phi.shape)
 
-    # motion
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism."""
+        return self.drive.mechanism
 
     @property
     def omega(self) -> Any:
@@ -86,19 +83,16 @@ class State:
         """Crank angle in degrees."""
         return self.angle.degrees  # type: ignore[no-any-return]
 
+    # motion
+
     @cached_property
-    def _posed(self) -> CrankAngle:
+    def posed(self) -> CrankAngle:
         """The crank angles with what the mechanism's rod does there."""
         return self.angle._replace(rod=self.rod_angle)
 
     @cached_property
     def _coordinate(self) -> Any:
-        return self.drive.mechanism.coordinate(self._posed)
-
-    @property
-    def x(self) -> Any:
-        """Displacement in m; of what only swings, None."""
-        return self._coordinate if self.drive.mechanism.slides else None
+        return self.drive.mechanism.coordinate(self.posed)
 
     @cached_property
     def way(self) -> Any:
@@ -108,39 +102,17 @@ class State:
     @cached_property
     def slope(self) -> Any:
         """dx/dφ in m per radian; of what only swings, dθ/dφ."""
-        return self.drive.mechanism.slope(self._posed)
+        return self.drive.mechanism.slope(self.posed)
 
     @cached_property
     def curvature(self) -> Any:
         """d²x/dφ² in m per radian squared; of what only swings, d²θ/dφ²."""
-        return self.drive.mechanism.curvature(self._posed)
-
-    @cached_property
-    def c(self) -> Any:
-        """Velocity in m/s."""
-        return self.slope * self.omega if self.drive.mechanism.slides and self.omega is not None else None
-
-    @cached_property
-    def b(self) -> Any:
-        """Acceleration in m/s² at uniform rotation."""
-        w = self.omega if self.drive.mechanism.slides else None
-        return None if w is None else self.curvature * (w * w)  # a power would raise where the product is inf
+        return self.drive.mechanism.curvature(self.posed)
 
     @cached_property
     def rod_angle(self) -> Any:
         """sin ψ and cos ψ; None without a rod."""
         return self.drive.mechanism.rod_angle(self.angle)
-
-    @cached_property
-    def psi(self) -> Any:
-        """Rod angle in degrees."""
-        return None if self.rod_angle is None else bearing(*self.rod_angle)
-
-    @cached_property
-    def z(self) -> Any:
-        """Fraction of the stroke, or of the swing, from the inner dead centre; None where the output turns fully."""
-        one = self.drive.mechanism
-        return None if one.turns else (self._coordinate - one.start) / one.stroke
 
     @cached_property
     def direction(self) -> Array:
@@ -150,6 +122,64 @@ class State:
         inner, outer = self.drive.mechanism.dead_centres()
         return np.where(np.mod(self.within - inner, 360.0) < outer - inner, 1.0, -1.0)
 
+    @column("z", "ratio", commands=("motion", "forces"), on_request=("motion", "forces"))
+    def z(self) -> Any:
+        """Fraction of the stroke, or of the swing, from the inner dead centre."""
+        one = self.drive.mechanism
+        return None if one.turns else (self._coordinate - one.start) / one.stroke
+
+    @column("ψ", "angle", commands=("motion", "forces"))
+    def psi(self) -> Any:
+        """Angle between connecting rod and stroke line."""
+        return None if self.rod_angle is None else bearing(*self.rod_angle)
+
+    @column("x", "length", commands=("motion", "forces"))
+    def x(self) -> Any:
+        """Displacement from the inner dead centre toward the shaft; of a quick-return ram, from mid-stroke."""
+        return self._coordinate if self.drive.mechanism.slides else None
+
+    @column("c", "velocity", commands=("motion", "forces"))
+    def c(self) -> Any:
+        """Velocity, positive toward the shaft; of a quick-return ram, on the working stroke."""
+        return self.slope * self.omega if self.drive.mechanism.slides and self.omega is not None else None
+
+    @column("b", "acceleration", commands=("motion", "forces"))
+    def b(self) -> Any:
+        """Acceleration, positive as the velocity."""
+        w = self.omega if self.drive.mechanism.slides else None
+        return None if w is None else self.curvature * (w * w)  # a power would raise where the product is inf
+
+    # a point of the rod
+
+    @cached_property
+    def _point(self) -> PointMotion | None:
+        point, mechanism = self.drive.cylinder.point, self.drive.mechanism
+        coupler = mechanism.coupler_at(self.angle) if point else None
+        if point is None or coupler is None:
+            return None
+        return point_motion(mechanism, coupler, self.angle, point.from_crank_pin(mechanism), point.across)
+
+    @column("x_Q", "length", commands=("motion", "forces"), on_request=("forces",))
+    def x_point(self) -> Any:
+        """Place of the point of the rod from the shaft axis, along φ = 0."""
+        return self._point and self._point.x
+
+    @column("y_Q", "length", commands=("motion", "forces"), on_request=("forces",))
+    def y_point(self) -> Any:
+        """Place of the point of the rod from the shaft axis, along φ = 90°."""
+        return self._point and self._point.y
+
+    @column("v_Q", "velocity", commands=("motion", "forces"), on_request=("forces",))
+    def v_point(self) -> Any:
+        """Speed of the point of the rod."""
+        return None if self._point is None or self.omega is None else self._point.speed * self.omega
+
+    @column("b_Q", "acceleration", commands=("motion", "forces"), on_request=("forces",))
+    def b_point(self) -> Any:
+        """Magnitude of the acceleration of the point of the rod."""
+        w = self.omega
+        return None if self._point is None or w is None else self._point.acceleration * (w * w)
+
     # the chambers
 
     def pressure(self, end: Pressure) -> Array:
@@ -157,24 +187,56 @@ class State:
         if isinstance(end, TracePressure):
             return end.at(self.phi, end.held(self.within))
         mechanism = self.drive.mechanism
-        left = mechanism.remaining(self._posed) / mechanism.stroke if end.steep else None
+        left = mechanism.remaining(self.posed) / mechanism.stroke if end.steep else None
         return end.at(self.z, self.phi, end.held(self.within, self.drive.index), left)
 
     def _counted(self, end: Pressure | None) -> Any:
         """Return a pressure as the machine file counts it."""
         return None if end is None else self.pressure(end) + spread(end.setting.base, self.drive.index)
 
-    @cached_property
+    @column("p_H", "pressure", gauge=True)
     def p_head(self) -> Any:
-        """Pressure at the head end of the cylinder's own piston in Pa, counted as in the machine file."""
+        """Gauge pressure in the head-end chamber, just after a jump."""
         gas = self.drive.own_gas
         return gas and self._counted(gas.head)
 
-    @cached_property
+    @column("p_C", "pressure", gauge=True)
     def p_crank(self) -> Any:
-        """Pressure at the crank end of the cylinder's own piston in Pa, counted as in the machine file."""
+        """Gauge pressure in the crank-end chamber, just after a jump."""
         gas = self.drive.own_gas
         return gas and self._counted(gas.crank)
+
+    @column("V", "volume", on_request=("forces",))
+    def V(self) -> Any:
+        """Volume of the head-end chamber, with its clearance where that is given."""
+        gas = self.drive.own_gas
+        return gas.piston.head_area * self.way + gas.clearance_volumes[0] if gas and gas.head else None
+
+    @column("V_C", "volume", on_request=("forces",))
+    def V_crank(self) -> Any:
+        """Volume of the crank-end chamber, with its clearance where that is given."""
+        gas = self.drive.own_gas
+        if not (gas and gas.crank):
+            return None
+        return gas.piston.crank_area * (self.drive.mechanism.stroke - self.way) + gas.clearance_volumes[1]
+
+    @column("dV/dφ", "volume_rise", on_request=("forces",))
+    def dV(self) -> Any:
+        """Change of the volume of the head-end chamber over the angle."""
+        gas = self.drive.own_gas
+        return gas.piston.head_area * np.radians(1.0) * self.slope if gas and gas.head else None
+
+    @column("dp_H/dφ", "pressure_rise", on_request=("forces",))
+    def dp_head(self) -> Any:
+        """Rise of the head-end pressure, over 1 deg."""
+        end = self.drive.own_gas.head if self.drive.own_gas else None
+        return end.rise(self.phi) if isinstance(end, TracePressure) else None
+
+    @column("dp_C/dφ", "pressure_rise", on_request=("forces",))
+    def dp_crank(self) -> Any:
+        """Rise of the crank-end pressure, over 1 deg."""
+        end = self.drive.own_gas.crank if self.drive.own_gas else None
+        return end.rise(self.phi) if isinstance(end, TracePressure) else None
 
     def _force_on(self, shares: Any = None, alike: bool = False) -> Any:
         """Return Σ p_H A_H − p_C A_C in N, R 296; alike: with the mean of both areas, R 297; None without a piston.
@@ -192,9 +254,12 @@ class State:
             terms += [self.pressure(gas.crank) * -crank] if gas.crank else []
         return reduce(add, terms) if terms else None
 
-    @cached_property
+    @column("P_gas", "force")
     def P_gas(self) -> Any:
-        """Force of gas, steam or water on all pistons in N, R 296."""
+        """Force of gas, steam or water on all pistons of the rod.
+
+        R 296.
+        """
         return self._force_on()
 
     @cached_property
@@ -202,53 +267,24 @@ class State:
         """Force of gas or steam on the pistons that drive in N; None where none does."""
         return self._force_on(self.drive.driving)
 
-    @property
+    @column("P_297", "force", on_request=("forces",))
     def P_gas_book(self) -> Any:
-        """The same with both areas of a piston alike, in N, R 297."""
+        """The same by the mean of both areas (R 297)."""
         return self._force_on(alike=True)
-
-    @property
-    def V(self) -> Any:
-        """Volume of the head-end chamber in m³, with its clearance where that is given."""
-        gas = self.drive.own_gas
-        return gas.piston.head_area * self.way + gas.clearance_volumes[0] if gas and gas.head else None
-
-    @property
-    def V_crank(self) -> Any:
-        """Volume of the crank-end chamber in m³, with its clearance where that is given."""
-        gas = self.drive.own_gas
-        if not (gas and gas.crank):
-            return None
-        return gas.piston.crank_area * (self.drive.mechanism.stroke - self.way) + gas.clearance_volumes[1]
-
-    @property
-    def dV(self) -> Any:
-        """Change of the volume of the head-end chamber in m³ per degree."""
-        gas = self.drive.own_gas
-        return gas.piston.head_area * np.radians(1.0) * self.slope if gas and gas.head else None
-
-    @property
-    def dp_head(self) -> Any:
-        """Rise of the head-end pressure in Pa per degree; None without a trace."""
-        end = self.drive.own_gas.head if self.drive.own_gas else None
-        return end.rise(self.phi) if isinstance(end, TracePressure) else None
-
-    @property
-    def dp_crank(self) -> Any:
-        """Rise of the crank-end pressure in Pa per degree; None without a trace."""
-        end = self.drive.own_gas.crank if self.drive.own_gas else None
-        return end.rise(self.phi) if isinstance(end, TracePressure) else None
 
     # the piston force
 
-    @cached_property
+    @column("P_b", "force")
     def P_inertia(self) -> Any:
-        """−m b in N, R 298."""
+        """Inertia force −m b of the reciprocating masses.
+
+        R 298.
+        """
         return -self.drive.mass * self.b if self.drive.has_inertia else None
 
-    @cached_property
+    @column("P_w", "force")
     def P_weight(self) -> Any:
-        """Weight along the stroke line in N, positive toward the shaft."""
+        """Weight of the reciprocating masses along the stroke line."""
         weight = self.drive.weight
         return self._filled(weight[0]) if weight else None
 
@@ -261,24 +297,14 @@ class State:
         working = self.direction == (1.0 if self.drive.mechanism.works_outward else -1.0)
         return self._filled(-self.direction * np.where(working, resistance.work, resistance.back))
 
-    @property
+    @column("P_r", "force")
     def P_ram(self) -> Any:
-        """Force on the ram against its motion in N."""
+        """Force on a ram against its motion."""
         return self._resistance if self.drive.mechanism.slides else None
 
-    @property
-    def M_out(self) -> Any:
-        """Moment on what swings or turns against its motion in N m."""
-        return None if self.drive.mechanism.slides else self._resistance
-
-    @cached_property
-    def P_start(self) -> Any:
-        """Piston force without inertia in N: starting and slow running."""
-        return _sum(_sum(self.P_gas, self.P_weight), self.P_ram)
-
-    @cached_property
+    @column("P", "force", extremes=("forces",), called="piston force", peak=True)
     def P(self) -> Any:
-        """Force at the crosshead along the stroke line in N: gas, inertia, weight, and what the ram works against."""
+        """Force along the stroke line: gas, inertia, weight, and what a ram works against."""
         return _sum(self.P_inertia, self.P_start)
 
     def rod_load(self, without: Any = 0.0) -> Any:
@@ -295,18 +321,75 @@ class State:
         moved = self.P_gas - self.b * mass if drive.has_inertia else self.P_gas
         return moved + weight[0] if weight else moved
 
-    @cached_property
+    @column("P_G", "force", unless=lambda forces: forces.no_compressor)
     def P_rod(self) -> Any:
-        """Rod load in N: force at the crosshead pin of all but the connecting rod and friction."""
+        """Rod load at the crosshead pin: gas, inertia and weight of all but the connecting rod, compression
+        positive.
+        """
         return self.rod_load()
 
-    @cached_property
+    @column("P_KS", "force", unless=lambda forces: forces.no_compressor)
     def P_piston_rod(self) -> Any:
-        """The same without the crosshead, in N: force at the end of the piston rod; None where its mass is unknown."""
+        """The same at the piston rod, without the crosshead."""
         masses = self.drive.cylinder.masses
         return None if not masses or masses.crosshead is None else self.rod_load(without=masses.crosshead)
 
-    # the guide
+    @column(
+        "P_0",
+        "force",
+        commands=(),
+        extremes=("forces",),
+        called="piston force without inertia: starting and slow running",
+    )
+    def P_start(self) -> Any:
+        """Force along the stroke line without inertia."""
+        return _sum(_sum(self.P_gas, self.P_weight), self.P_ram)
+
+    # rod and guide
+
+    @column("S", "force", extremes=("forces",), called="rod force", peak=True)
+    def S(self) -> Any:
+        """Force in the connecting rod, compression positive; of an exact rod, between the masses at its ends.
+
+        R 300.
+        """
+        if self.P is None or self.rod_angle is None:
+            return None
+        push = self.along_rod / self.rod_angle[1]
+        return push if self.rod_side is None else push - self.rod_side * self.rod_angle[0]
+
+    @column("S_H", "force", extremes=("forces",), called="force along the rod at the crosshead pin")
+    def S_crosshead(self) -> Any:
+        """Force along an exact rod at the crosshead pin, compression positive."""
+        if self.P is None or not self.drive.rod:
+            return None
+        b = self.b if self.drive.has_inertia else None
+        return self.drive.rod.at_crosshead(self.rod_angle, self.along_rod, self.N - self.drive.guide_weight, b)
+
+    @column("S_Z", "force", extremes=("forces",), called="force along the rod at the crank pin")
+    def S_crank(self) -> Any:
+        """Force along an exact rod at the crank pin, compression positive."""
+        if self.P is None or not self.drive.rod:
+            return None
+        return self.drive.rod.at_crank(self.rod_angle, self.angle, self.T, self.D)
+
+    @cached_property
+    def rod_side(self) -> Any:
+        """Side force in N of the couples on the rod: of an exact one, and of the friction in its pins; else None."""
+        exact = self.drive.rod.side_force(self.rod_angle, self.angle) if self.drive.rod else None
+        return exact if self.rubbing is None else _sum(exact, self._pin_side)
+
+    @property
+    def _pin_side(self) -> Any:
+        """Side force in N of the friction in both pins of the rod."""
+        assert self.rubbing is not None
+        return self.rubbing.couple / self.drive.mechanism.rod_length / self.rod_angle[1]
+
+    @cached_property
+    def rubbing(self) -> Rubbing | None:
+        """Moments of friction in pins and journals in N m; None where there is none."""
+        friction = self.drive.pin_friction if self.rubs else None
+        return None if friction is None or self.P is None else friction.moments(self.unrubbed)
 
     @cached_property
     def after_steady_friction(self) -> Any:
@@ -343,11 +426,13 @@ class State:
         sin_psi, cos_psi = self.rod_angle
         return cos_psi + sin_psi * (self.guide_side * self.direction * self.drive.crosshead_friction)
 
-    @cached_property
+    @column("N", "force", extremes=("forces",), called="guide force", peak=True)
     def N(self) -> Any:
-        """Force on the guide in N, D 3 with signs; raises NoSolutionError where the crosshead locks itself.
+        """Force on the guide (yoke frame: on the piston rod), positive on the side where it lies while an
+        engine drives.
 
-        Of many machines those that lock have nan.
+        D 3 with signs. Raises NoSolutionError where the crosshead locks itself; of many machines those that lock have
+        nan.
         """
         drive = self.drive
         if self.P is None:
@@ -368,15 +453,15 @@ class State:
         """Crosshead friction f |N| in N, against the motion."""
         return self.N * (self.guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
 
-    @cached_property
+    @column("p_g", "pressure")
     def p_guide(self) -> Any:
-        """|N| over the area of the shoe in Pa; None where its size is not given."""
+        """Mean pressure of the crosshead's shoe on its guide, |N| over its area."""
         area = self.drive.guide_area
         return None if area is None or self.N is None else abs(self.N) / area
 
-    @cached_property
+    @column("f N c", "power")
     def wear(self) -> Any:
-        """f |N| |c| in W, the wear line of the guide (D); None without a shoe or a speed."""
+        """Work of friction on the guide over time, by which it wears (Redtenbacher)."""
         return None if self.p_guide is None or self.c is None else self.crosshead_drag * self.c * self.direction
 
     @cached_property
@@ -384,66 +469,15 @@ class State:
         """Work of crosshead friction by crank angle, f |N| |dx/dφ| in J per radian."""
         return self.crosshead_drag * (self.slope * self.direction)
 
-    # rod and crank pin
+    # crank pin
 
-    @cached_property
-    def rubbing(self) -> Rubbing | None:
-        """Moments of friction in pins and journals in N m; None where there is none."""
-        friction = self.drive.pin_friction if self.rubs else None
-        return None if friction is None or self.P is None else friction.moments(self.unrubbed)
-
-    @cached_property
-    def rod_side(self) -> Any:
-        """Side force in N of the couples on the rod: of an exact one, and of the friction in its pins; else None."""
-        exact = self.drive.rod.side_force(self.rod_angle, self.angle) if self.drive.rod else None
-        return exact if self.rubbing is None else _sum(exact, self._pin_side)
-
-    @property
-    def _pin_side(self) -> Any:
-        """Side force in N of the friction in both pins of the rod."""
-        assert self.rubbing is not None
-        return self.rubbing.couple / self.drive.mechanism.rod_length / self.rod_angle[1]
-
-    @cached_property
-    def F_friction(self) -> Any:
-        """All friction along the stroke line in N, positive toward the shaft."""
-        if self.P is None or not self.drive.has_friction:
-            return None
-        return self._filled((self.crosshead_drag + self.drive.steady_friction) * -self.direction)
-
-    @cached_property
-    def along_rod(self) -> Any:
-        """The part of the rod force along the stroke line in N: the piston force less all friction."""
-        friction = self.F_friction
-        return self.P if friction is None else self.P + friction
-
-    @cached_property
-    def S(self) -> Any:
-        """Rod force in N, compression positive, R 300; of an exact rod, between the masses at its ends."""
-        if self.P is None or self.rod_angle is None:
-            return None
-        push = self.along_rod / self.rod_angle[1]
-        return push if self.rod_side is None else push - self.rod_side * self.rod_angle[0]
-
-    @cached_property
-    def S_crosshead(self) -> Any:
-        """Force along an exact rod at the crosshead pin in N."""
-        if self.P is None or not self.drive.rod:
-            return None
-        b = self.b if self.drive.has_inertia else None
-        return self.drive.rod.at_crosshead(self.rod_angle, self.along_rod, self.N - self.drive.guide_weight, b)
-
-    @cached_property
-    def S_crank(self) -> Any:
-        """Force along an exact rod at the crank pin in N."""
-        if self.P is None or not self.drive.rod:
-            return None
-        return self.drive.rod.at_crank(self.rod_angle, self.angle, self.T, self.D)
-
-    @cached_property
+    @column("D", "force")
     def D(self) -> Any:
-        """Radial force at the crank pin in N, positive toward the shaft, R 302."""
-        radial = None if self.P is None else self.drive.mechanism.radial(self._posed)
+        """Radial force at the crank pin, positive toward the shaft.
+
+        R 302.
+        """
+        radial = None if self.P is None else self.drive.mechanism.radial(self.posed)
         if radial is None:
             return None
         push = self.along_rod * radial
@@ -451,14 +485,22 @@ class State:
             push = push + self.drive.rod.radial(self.rod_angle, self.angle)
         return push if self.rubbing is None else push + self.angle.sin * self._pin_side
 
+    @column("M_2", "torque")
+    def M_out(self) -> Any:
+        """Moment on what swings, or on the second crank, against its motion."""
+        return None if self.drive.mechanism.slides else self._resistance
+
     @property
     def _output(self) -> Any:
         """What reaches the crank of the force, or of the moment, at the output."""
         return self.along_rod if self.drive.mechanism.slides else self.M_out
 
-    @cached_property
+    @column("T", "force", extremes=("forces",), called="tangential force", peak=True)
     def T(self) -> Any:
-        """Tangential force at the crank pin in N, R 303: T R dφ = P dx."""
+        """Tangential force at the crank pin, positive when it drives.
+
+        R 303: T R dφ = P dx.
+        """
         if self._output is None:
             return None
         push = self._output * (self.slope / self.drive.mechanism.crank)
@@ -471,15 +513,28 @@ class State:
         assert self.drive.rod is not None
         return self.drive.rod.tangential(self.rod_angle, self.angle)
 
+    @column("F_f", "force")
+    def F_friction(self) -> Any:
+        """Friction along the stroke line, opposing the motion."""
+        if self.P is None or not self.drive.has_friction:
+            return None
+        return self._filled((self.crosshead_drag + self.drive.steady_friction) * -self.direction)
+
+    @cached_property
+    def along_rod(self) -> Any:
+        """The part of the rod force along the stroke line in N: the piston force less all friction."""
+        friction = self.F_friction
+        return self.P if friction is None else self.P + friction
+
     @cached_property
     def _free_torque(self) -> Any:
         """Torque in N m before friction in pins and journals, from the work of the force at the output."""
         torque = self._output * self.slope
         return torque + self._rod_tangential * self.drive.mechanism.crank if self.drive.rod else torque
 
-    @cached_property
+    @column("M", "torque")
     def M(self) -> Any:
-        """Torque on the shaft in N m."""
+        """Torque on the shaft."""
         if self._output is None:
             return None
         return self._free_torque if self.rubbing is None else self._free_torque - self.rubbing.lost
@@ -488,37 +543,6 @@ class State:
     def torque(self) -> Any:
         """Torque T R in N m of the force on the pin, before friction in crank pin and journals; from the work, as M."""
         return self._free_torque if self.rubbing is None else self._free_torque - self.rubbing.by_couple
-
-    # a point of the rod
-
-    @cached_property
-    def _point(self) -> PointMotion | None:
-        point, mechanism = self.drive.cylinder.point, self.drive.mechanism
-        coupler = mechanism.coupler_at(self.angle) if point else None
-        if point is None or coupler is None:
-            return None
-        return point_motion(mechanism, coupler, self.angle, point.from_crank_pin(mechanism), point.across)
-
-    @property
-    def x_point(self) -> Any:
-        """Place of the point in m from the shaft axis, along φ = 0."""
-        return self._point and self._point.x
-
-    @property
-    def y_point(self) -> Any:
-        """Its place in m along φ = 90°."""
-        return self._point and self._point.y
-
-    @property
-    def v_point(self) -> Any:
-        """Its speed in m/s."""
-        return None if self._point is None or self.omega is None else self._point.speed * self.omega
-
-    @property
-    def b_point(self) -> Any:
-        """The magnitude of its acceleration in m/s², at uniform rotation."""
-        w = self.omega
-        return None if self._point is None or w is None else self._point.acceleration * (w * w)
 
 
 def reduced_inertia(state: State) -> Any:

@@ -14,7 +14,6 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Piece, Words
 from kurbel.report.pictures.sampling import Samples, Values, pieces, sampled
 from kurbel.report.shown import too_large
-from kurbel.solver.figures import answered
 
 PHI = "phi"
 FILE, TERMINAL = 1 / 2000, 1 / 250
@@ -57,12 +56,12 @@ class Source:
 
     def having(self, ids: Iterable[str]) -> tuple[str, ...]:
         """Return those of these columns that there are."""
-        return tuple(id for id in ids if id in self._declared and getattr(self._at_zero, id, None) is not None)
+        return tuple(id for id in ids if id in self._declared and self._at_zero[id] is not None)
 
     def values(self, ids: Sequence[str], degrees: Array, within: Array) -> Array:
         """Return columns (k, n) in SI at crank angles (n,); φ is one of them."""
         state = self.results.at(degrees, within)
-        found = [degrees if id == PHI else np.broadcast_to(getattr(state, id), degrees.shape) for id in ids]
+        found = [degrees if id == PHI else np.broadcast_to(state[id], degrees.shape) for id in ids]
         return np.stack([np.asarray(one, dtype=float) for one in found])
 
     def samples(self, ids: Sequence[str], also: Iterable[float] = ()) -> Samples:
@@ -95,7 +94,7 @@ class Source:
         """Return the key values that are the largest and the smallest value of a column, as far as there are any."""
         known = self.results.lists.key_values(self.results.command)
         found = [
-            (known[name], answered(self.results.answering, known[name]))
+            (known[name], self.results.rows.key_values[name].of(self.results))
             for name in (f"{id}_max", f"{id}_min")
             if name in known
         ]
