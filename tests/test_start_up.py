@@ -29,10 +29,6 @@ def test_a_command_imports_nothing_that_it_does_not_need(arguments: list[str], n
     assert {f"kurbel.{name}" for name in needless} & modules_after(arguments) == set()
 
 
-def test_what_kurbel_writes_itself_is_laid_out_without_the_tables_of_unicode() -> None:
-    assert {"unicodedata", "cmath"} & modules_after(["balance", WATERWORKS], ["plot", WATERWORKS]) == set()
-
-
 def test_the_end_loses_nothing_that_was_written_before() -> None:
     code = (
         "import sys\nfrom kurbel.__main__ import main\n"

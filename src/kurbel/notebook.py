@@ -61,7 +61,8 @@ def _key_values(results: Results, caption: str) -> str:
     from html import escape
 
     from kurbel.render import Look
-    from kurbel.render.html import key_values
+    from kurbel.render.markup import Html, written
+    from kurbel.render.text_tables import key_value_table
     from kurbel.report.shown import shown_key_values
 
     with np.errstate(all="ignore"):
@@ -71,7 +72,7 @@ def _key_values(results: Results, caption: str) -> str:
             found = shown_key_values(zip((one.quantity for one in every), values), "metric")
         except KurbelError as error:
             return f"<p>{escape(str(error))}</p>"
-    return "".join(key_values(caption, found, Look("html")))
+    return "".join(written(key_value_table(caption, found, Look("html")), Html()))
 
 
 Shown.as_html = as_html

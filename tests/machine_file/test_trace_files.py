@@ -13,10 +13,10 @@ import pytest
 from indicated import Engine, absolute
 from kurbel.errors import MachineFileError
 from kurbel.machine import Machine
-from kurbel.machine.trace import Trace
 from kurbel.machine_file import load
 from kurbel.report.notes import machine_notes
 from kurbel.solver.case import Case
+from kurbel.traces.correct import Trace
 from representative import few
 
 ENGINE = Engine()

@@ -14,7 +14,7 @@ from click.testing import CliRunner, Result
 from imported import modules_after
 from kurbel.cli import kurbel
 from kurbel.machine_file import load
-from kurbel.render.charset import width as cells
+from kurbel.render.text import width as cells
 from kurbel.report.pictures import PICTURES
 from representative import CONFIGS, few
 

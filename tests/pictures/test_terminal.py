@@ -10,11 +10,10 @@ import pytest
 from drawn import drawn, named
 
 from kurbel.render import Look
-from kurbel.render.charset import width
-from kurbel.render.lines import plain
 from kurbel.render.pictures.canvas import Canvas
 from kurbel.render.pictures.letters import letters
 from kurbel.render.pictures.scale import Scale
+from kurbel.render.text import plain, width
 from kurbel.report.pictures import pictures
 from kurbel.report.pictures.picture import Picture
 from kurbel.report.pictures.source import TERMINAL, Wish

@@ -14,7 +14,7 @@ from kurbel.cli import kurbel
 from kurbel.quantities import every_quantity
 from kurbel.render import Look
 from kurbel.render.formats import render
-from kurbel.render.latex import symbol, text
+from kurbel.render.markup import Latex
 from render.sample_report import REPORT
 from representative import CONFIGS
 
@@ -33,16 +33,16 @@ pytestmark = pytest.mark.usefixtures("solved_once")
     ],
 )
 def test_texts(plain: str, typeset: str) -> None:
-    assert text(plain) == typeset
+    assert Latex().text(plain) == typeset
 
 
 def test_dots_stand_over_their_letter_in_a_symbol() -> None:
-    assert symbol("θ̈_max") == r"$\ddot{\theta}_{\mathrm{max}}$"
+    assert Latex().symbol("θ̈_max") == r"$\ddot{\theta}_{\mathrm{max}}$"
 
 
 def test_no_quantity_has_a_character_that_latex_does_not_know() -> None:
     for one in (*every_quantity().all_columns, *every_quantity().all_key_values):
-        for written in (symbol(one.symbol), text(one.text), text(one.called)):
+        for written in (Latex().symbol(one.symbol), *map(Latex().text, (one.text, one.called))):
             assert all(ord(c) < 0x250 or c in "–—’‘“”" for c in written), one.id
 
 

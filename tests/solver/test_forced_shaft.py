@@ -16,10 +16,11 @@ from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPart, ShaftPiec
 from kurbel.machine.shaft_list import line_of
 from kurbel.machine.turning import Coupling, Effort, Harmonics, Load
 from kurbel.machine_file import load
+from kurbel.numerics.collocation import periodic
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.numerics.waves import crests
 from kurbel.solver.case import Case
-from kurbel.solver.chain import Chain, Modes, motion, passing, response
+from kurbel.solver.chain import Chain, ChainEquation, Modes, passing, response
 from kurbel.solver.effort import Diagram
 from kurbel.solver.harmonics import amplitudes
 from kurbel.solver.torsion import Excitation, ShaftVibration, Vibration
@@ -203,7 +204,9 @@ def test_longer_chains_over_the_angle_have_the_same_orders(ground: str) -> None:
     orders = np.arange(1.0, 13.0)
     acting = orders_over_the_angle(pieces, torques, orders)
     wanted = passing(chain, orders * omega, response(chain, orders * omega, acting).angles)
-    found = orders_over_the_angle(*motion(chain, omega, pieces, torques), orders)
+    equation = ChainEquation(chain, Modes(chain).omegas[-1] / omega, omega, pieces, torques)
+    solved = periodic(equation, equation.pieces)
+    found = orders_over_the_angle(solved.pieces, equation.torques(solved.samples, solved.pieces), orders)
     assert found == pytest.approx(wanted, abs=1e-12 * np.abs(wanted).max())
 
 

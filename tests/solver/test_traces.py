@@ -21,7 +21,6 @@ from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
-from kurbel.machine.trace import Trace
 from kurbel.machine_file import load, loads
 from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
@@ -29,6 +28,7 @@ from kurbel.report.check import checked
 from kurbel.report.warnings import brake_warnings, trace_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
+from kurbel.traces.correct import Trace
 from machines import one_cylinder
 from representative import few
 

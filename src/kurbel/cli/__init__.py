@@ -18,7 +18,7 @@ from kurbel import __version__
 from kurbel.errors import KurbelError, MachineFileError
 
 if TYPE_CHECKING:
-    from kurbel.render.charset import Charset
+    from kurbel.render.text import Charset
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -191,13 +191,13 @@ def _pretty(error: MachineFileError) -> str:
     """Return the faults of a machine file, their source lines cut to what fits a terminal."""
     from shutil import get_terminal_size
 
-    from kurbel.render.charset import width
+    from kurbel.render.text import width
 
     return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_charset().text, width)
 
 
 def _stderr_charset() -> "Charset":
-    from kurbel.render.charset import Charset
+    from kurbel.render.text import Charset
 
     return Charset(getattr(sys.stderr, "encoding", None) or "utf-8")
 

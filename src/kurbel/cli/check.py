@@ -38,13 +38,14 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
         return _as_json(file, overrides, file_name)
     if written != "table":
         raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
-    from kurbel.render.listing import listing
     from kurbel.render.output import stdout_look, write_out
+    from kurbel.render.page import listing
 
     result = checked(_loaded(file, overrides, file_name))
     look = Look() if file_name else stdout_look()
     look = replace(look, width=width or look.width)
-    write_out((listing(result, look),), file_name)
+    sections = [(one.title, [(entry.what, entry.text) for entry in one.entries]) for one in result.told_once]
+    write_out((listing(result.title, sections, look),), file_name)
     if result.errors:  # all of them, as one of the gravest kind
         gravest = min(result.errors, key=lambda error: error.exit_status)
         raise type(gravest)("\n".join(map(str, result.errors)))
@@ -64,7 +65,7 @@ def _loaded(file: str, overrides: tuple[str, ...], file_name: str | None = None)
 def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> int:
     """Write all findings, those of a file that cannot be read, too, and return the status."""
     from kurbel.machine_file.positions import located
-    from kurbel.render.json_text import findings_json
+    from kurbel.render.data import findings_json
     from kurbel.render.output import refuse_overwriting, stdout_look, write_out
     from kurbel.report.check import checked, faults_found, findings
 
@@ -78,5 +79,6 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
         result = checked(machine)
         found = findings(machine, result, located)
         status = min((error.exit_status for error in result.errors), default=BROKEN if result.broken else DONE)
-    write_out(findings_json(found, Look() if file_name else stdout_look()), file_name)
+    listed = [one._asdict() for one in found.findings]
+    write_out(findings_json(found.machine, found.provenance, listed, Look() if file_name else stdout_look()), file_name)
     return status

@@ -76,6 +76,6 @@ def plot(
 
 
 def _write_list(declared: "tuple[Declared, ...]") -> None:
-    from kurbel.render.listing import write_entries
+    from kurbel.render.page import write_entries
 
     write_entries([(one.id, f"{one.title}. {one.text}") for one in declared])

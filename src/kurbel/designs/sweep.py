@@ -188,10 +188,9 @@ class Sweep:
             return self._unanswered(number, inputs, found)
         return Row(number, (*inputs, *next(values)), *self._judged(found[len(self.asked) :]))
 
-    def unanswered(self, row: int) -> Row:
-        """Return the row with this index from 0 on without its answers: what varies is known unsolved."""
-        (inputs,) = self._inputs([self.plan.texts(row)])
-        return self._unanswered(row + 1, inputs)
+    def inputs(self, rows: Iterable[int]) -> Iterable[tuple[Any, ...]]:
+        """Return what is under the heads of the inputs in these rows, counted from 0: it is known unsolved."""
+        return self._inputs([self.plan.texts(row) for row in rows])
 
     def _unanswered(self, number: int, inputs: tuple[Any, ...], failure: str = "") -> Row:
         return Row(number, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=failure)

@@ -7,16 +7,29 @@ from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import Factor, Point
 from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE
-from kurbel.machine.trace import Pegging
 from kurbel.machine_file.motored import Motored
 from kurbel.machine_file.samples import Layout, layout_keys, samples_of
+from kurbel.traces.correct import KnownLevel, Trace
 
 if TYPE_CHECKING:
     from kurbel.arrays import Array
-    from kurbel.machine.trace import Trace
     from kurbel.machine_file.whole_cycle import Samples
 
 _LAYOUT = layout_keys("pressure")
+
+
+class Pegging(Described):
+    """What becomes a `KnownLevel`."""
+
+    KEYS: ClassVar[Keys] = {
+        "angle": Key(Physical("angle"), "Crank angle from the (firing) dead centre", required=True),
+        "pressure": Key(Physical("pressure"), "Pressure there, as `pressures` says", required=True),
+    }
+
+    @classmethod
+    def of_keys(cls, angle: float, pressure: float) -> KnownLevel:
+        """Return where the level is known."""
+        return KnownLevel(angle, pressure)
 
 
 class Measured(Described):
@@ -71,14 +84,13 @@ class Measured(Described):
         angle_sense: str = "with",
         scale: float = 1.0,
         offset: float = 0.0,
-        pegging: "Pegging | str | None" = None,
+        pegging: KnownLevel | str | None = None,
         drift: str | None = None,
         clearance: float | None = None,
         compression_ratio: float | None = None,
         **layout: Any,
-    ) -> "Trace":
+    ) -> Trace:
         """Return the trace that these keys describe, its file read."""
-        from kurbel.machine.trace import Trace
 
         against = angle_sense == "against"
         gauge = _Gauge(unit, scale, offset)
@@ -98,10 +110,12 @@ class Measured(Described):
             completed=samples.completed,
             clearance=1 / (compression_ratio - 1) if compression_ratio else clearance,
             level=drift == "linear",
-            pegging=Pegging() if isinstance(pegging, str) else pegging,
+            pegging=KnownLevel() if isinstance(pegging, str) else pegging,
             against=against,
+            unit=unit[0] / unit[1],
             scale=scale,
             offset=offset,
+            column=laid_out.columns[0] if file else 0,
         )
 
 

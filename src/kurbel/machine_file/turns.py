@@ -3,8 +3,8 @@
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.machine.trace import PERIODS
 from kurbel.machine_file.recording import Recording, refuse_large_holes, usual_step
+from kurbel.traces.correct import PERIODS
 
 _ALIKE = 1e-3
 """Of a step: what the angles of two laps may differ by and still be the same, rounded."""

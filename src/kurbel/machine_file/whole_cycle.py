@@ -7,9 +7,9 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.kinds import MOST_POINTS, out_of_size
-from kurbel.machine.trace import PERIODS
 from kurbel.machine_file.recording import Recording, hole, refuse_large_holes, usual_step
 from kurbel.machine_file.turns import lapped
+from kurbel.traces.correct import PERIODS
 
 
 class Samples(NamedTuple):

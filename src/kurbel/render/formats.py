@@ -4,26 +4,24 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from kurbel.render import Look
-from kurbel.render.csv_text import csv_text
+from kurbel.render.data import csv_text, json_text
 from kurbel.render.html import html
-from kurbel.render.json_text import json_text
-from kurbel.render.latex import latex
-from kurbel.render.lines import plain
-from kurbel.render.markdown import markdown
+from kurbel.render.markup import Latex, Markdown, document
 from kurbel.render.output import stdout_charset, stdout_width, write_coloured, write_out
 from kurbel.render.page import page
+from kurbel.render.text import plain
 from kurbel.report.tables import Report
 
 _WRITERS: dict[str, Callable[[Report, Look], Iterable[str]]] = {
     "table": lambda report, look: plain(page(report, look)),
     "csv": csv_text,
     "json": json_text,
-    "markdown": markdown,
+    "markdown": lambda report, look: document(report, look, Markdown()),
     "html": html,
-    "latex": latex,
+    "latex": lambda report, look: document(report, look, Latex()),
 }
 """Format, of FORMATS -> the function that makes its text of a report."""
-_SAYING_UTF_8 = ("html", "latex")
+_ALWAYS_UTF_8 = ("html", "latex")
 """Formats that are read as UTF-8, whatever the terminal has."""
 
 
@@ -45,7 +43,7 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
     """
     look = replace(look, encoding="utf-8")
     if file_name is None or file_name == "-":
-        encoding = "utf-8" if look.format in _SAYING_UTF_8 else stdout_charset().encoding
+        encoding = "utf-8" if look.format in _ALWAYS_UTF_8 else stdout_charset().encoding
         look = replace(look, encoding=encoding, width=look.width or stdout_width())
         if look.format == "table" and write_coloured(page(report, look), look):
             return

@@ -1,15 +1,19 @@
-"""HTML: a page of its own for one report, and the tables that longer pages and notebooks are made of."""
+"""Pages of HTML: one report, or the long report of a machine with contents, tables and pictures, self-contained."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from html import escape
-from itertools import chain, repeat
-from typing import NamedTuple
+from itertools import chain
 
+from kurbel import __version__
 from kurbel.render import Look
-from kurbel.render.document import ON_PAPER, Table, document, key_value_table
-from kurbel.render.prose import measures
-from kurbel.render.sheet import MARK, Row
-from kurbel.report.tables import KeyValue, Report
+from kurbel.render.markup import Html, document, listed, written
+from kurbel.render.pictures.layout import scene
+from kurbel.render.pictures.style import css
+from kurbel.render.pictures.svg import svg
+from kurbel.render.text_tables import TextTable, texts
+from kurbel.report.document import Document, Grid, Item, Pair
+from kurbel.report.pictures.picture import Picture
+from kurbel.report.tables import Provenance, Report
 
 INK, PAPER, FAINT, RULE, SHADE = (
     ("#1a1a1a", "#e8e8e8"),
@@ -24,10 +28,10 @@ GOOD, BAD, LINK = ("#1d6b34", "#7fd49a"), ("#a31515", "#ff9d94"), ("#0b5394", "#
 
 def html(report: Report, look: Look) -> Iterator[str]:
     """Yield the report as a page of its own."""
-    yield from page(look.charset.text(report.title), chain(("<main>\n",), tables(report, look, 1), ("</main>\n",)))
+    yield from page(look.charset.text(report.title), document(report, look, Html(1)))
 
 
-def page(title: str, body: Iterable[str], more_style: str = "") -> Iterator[str]:
+def page(title: str, main: Iterable[str], more_style: str = "") -> Iterator[str]:
     """Yield a self-contained page: no script, nothing from elsewhere, and the browser is told so."""
     yield (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -35,10 +39,10 @@ def page(title: str, body: Iterable[str], more_style: str = "") -> Iterator[str]
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
         'img-src data:">\n'
         f'<meta name="color-scheme" content="light dark">\n<title>{escape(title)}</title>\n'
-        f"<style>\n{style()}{more_style}</style>\n</head>\n<body>\n"
+        f"<style>\n{style()}{more_style}</style>\n</head>\n<body>\n<main>\n"
     )
-    yield from body
-    yield "</body>\n</html>\n"
+    yield from main
+    yield "</main>\n</body>\n</html>\n"
 
 
 def style() -> str:
@@ -70,88 +74,75 @@ def style() -> str:
     )
 
 
-def tables(report: Report, look: Look, level: int = 2) -> Iterator[str]:
-    """Yield title, tables, key values and notes of a report, under a heading of this level."""
-    return document(report, look, _Html(look, level))
+# the long report
 
 
-class _Html(NamedTuple):
-    """Writes what stands in the body of a page; level: of the heading of the report."""
-
-    look: Look
-    level: int
-    across: int | None = ON_PAPER
-
-    def title(self, text: str) -> Iterator[str]:
-        yield f"<h{self.level}>{escape(text)}</h{self.level}>\n"
-
-    def paragraph(self, text: str) -> Iterator[str]:
-        yield f"<p>{_prose(text)}</p>\n"
-
-    def table(self, table: Table) -> Iterator[str]:
-        return grid(table)
-
-    def key_values(self, title: str, found: Collection[KeyValue]) -> Iterator[str]:
-        return key_values(title, found, self.look)
-
-    def items(self, title: str, lines: Sequence[str]) -> Iterator[str]:
-        yield item_list(title, lines, self.level + 1)
+_STYLE = (
+    "header{border-bottom:2px solid var(--ink);margin-bottom:1rem}nav ul{columns:16rem;padding-left:1.2rem}\n"
+    "figure{margin:1rem 0}"
+    "figure svg{width:100%;min-width:30rem;max-width:52rem;height:auto;display:block}figcaption{color:var(--faint)}\n"
+    "@media print{figure svg{min-width:0;max-height:24cm}nav{break-after:page}a{color:inherit;text-decoration:none}}\n"
+)
+_STYLE_OF_PAIRS = (
+    "@media screen{main{max-width:96rem}"
+    ".pair{display:grid;grid-template-columns:1fr 1fr;gap:1rem}.pair>*{min-width:0}}\n"
+    # side by side only where both pictures have the width below which they scroll
+    "@media screen and (max-width:66rem){.pair{grid-template-columns:1fr}}@media print{.pair{break-inside:avoid}}\n"
+)
 
 
-def grid(table: Table, verdicts: Sequence[str] = ()) -> Iterator[str]:
-    """Yield a table row by row; verdicts: a class of each row, `good` or `bad`, where they have one."""
-    numbers = [k for k, column in enumerate(table.columns) if not column.words]
-    classes = (f' class="{one}"' for one in verdicts) if verdicts else repeat("")
-    return _scrolled(table, (f"<tr{own}>{_cells(row, table.of_row, numbers)}" for own, row in zip(classes, table.rows)))
+def report_page(long: Document, look: Look, date: str) -> Iterator[str]:
+    """Yield the page of a long report; date: as it is shown."""
+    style = _STYLE + _STYLE_OF_PAIRS if len(long.provenance) > 1 else _STYLE
+    sections = (
+        f'<section id="{section.id}">\n<h2>{_text(section.title, look)}</h2>\n'
+        f"{''.join(_item(one, look) for one in section.items)}</section>\n"
+        for section in long.sections
+    )
+    yield from page(look.charset.text(long.title), chain(_head(long, look, date), sections), f"{style}{css()}\n")
 
 
-def key_values(title: str, found: Collection[KeyValue], look: Look) -> Iterator[str]:
-    """Yield a table of key values: symbol, value, unit, where it stands, what it is."""
-    table = key_value_table(title, found, look)
-    # a list of values may be folded
-    numbers = ((3,) if isinstance(one.value, tuple) and one.value else (1, 3) for one in found)
-    return _scrolled(table, (f"<tr>{_cells(row, 1, right)}" for row, right in zip(table.rows, numbers)))
+def _head(long: Document, look: Look, date: str) -> Iterator[str]:
+    yield f"<header>\n<h1>{_text(long.title, look)}</h1>\n<p>{_text(date, look)}, kurbel {__version__}</p>\n"
+    for one in long.provenance:
+        yield from listed("Made from", _made_from(one), look, Html(1))
+    links = "".join(f'<li><a href="#{one.id}">{_text(one.title, look)}</a></li>\n' for one in long.sections)
+    yield f'</header>\n<nav aria-label="Contents">\n<h2>Contents</h2>\n<ul>\n{links}</ul>\n</nav>\n'
 
 
-def _scrolled(table: Table, rows: Iterable[str]) -> Iterator[str]:
-    """Yield a table that a narrow window scrolls: heads of columns with their units, and these rows."""
-    said = f"<caption>{escape(table.caption)}</caption>" if table.caption else ""
-    label = escape(table.caption or "values over the crank angle", quote=True)
-    yield f'<div class="wide" tabindex="0" role="region" aria-label="{label}"><table>{said}\n'
-    yield f"<thead><tr>{''.join(map(_head, table.columns))}</tr></thead>\n<tbody>\n"
-    yield from (f"{row}</tr>\n" for row in rows)
-    yield "</tbody></table></div>\n"
+def _made_from(given: Provenance) -> list[str]:
+    files = [f"{one.file}: SHA-256 {one.sha256 or 'not known, the file is gone'}" for one in given.inputs]
+    set_over = [f"set over it: {one}" for one in given.overrides]
+    return files + set_over + [f"{name} {version}" for name, version in given.versions.items()]
 
 
-_RIGHT = ' class="r"'
+def _item(item: Item, look: Look) -> str:
+    if isinstance(item, Picture):
+        return _figure(item, look)
+    if isinstance(item, Report):
+        return "".join(document(item, look, Html(3)))
+    if isinstance(item, Grid):
+        return "".join(written(_text_table(item, look), Html()))
+    if isinstance(item, Pair):
+        sides = "".join(_figure(one, look) if one else "<div></div>\n" for one in item)
+        return f'<div class="pair">\n{sides}</div>\n'
+    return f"<p>{_text(item, look)}</p>\n"
 
 
-def _head(column: Row) -> str:
-    unit = f"<br><small>{escape(column.unit)}</small>" if column.unit else ""
-    return f'<th scope="col"{"" if column.words else _RIGHT}>{escape(column.symbol)}{unit}</th>'
+def _figure(picture: Picture, look: Look) -> str:
+    label = _text(picture.heading, look)
+    drawn = f'<div class="wide" tabindex="0" role="region" aria-label="{label}">{svg(scene(picture, look))}</div>'
+    return f"<figure>\n{drawn}\n<figcaption>{_text(picture.text, look)}</figcaption>\n</figure>\n"
 
 
-def _cells(row: Sequence[str], of_row: int, numbers: Collection[int]) -> str:
-    """Return the cells of a row; of_row: how many are its heads; numbers: which are numbers."""
-    cells = []
-    for k, text in enumerate(row):
-        text = text.strip()
-        right = _RIGHT if k in numbers else ""
-        shown = f"<b>{escape(text[:-1])}</b>" if text.endswith(MARK) else escape(text) if right else _prose(text)
-        if k < of_row:
-            shown = shown if right else shown.replace(".", ".<wbr>")  # long keys fold
-            cells.append(f'<th scope="row"{right}>{shown}</th>')
-        else:
-            cells.append(f"<td{right}>{shown}</td>")
-    return "".join(cells)
+def _text_table(grid: Grid, look: Look) -> TextTable:
+    charset = look.charset
+    columns = []
+    for k, (head, cells) in enumerate(zip(grid.heads, zip(*grid.rows))):
+        shown = [*map(charset.unit if k in grid.units else charset.text, cells)]
+        columns.append(texts(charset.text(head), "", shown, "number" if k in grid.numbers else "name"))
+    return TextTable(charset.text(grid.title), columns, 1, grid.verdicts)
 
 
-def _prose(text: str) -> str:
-    """Return a text of which no unit leaves its number."""
-    return measures().sub(r'<span class="n">\g<0></span>', escape(text))
-
-
-def item_list(title: str, lines: Iterable[str], level: int) -> str:
-    """Return a list of sentences under its title, a heading of this level."""
-    items = "".join(f"<li>{_prose(one)}</li>\n" for one in lines)
-    return f"<h{level}>{escape(title)}</h{level}>\n<ul>\n{items}</ul>\n"
+def _text(text: str, look: Look) -> str:
+    return escape(look.charset.text(text))

@@ -1,5 +1,6 @@
 """Where the text goes: standard output, a terminal, or a file; and what its encoding and width are."""
 
+import codecs
 import errno
 import os
 import stat
@@ -11,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.charset import Charset
+from kurbel.render.text import Charset
 
 if TYPE_CHECKING:
-    from kurbel.render.lines import Line
+    from kurbel.render.text import Line
 
 _MOST_COLOURED_LINES = 400
 
@@ -76,8 +77,9 @@ def write_stdout(texts: Iterable[str], encoding: str | None = None) -> None:
     try:
         if hasattr(stdout, "buffer"):
             stdout.flush()
-            for text in texts:
-                stdout.buffer.write(text.encode(encoding or stdout.encoding or "utf-8", "replace"))
+            encoder = codecs.getincrementalencoder(encoding or stdout.encoding or "utf-8")("replace")
+            for text in texts:  # one byte order mark at most
+                stdout.buffer.write(encoder.encode(text))
         else:
             stdout.writelines(texts)
         stdout.flush()

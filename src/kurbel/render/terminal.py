@@ -6,8 +6,7 @@ from rich.console import Console
 from rich.text import Text
 
 from kurbel.render import Look
-from kurbel.render.charset import width
-from kurbel.render.lines import Line
+from kurbel.render.text import Line, width
 
 _STYLES = {
     "title": "bold",

@@ -2,8 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
@@ -12,6 +11,8 @@ from kurbel.report.guide import guide_warnings
 from kurbel.report.notes import LARGEST_PEAK
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
+from kurbel.solver.trace import TracePressure
+from kurbel.traces.checks import doubt
 
 if TYPE_CHECKING:
     from kurbel.solver.flywheel import MachineTurning
@@ -201,23 +202,9 @@ _GOOD = 0.85
 def trace_warnings(forces: CylinderForces) -> Iterable[str]:
     """Yield what is implausible in the traces of a cylinder."""
     for gas in forces.drive.gas:
-        ends: tuple[tuple[str, Any], ...] = (("head end", gas.head), ("crank end", gas.crank))
-        for end, pressure in ends:
-            if hasattr(pressure, "each"):
-                yield from (f"{gas.piston.name}, {end}: {note}" for note in _of_trace(pressure))
-
-
-def _of_trace(pressure: Any) -> Iterable[str]:
-    """Yield the one note on a trace, if any: on its samples, or else on its angles, or else on its pressures.
-
-    What is judged later may only look wrong by what comes before; all advice has been tried out.
-    """
-    from kurbel.report import trace_level, trace_place, trace_samples
-    from kurbel.report.trace_readings import Reading
-
-    reading = Reading(pressure)
-    judges = (*trace_samples.JUDGES, *trace_place.JUDGES, *trace_level.JUDGES)
-    yield from islice(filter(None, (judge(reading) for judge in judges)), 1)
+        for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
+            if isinstance(pressure, TracePressure) and (note := doubt(pressure.trace, pressure.setting, pressure.each)):
+                yield f"{gas.piston.name}, {end}: {note}"
 
 
 def brake_warnings(machine: Machine, cylinders: Sequence[CylinderForces]) -> Iterable[str]:

@@ -253,7 +253,7 @@ class MachineBalance(Results):
             return None
         effort = self._effort
         roll = sum((effort.sampled([one]) for one in self._swirls), -effort.M)
-        return effort.pieces.extremes(roll[None]).each(effort.told)[0]
+        return effort.pieces.extremes(roll[None]).each(effort.result)[0]
 
     M_roll_max = passed_on("_roll_extremes", "largest", "Largest rolling moment on the frame in N m.")
     M_roll_min = passed_on("_roll_extremes", "smallest", "Smallest rolling moment on the frame in N m.")

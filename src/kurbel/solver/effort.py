@@ -88,7 +88,7 @@ class TurningEffort:
         self.cylinders = tuple(forces for forces in cylinders if forces.drive.has_force)
         self.refused: Flags = np.zeros(count or 1, dtype=bool)
         self.cycle = 360.0 * machine.revolutions
-        self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         if not self.cylinders and machine.effort is None:
             raise UsageError(f"{machine.name}: no force acts, so that nothing turns the shaft; kurbel check says why")
         self._refuse_speeds_beyond_floats()
@@ -103,7 +103,7 @@ class TurningEffort:
             size, name = "large" if speed > 1 else "small", self.machine.name
             raise UsageError(f"{name}: a speed of {show(speed, 'speed')} is too {size} to compute with")
 
-    def told(self, values: Array) -> Any:
+    def result(self, values: Array) -> Any:
         """Return values (n,), nan for refused machines; for one machine a float."""
         return float(values[0]) if self.count is None else np.where(self.refused, np.nan, values)
 
@@ -173,7 +173,7 @@ class TurningEffort:
     def drives(self) -> Any:
         """Whether any piston drives; for a given effort, whether its mean does."""
         if self.given:
-            return self.told(self._mean_of(self.indicated)) >= 0
+            return self.result(self._mean_of(self.indicated)) >= 0
         return any_of(forces.drive.drives for forces in self.cylinders)
 
     def share(self, drive: Drive | None) -> Any:
@@ -219,7 +219,7 @@ class TurningEffort:
     @cached_property
     def extremes(self) -> Extremes:
         """Largest and smallest M in N m, one-sided values at jumps included."""
-        return self.pieces.extremes(self.M[None]).each(self.told)[0]
+        return self.pieces.extremes(self.M[None]).each(self.result)[0]
 
     @cached_property
     def mean(self) -> Array:
@@ -276,6 +276,11 @@ class TurningEffort:
     def inertia_terms(self) -> list[Term]:
         """The terms of the torque of the moving masses in N m, each with its share of the losses; see `M`."""
         return [Term(self.share(one[0].drive), one, inertia_torque) for one in self._moving]
+
+    @cached_property
+    def inertia_torque(self) -> Array:
+        """The torque of all moving masses in N m, −½ ω_n² dJ/dφ."""
+        return self.sampled([Term(1.0, one, inertia_torque) for one in self._moving])
 
     @cached_property
     def J_moving(self) -> Array:
@@ -400,7 +405,7 @@ class ExcessWork:
         """Largest and smallest E in J with their angles; None where the only machine has no excess."""
         if self._effort.count is None and not len(self.crossings.degrees):
             return None
-        high, high_at, low, low_at = map(self._effort.told, self._summits)
+        high, high_at, low, low_at = map(self._effort.result, self._summits)
         return Extremes(Extreme(high, high_at), Extreme(low, low_at))
 
     @cached_property

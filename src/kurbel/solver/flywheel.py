@@ -29,7 +29,7 @@ from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import Columns, Results, passed_on
 from kurbel.solver.forces import Brake, CylinderForces
-from kurbel.solver.speed import Course, SpeedLaw, SpeedLine, speed_line
+from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine
 
 _Line = TypeVar("_Line")
 RIGID_ABOVE = 100.0
@@ -133,7 +133,7 @@ class MachineTurning(Results):
     @property
     def M_mean(self) -> Any:
         """Mean torque in N m."""
-        return self.effort.told(self.effort.mean)
+        return self.effort.result(self.effort.mean)
 
     @property
     def W(self) -> Any:
@@ -159,7 +159,7 @@ class MachineTurning(Results):
     def deficit(self) -> Any:
         """Mean effort less the mean of a resistance given by points, in N m; None where they agree."""
         found = self.effort.deficit
-        return self.effort.told(np.where(found == 0, np.nan, found)) if found.any() else None
+        return self.effort.result(np.where(found == 0, np.nan, found)) if found.any() else None
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
@@ -179,7 +179,7 @@ class MachineTurning(Results):
     @property
     def dE(self) -> Any:
         """ΔE in J, the largest swing of the excess work."""
-        return self.effort.told(self.excess.dE)
+        return self.effort.result(self.excess.dE)
 
     @property
     def energy_fluctuation(self) -> Any:
@@ -263,7 +263,7 @@ class MachineTurning(Results):
         stiff = found > RIGID_ABOVE
         if not stiff.all():  # of a batch the others have a motion of their own
             self.effort.refused |= stiff & (self.effort.count is not None)
-        return self.effort.told(found)
+        return self.effort.result(found)
 
     @property
     def rigid(self) -> bool:
@@ -313,7 +313,7 @@ class MachineTurning(Results):
         if self.J is None or not self._turns:
             return None
         flywheel = 1.0 if self._needs_no_inertia else self.J
-        return self._told_of_stalls(lambda: _turning(self.elastic or self._rigid(flywheel)))
+        return self._told_of_stalls(lambda: self.elastic or self._rigid(flywheel))
 
     def _told_of_stalls(self, solved: Callable[[], _Line]) -> _Line:
         """Return a solution with the flywheel; where there is none raise NoSolutionError with one that turns."""
@@ -321,10 +321,6 @@ class MachineTurning(Results):
             return solved()
         except Unsettled as stop:
             raise NoSolutionError(self._refusal(self.J, stop)) from None
-
-    @cached_property
-    def _course(self) -> Course:
-        return Course(self.effort)
 
     def _coupled(self, flywheel: Any) -> ElasticCoupling | None:
         """Return the motion on an elastic coupling with a flywheel in kg m²; None without one, or on a rigid one.
@@ -344,11 +340,11 @@ class MachineTurning(Results):
         """Return the speed line without a coupling, or with a rigid one; raises Standstill, Unsettled, UsageError."""
         driven = self.machine.coupling.inertia if self.machine.coupling else 0.0
         whole = np.broadcast_to(np.asarray(flywheel + driven, dtype=float), self.effort.mean.shape)
-        return speed_line(self._course, self.law, whole)
+        return RigidLine(self.effort, self.law, whole)
 
     def _line(self, flywheel: Any) -> SpeedLine | ElasticCoupling:
         """Return the speed line with a flywheel in kg m²; raises Standstill, Unsettled, NoSolutionError, UsageError."""
-        return _turning(self._coupled(flywheel) or self._rigid(flywheel))
+        return self._coupled(flywheel) or self._rigid(flywheel)
 
     def _delta_with(self, flywheel: float) -> float:
         """Return δ of the speed line with a flywheel in kg m²; inf where it stalls."""
@@ -438,14 +434,6 @@ class MachineTurning(Results):
             return wanted / delta - 1 if delta else math.inf
 
         return rising_root(surplus, self.J_needed)
-
-
-def _turning(line: SpeedLine | ElasticCoupling) -> SpeedLine | ElasticCoupling:
-    """Return the line of many machines, or of one if it never stands still; raises Standstill."""
-    slowest = line.omega_min
-    if isinstance(slowest.value, float) and not slowest.value > 0:
-        raise Standstill(slowest.degrees)
-    return line
 
 
 def _smallest(turns: Callable[[float], bool], least: float, start: float, exact: bool) -> float | None:

@@ -213,13 +213,13 @@ class MachineOrders:
     @property
     def M_mean(self) -> Any:
         """Mean torque in N m."""
-        return self.effort.told(self.effort.mean)
+        return self.effort.result(self.effort.mean)
 
     @cached_property
     def swing(self) -> Any:
         """Mean square in N² m² of the torque less its mean."""
         effort = self.effort
-        return effort.told(effort.pieces.mean((effort.M - effort.pieces.of(effort.mean)) ** 2))
+        return effort.result(effort.pieces.mean((effort.M - effort.pieces.of(effort.mean)) ** 2))
 
     @property
     def orders_share(self) -> Any:

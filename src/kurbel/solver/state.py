@@ -24,8 +24,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.mechanisms import Mechanism
-from kurbel.mechanisms.coupler import PointMotion, point_motion
+from kurbel.mechanisms import Mechanism, PointMotion
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.lobatto import rule
 from kurbel.quantity import Row, column
@@ -154,10 +153,7 @@ class State(AtAngles):
     @cached_property
     def _point(self) -> PointMotion | None:
         point, mechanism = self.drive.cylinder.point, self.drive.mechanism
-        coupler = mechanism.coupler_at(self.angle) if point else None
-        if point is None or coupler is None:
-            return None
-        return point_motion(mechanism, coupler, self.angle, point.from_crank_pin(mechanism), point.across)
+        return mechanism.point_at(self.angle, point.from_crank_pin(mechanism), point.across) if point else None
 
     @column("x_Q", "length", commands=("motion", "forces"), on_request=("forces",))
     def x_point(self) -> Any:

@@ -25,10 +25,10 @@ from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
-from kurbel.numerics.collocation import Unsettled
-from kurbel.numerics.pieces import refined
+from kurbel.numerics.collocation import Unsettled, periodic
+from kurbel.numerics.pieces import Pieces, refined
 from kurbel.numerics.waves import crests
-from kurbel.solver.chain import Chain, Holzer, Modes, Motion, Response, Rise, motion, passing, response
+from kurbel.solver.chain import Chain, ChainEquation, Holzer, Modes, Response, passing, response
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import Term, TurningEffort, inertia_torque, shaft_torque
 from kurbel.solver.figures import Columns, Results
@@ -45,6 +45,8 @@ _PRESENT = 1e-6
 """An order whose sum of phase vectors is smaller, over the sum of their lengths, does no work."""
 _FAINT = 0.01
 """An order that excites a mode no more than this, over the order that does so most, is no danger to it."""
+_MOST_WORK, _FEWEST = 3.75e4, 40
+"""Pieces, at least the second number, times the cube of the unknowns: what a solution of about a second takes."""
 _LOST = 1e-4
 """By what rounding moves a torque, over the largest one, beyond which its fourth digit is none: tables print four."""
 
@@ -69,6 +71,13 @@ def stress(line: ShaftLine, segment: int) -> float | None:
     """Return the stress in Pa that a torque of 1 N m makes in a segment, where it is thinnest; None if not known."""
     moduli = [section.modulus for section in line.pieces[segment].sections]
     return 1 / min(moduli) if moduli and math.isfinite(min(moduli)) else None
+
+
+class Motion(NamedTuple):
+    """The torques in the segments less their means in N m, (segments, nodes, pieces), on pieces of the cycle."""
+
+    pieces: Pieces
+    torques: Array
 
 
 # what acts on the masses
@@ -117,7 +126,7 @@ def excitation(found: MachineOrders, line: ShaftLine) -> Excitation:
     if not line.ground:
         means[line.load] -= means.sum()
     if law:
-        slopes[line.load] = 2 * float(law.rise(np.zeros(1), effort.pieces)[1][0]) / omega
+        slopes[line.load] = law.steepness[0] / omega
     return Excitation(omega, found.orders, gas, inertia, means, slopes)
 
 
@@ -423,12 +432,19 @@ class ShaftVibration(Results):
         """
         if self.vibration is None or not self._every or self.chain.loss.any():
             return None
-        effort, law = self._effort, SpeedLaw.of(self._effort)
-        rise = Rise(self.line.load % len(self.line.masses), law.rise) if law else None
+        effort, line, law = self._effort, self.line, SpeedLaw.of(self._effort)
+        order, driven = self.modes.omegas[-1] / effort.omega, driving(effort, line)
+        equation = ChainEquation(
+            self.chain, order, effort.omega, effort.pieces, driven, law, line.load % len(line.masses)
+        )
+        if max(len(equation.pieces.half), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
+            return None
         try:
-            return motion(self.chain, self.acting.omega, effort.pieces, driving(effort, self.line), rise)
+            found = periodic(equation, equation.pieces)
+            found.refuse()
         except Unsettled:
             return None
+        return Motion(found.pieces, equation.torques(found.samples, found.pieces))
 
     @cached_property
     def _summed(self) -> Vibration | None:

@@ -6,9 +6,8 @@ from operator import itemgetter
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.render.charset import width
-from kurbel.render.lines import Line, Piece
 from kurbel.render.pictures.style import LOOKS
+from kurbel.render.text import Line, Piece, width
 
 _BLANK = 0x2800
 _DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])

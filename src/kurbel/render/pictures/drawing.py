@@ -7,8 +7,8 @@ from itertools import chain
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.lines import BLANK, Line, plain
 from kurbel.render.output import replaced, stdout_charset, stdout_width, write_coloured, write_file, write_stdout
+from kurbel.render.text import BLANK, Line, plain
 from kurbel.report.pictures.picture import Picture
 
 SUFFIXES = (".svg", ".png", ".pdf")

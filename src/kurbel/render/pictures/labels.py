@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from kurbel.arrays import Array
 from kurbel.render import Look
-from kurbel.render.charset import width
 from kurbel.render.numbers import angle, single
 from kurbel.render.pictures.scale import tick_text
+from kurbel.render.text import width
 from kurbel.report.pictures.picture import Axis, Figure, Shade, Words
 
 CHARACTER, LINE = 5.8, 11.0

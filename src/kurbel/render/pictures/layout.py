@@ -8,7 +8,7 @@ from kurbel.render.pictures.panel_items import panel_items
 from kurbel.render.pictures.scale import Scale, scale_of, taller
 from kurbel.render.pictures.scene import Dots, Item, Scene, Text
 from kurbel.render.pictures.style import LOOKS, SHAPES
-from kurbel.render.prose import folded
+from kurbel.render.text import folded
 from kurbel.report.pictures.picture import Panel, Picture
 
 WIDTH = 720.0

@@ -7,17 +7,15 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.render import Look
-from kurbel.render.charset import right
-from kurbel.render.charset import width as cells
-from kurbel.render.lines import BLANK, line
-from kurbel.render.lines import Line as Printed
 from kurbel.render.pictures.canvas import Canvas
 from kurbel.render.pictures.labels import LINE, Box, Taken, axis_text, symbol, tick_texts
 from kurbel.render.pictures.panel_items import Scales, arrow, dense, labels, shapes
 from kurbel.render.pictures.scale import Scale, scale_of, taller, ticks
 from kurbel.render.pictures.scene import Item, Line, Text
 from kurbel.render.pictures.style import looks_of
-from kurbel.render.prose import folded
+from kurbel.render.text import BLANK, folded, line, right
+from kurbel.render.text import Line as Printed
+from kurbel.render.text import width as cells
 from kurbel.report.pictures.picture import Panel, Picture
 
 _CELL = np.array([LINE / 2, LINE])

@@ -7,11 +7,11 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.render import Look
-from kurbel.render.charset import width as cells
 from kurbel.render.pictures.labels import CHARACTER, Box, Taken, axis_text, figure_text, shade_texts, symbol, tick_texts
 from kurbel.render.pictures.scale import Scale, ticks
 from kurbel.render.pictures.scene import Dots, Item, Line, Places, Text, thinned
 from kurbel.render.pictures.style import SHAPES, looks_of
+from kurbel.render.text import width as cells
 from kurbel.report.pictures.picture import Arrow, Curve, Panel, Shade
 
 Scales = tuple[Scale, Scale]

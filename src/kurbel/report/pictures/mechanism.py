@@ -8,7 +8,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.unit_systems import convert
-from kurbel.mechanisms.sketch import PIN, Point, Sketch
+from kurbel.mechanisms import PIN, Point, Sketch
 from kurbel.report.pictures.picture import Arrow, Axis, Curve, Panel, Piece, Words
 from kurbel.report.pictures.source import PHI, Source
 
