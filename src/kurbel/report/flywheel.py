@@ -16,6 +16,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.motion import every_dead_centre
+from kurbel.solver.state import State
 
 
 def flywheel_report(case: Case, frame: Frame) -> Report:
@@ -72,7 +73,7 @@ def dead_centre_force(forces: CylinderForces, cycle: float) -> Extreme | None:
     angles = np.repeat(centres, 2, axis=1)
     sides = angles + np.tile([-1e-6, 1e-6], centres.shape[1])
     machine = np.repeat(np.arange(count), angles.shape[1])
-    values = drive.at(angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
+    values = State.at(drive, angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
     largest = np.arange(count), np.abs(values).argmax(axis=1)
     found = np.where(both, values[largest], np.nan), np.mod(angles[largest], cycle)
     return Extreme(*map(forces.told, found))

@@ -65,7 +65,7 @@ def inertia_torque(state: State) -> Any:
     torque = state.slope * state.curvature * (-state.drive.mass * omega * omega)
     if rod is None:
         return torque
-    return torque - rod.couple(state.rod_angle, state.angle) * rod.swing_slope(state.rod_angle, state.angle)
+    return torque - state.rod_couple * state.rod_slope
 
 
 class Term(NamedTuple):
@@ -154,7 +154,7 @@ class TurningEffort:
         """Return the sum of the terms of one machine at crank angles (k,), on the sides of jumps that hold `within`."""
         behind = [(term, position(forces)) for term in terms for forces in term.cylinders]
         values = [
-            np.broadcast_to(factor * torque(cylinders[0].drive.at(degrees - late, within - late)), degrees.shape)
+            np.broadcast_to(factor * torque(State.at(cylinders[0].drive, degrees - late, within - late)), degrees.shape)
             for (factor, cylinders, torque), late in behind
         ]
         every = np.array(values).reshape(len(values), *degrees.shape)
