@@ -15,7 +15,8 @@ from kurbel.declared.forms import points
 from kurbel.declared.kinds import KINDS
 from kurbel.declared.unit_systems import SI
 from kurbel.errors import KurbelError, MachineFileError
-from kurbel.machine_file import columns, events, load, loads
+from kurbel.machine_file import events, load, loads
+from kurbel.traces import read
 from representative import law_of_each
 from schemas import whole_schema
 
@@ -183,10 +184,10 @@ def test_no_text_of_a_file_is_quoted_that_is_no_trace(tmp_path: Path, delimiter:
 def test_rows_beyond_the_limit_are_not_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "p.csv").write_text("".join(f"{angle / 10},1\n" for angle in range(3601)))
     (tmp_path / "m.yaml").write_text(ENGINE + TRACE.format(file="p.csv", zero="0 deg", more=""))
-    monkeypatch.setattr(columns, "MOST_NUMBERS", 100)
+    monkeypatch.setattr(read, "MOST_NUMBERS", 100)
     taken: dict[str, Any] = {}
-    loadtxt = columns.np.loadtxt
-    monkeypatch.setattr(columns.np, "loadtxt", lambda *given, **more: (taken.update(more), loadtxt(*given, **more))[1])
+    loadtxt = read.np.loadtxt
+    monkeypatch.setattr(read.np, "loadtxt", lambda *given, **more: (taken.update(more), loadtxt(*given, **more))[1])
     with pytest.raises(KurbelError, match="has more than 100 numbers; thin them out"):
         load(tmp_path / "m.yaml")
     assert taken["max_rows"] <= 51

@@ -40,8 +40,8 @@ def report(
     with their differences. --set holds for each of them. FILE may be - for standard input.
     """
     from kurbel.machine_file.given import given
-    from kurbel.render.html import report_page
     from kurbel.render.output import refuse_overwriting, write_out
+    from kurbel.render.report_page import report_page
     from kurbel.report.side_by_side import side_by_side
     from kurbel.report.whole import whole_report
     from kurbel.solver.case import Case

@@ -13,7 +13,6 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.lobatto import rule
-from kurbel.numerics.vertex import vertex
 from kurbel.traces.correct import (
     COMPRESSION,
     EXPANSION,
@@ -26,6 +25,7 @@ from kurbel.traces.correct import (
     extrapolated,
     joined_in_pairs,
     noise_of,
+    parabola_peak,
     without_drift,
 )
 
@@ -65,7 +65,7 @@ class Reading:
         self.top = int(np.argmax(self.p))
         self.peak = float(self.p[self.top])
         # a single top sample may be noise; the closing one would count twice
-        self.vertex = vertex(self.place[:-1], self.p[:-1], float(self.place[self.top]), _PARABOLA)
+        self.vertex = parabola_peak(self.place[:-1], self.p[:-1], float(self.place[self.top]), _PARABOLA)
         self.peak_at = self.vertex.place if self.vertex else float(self.place[self.top])
         self.half_width = float(widths[self.p > (self.peak + self.low) / 2].sum()) / 2
         # of a trace that goes down to the vacuum, the ratio as over a good vacuum

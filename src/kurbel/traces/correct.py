@@ -283,3 +283,85 @@ def exponent(
     slope = float(from_mean @ pressures) / square
     left = pressures - pressures.mean() - slope * from_mean
     return Exponent(0.0 - slope, math.sqrt(float(left @ left) / (len(left) - 2) / square))
+
+
+# the dead centre from a motored trace: without combustion the pressure peaks just before it
+
+_HALF = 6.0
+"""Degrees on either side of the peak through which the parabola goes."""
+_SIDES = (20.0, 50.0), (50.0, 80.0)
+"""Degrees from the peak between which both its sides are compared: where something burnt, they are not alike."""
+_LOW = 0.15
+"""Share of the cycle below the level from which pressures are compared."""
+_FEWEST_MOTORED = 36
+_ALIKE = 0.5, 1.15
+
+
+class Peak(NamedTuple):
+    """The peak of a parabola: its place, the standard error of that, and how many samples it goes through."""
+
+    place: float
+    error: float
+    samples: int
+
+
+def parabola_peak(places: Array, values: Array, top: float, width: float) -> Peak | None:
+    """Return the peak of the parabola of least squares through samples (n,) within `width` of the top one.
+
+    None where they are fewer than five, or have no peak within that width. A single top sample may be noise: each
+    parabola goes on from the peak of the one before.
+    """
+    for _ in range(3):
+        near = np.abs(places - top) <= width
+        along = places[near] - top
+        if len(along) < _FEWEST:
+            return None
+        basis = np.stack((np.ones_like(along), along, along**2), axis=1)
+        found, _, rank, _ = np.linalg.lstsq(basis, values[near], rcond=None)
+        if rank < 3 or not found[2] < 0 or abs(found[1] / (2 * found[2])) > width:
+            return None
+        top = top - found[1] / (2 * found[2])
+    spread = values[near] - basis @ found
+    covariance = float(spread @ spread) / (len(along) - 3) * np.linalg.inv(basis.T @ basis)
+    slope = np.array([0.0, -1 / (2 * found[2]), found[1] / (2 * found[2] ** 2)])
+    return Peak(float(top), math.sqrt(max(0.0, slope @ covariance @ slope)), len(along))
+
+
+def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
+    """Return the peak of a motored trace, and by how many degrees it is uncertain; raises RuleError.
+
+    angles (n,) in degrees over one lap; laps (m, n) in Pa, of which the mean is taken, of turns in pairs.
+    """
+    if len(laps) % 2 == 0:
+        angles, laps = np.concatenate((angles[:-1], angles + angles[-1] - angles[0])), joined_in_pairs(laps)
+    pressures, period = laps.mean(axis=0)[:-1], float(angles[-1] - angles[0])
+    if len(pressures) // 2 * 2 < _FEWEST_MOTORED:
+        refused(f"has {len(pressures) // 2 * 2} samples only; measure it finer")
+    top = float(angles[int(np.argmax(pressures))])
+    places = np.remainder(angles[:-1] - top + period / 2, period) - period / 2
+    if np.count_nonzero(np.abs(places) <= _HALF / 2) < _FEWEST:
+        refused(f"has fewer than five samples within {_HALF / 2:g} deg of its peak; measure it finer")
+    whole = parabola_peak(places, pressures, 0.0, _HALF)
+    if whole is None:
+        refused("is no motored trace: it has no peak that a parabola could be laid through")
+    _refuse_fired(places, pressures, whole.place, period)
+    half = parabola_peak(places, pressures, whole.place, _HALF / 2)
+    # of a peak that is no parabola the half of the samples gives another place; where their noise hides it, its
+    # standard error, √8 times that of all, is the bound
+    doubt = math.hypot(whole.error, math.sqrt(8) * whole.error if half is None else whole.place - half.place)
+    return whole._replace(place=top + whole.place), doubt
+
+
+def _refuse_fired(places: Array, pressures: Array, top: float, period: float) -> None:
+    low = float(np.quantile(pressures, _LOW))
+    for near, far in _SIDES:
+        away = np.linspace(near, far, 301)
+        before, after = (
+            float(np.interp(top + sign * away, places, pressures, period=period).mean()) - low for sign in (-1, 1)
+        )
+        if not _ALIKE[0] * before <= after <= _ALIKE[1] * before:
+            times = f"{after / before:.2g} times that" if before > 0 else "not that"
+            message = (
+                f"is no motored trace: {near:g} to {far:g} deg after its peak the pressure rises to {times} before"
+            )
+            refused(f"{message}; name one without combustion")
