@@ -116,7 +116,7 @@ class CylinderForces(SampledCylinder, Results):
     def __init__(self, machine: Machine, cylinder: Cylinder, count: int | None = None) -> None:
         self.drive = Drive(machine, cylinder, count)
 
-    @property
+    @cached_property
     def rows(self) -> Rows:
         """The rows that a machine with this mechanism may have, its pressures counted as in the machine file."""
         mechanism, cylinder, gas = self.mechanism, self.drive.cylinder, self.drive.own_gas
