@@ -130,9 +130,9 @@ def test_nothing_that_was_built_gets_one() -> None:
 def test_an_overflow_that_no_bound_keeps_off_is_an_error_without_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     import numpy as np
 
-    from kurbel.report import notes
+    from kurbel.report import warnings
 
-    monkeypatch.setattr(notes, "_speed_notes", lambda *_: [str(np.array([1e300]) * 1e300)])
+    monkeypatch.setattr(warnings, "_speed_warnings", lambda *_: [str(np.array([1e300]) * 1e300)])
     result = run("check", ENGINE)
     assert result.exit_code == 2
     assert "lead beyond what can be computed with (overflow" in result.stderr

@@ -14,7 +14,7 @@ from indicated import Engine, absolute
 from kurbel.errors import MachineFileError
 from kurbel.machine import Machine
 from kurbel.machine_file import load
-from kurbel.report.notes import machine_notes
+from kurbel.report.warnings import machine_notes
 from kurbel.solver.case import Case
 from kurbel.traces.correct import Trace
 from representative import few
@@ -278,7 +278,7 @@ def said_of(folder: Path, content: str, keys: str = "", unit: str = "bar") -> st
         one = machine(folder, content, keys, unit)
     except MachineFileError as error:
         return str(error)
-    return "\n".join(note.text for note in machine_notes(one, lambda: Case(one)))
+    return "\n".join(note.text for note in machine_notes(Case(one)))
 
 
 @pytest.mark.parametrize("heading", ["", "Winkel,Druck\n"])

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Flags
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import refused
 from kurbel.mechanisms import Mechanism
@@ -202,19 +202,11 @@ def drift_of(trace: Trace, samples: Array) -> Array:
 
 def extrapolated(angles: Array, samples: Array) -> Array:
     """Return the same in Pa where the closing sample is missing, or not trusted: by lines through both ends."""
-    end = angles[-1]
-    last = max(3, int(np.searchsorted(-angles[:-1][::-1], LAST - end)))
-    first = max(3, int(np.searchsorted(angles, angles[0] + LAST, side="right")))
-    before = _line_at_zero(angles[-1 - last : -1] - end, samples[:, -1 - last : -1])
-    after = _line_at_zero(angles[:first] - angles[0], samples[:, :first])
+    to_end, from_begin = angles[:-1] - angles[-1], angles[:-1] - angles[0]
+    last, first = max(3, int((to_end > -LAST).sum())), max(3, int((from_begin <= LAST).sum()))
+    before = np.polyfit(to_end[-last:], samples[:, -1 - last : -1].T, 1)[1]
+    after = np.polyfit(from_begin[:first], samples[:, :first].T, 1)[1]
     return np.asarray(after - before)
-
-
-def _line_at_zero(angles: Array, samples: Array) -> Array:
-    """Return the values (m,) at angle 0 of the lines of least squares through samples (m, k) at angles (k,)."""
-    from_mean = angles - angles.mean()
-    slopes = samples @ from_mean / (from_mean @ from_mean)
-    return np.asarray(samples.mean(axis=1) - slopes * angles.mean())
 
 
 def _lift(trace: Trace, samples: Array, pegging: KnownLevel, setting: Setting) -> Array:
@@ -265,6 +257,15 @@ class Exponent(NamedTuple):
     error: float
 
 
+def volumes_in(setting: Setting, clearance: float, after: Array, stretch: tuple[float, float]) -> tuple[Array, Flags]:
+    """Return the volumes (k,), over that of the stroke, at samples in a stretch of angle, and which they are (n,).
+
+    after (n,): degrees from the dead centre.
+    """
+    inside = (after >= stretch[0]) & (after <= stretch[1])
+    return setting.stroke_fraction(after[inside]) + clearance, inside
+
+
 def exponent(
     setting: Setting, clearance: float | None, after: Array, absolute: Array, stretch: tuple[float, float]
 ) -> Exponent | None:
@@ -273,16 +274,13 @@ def exponent(
     after (n,): degrees from the dead centre; absolute (n,): pressures in Pa. None without a clearance, with fewer than
     five samples there, or where the pressure is not above the vacuum.
     """
-    inside = (after >= stretch[0]) & (after <= stretch[1])
-    figures = absolute[inside]
-    if clearance is None or len(figures) < _FEWEST or not (figures > 0).all():
+    volumes, inside = volumes_in(setting, clearance or 0.0, after, stretch)
+    if clearance is None or len(volumes) < _FEWEST or not (absolute[inside] > 0).all():
         return None
-    volumes, pressures = np.log(setting.stroke_fraction(after[inside]) + clearance), np.log(figures)
-    from_mean = volumes - volumes.mean()
-    square = float(from_mean @ from_mean)
-    slope = float(from_mean @ pressures) / square
-    left = pressures - pressures.mean() - slope * from_mean
-    return Exponent(0.0 - slope, math.sqrt(float(left @ left) / (len(left) - 2) / square))
+    x, y = (np.log(one) - np.log(one).mean() for one in (volumes, absolute[inside]))
+    slope = float(x @ y / (x @ x))
+    left = y - slope * x
+    return Exponent(0.0 - slope, math.sqrt(float(left @ left / (x @ x)) / (len(x) - 2)))
 
 
 # the dead centre from a motored trace: without combustion the pressure peaks just before it
@@ -314,17 +312,14 @@ def parabola_peak(places: Array, values: Array, top: float, width: float) -> Pea
     for _ in range(3):
         near = np.abs(places - top) <= width
         along = places[near] - top
-        if len(along) < _FEWEST:
+        if len(along) < _FEWEST or len(np.unique(along.round(3))) < 3:
             return None
-        basis = np.stack((np.ones_like(along), along, along**2), axis=1)
-        found, _, rank, _ = np.linalg.lstsq(basis, values[near], rcond=None)
-        if rank < 3 or not found[2] < 0 or abs(found[1] / (2 * found[2])) > width:
+        (bend, slope, _), covariance = np.polyfit(along, values[near], 2, cov=True)
+        if not bend < 0 or abs(slope / (2 * bend)) > width:
             return None
-        top = top - found[1] / (2 * found[2])
-    spread = values[near] - basis @ found
-    covariance = float(spread @ spread) / (len(along) - 3) * np.linalg.inv(basis.T @ basis)
-    slope = np.array([0.0, -1 / (2 * found[2]), found[1] / (2 * found[2] ** 2)])
-    return Peak(float(top), math.sqrt(max(0.0, slope @ covariance @ slope)), len(along))
+        top = top - slope / (2 * bend)
+    by_parameters = np.array([slope / (2 * bend**2), -1 / (2 * bend), 0.0])
+    return Peak(float(top), math.sqrt(max(0.0, by_parameters @ covariance @ by_parameters)), len(along))
 
 
 def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
@@ -344,24 +339,16 @@ def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
     whole = parabola_peak(places, pressures, 0.0, _HALF)
     if whole is None:
         refused("is no motored trace: it has no peak that a parabola could be laid through")
-    _refuse_fired(places, pressures, whole.place, period)
+    low = float(np.quantile(pressures, _LOW))
+    for near, far in _SIDES:
+        away = np.multiply.outer([-1.0, 1.0], np.linspace(near, far, 301)) + whole.place
+        before, after = np.interp(away, places, pressures, period=period).mean(axis=1) - low
+        if not _ALIKE[0] * before <= after <= _ALIKE[1] * before:
+            times = f"{after / before:.2g} times that" if before > 0 else "not that"
+            rise = f"{near:g} to {far:g} deg after its peak the pressure rises to {times} before"
+            refused(f"is no motored trace: {rise}; name one without combustion")
     half = parabola_peak(places, pressures, whole.place, _HALF / 2)
     # of a peak that is no parabola the half of the samples gives another place; where their noise hides it, its
     # standard error, √8 times that of all, is the bound
     doubt = math.hypot(whole.error, math.sqrt(8) * whole.error if half is None else whole.place - half.place)
     return whole._replace(place=top + whole.place), doubt
-
-
-def _refuse_fired(places: Array, pressures: Array, top: float, period: float) -> None:
-    low = float(np.quantile(pressures, _LOW))
-    for near, far in _SIDES:
-        away = np.linspace(near, far, 301)
-        before, after = (
-            float(np.interp(top + sign * away, places, pressures, period=period).mean()) - low for sign in (-1, 1)
-        )
-        if not _ALIKE[0] * before <= after <= _ALIKE[1] * before:
-            times = f"{after / before:.2g} times that" if before > 0 else "not that"
-            message = (
-                f"is no motored trace: {near:g} to {far:g} deg after its peak the pressure rises to {times} before"
-            )
-            refused(f"{message}; name one without combustion")

@@ -179,7 +179,7 @@ def _laid_over_one_lap(recording: Recording) -> tuple[Recording, tuple[str, ...]
     if laps < 2 or (np.diff(bounds) < 2).any():
         return counting_on, ()
     _refuse_large_holes(counting_on)
-    found = _over_the_first(counting_on, bounds.tolist(), lap)
+    found = _over_the_first(counting_on, bounds, lap)
     if not begins_anew:
         _refuse_unlike(found, len(angles))
     left = len(angles) - int(bounds[-1])
@@ -209,19 +209,16 @@ def _counting_on(recording: Recording, lap: float) -> Recording:
     return recording._replace(angles=counted).taken(~closing)
 
 
-def _over_the_first(recording: Recording, bounds: list[int], lap: float) -> Recording:
+def _over_the_first(recording: Recording, bounds: Indices, lap: float) -> Recording:
     """Return all laps over the angles of the first, straight between samples where they have not the same."""
-    angles, values, *_ = recording
-    lap_1, laps = recording.taken(slice(bounds[1])), len(bounds) - 1
-    first, count = lap_1.angles, bounds[1]
-    offsets = lap * np.arange(laps)
-    if bounds == [count * number for number in range(laps + 1)]:
-        each = angles[: bounds[-1]].reshape(laps, count) - offsets[:, np.newaxis]
-        if np.abs(each - first).max() <= _SAME_ANGLE * lap / count:
-            return lap_1._replace(values=values[:, : bounds[-1]].reshape(-1, count))
-    wanted = (first + offsets[:, np.newaxis]).ravel()
-    found = [np.interp(wanted, angles, column).reshape(laps, count) for column in values]
-    return lap_1._replace(values=np.concatenate(found))
+    first, laps, count = recording.taken(slice(bounds[1])), len(bounds) - 1, int(bounds[1])
+    wanted = first.angles + lap * np.arange(laps)[:, np.newaxis]
+    if (np.diff(bounds) == count).all():
+        own = recording.angles[: bounds[-1]].reshape(laps, count)
+        if np.abs(own - wanted).max() <= _SAME_ANGLE * lap / count:
+            return first._replace(values=recording.values[:, : bounds[-1]].reshape(-1, count))
+    each = [np.interp(wanted, recording.angles, column) for column in recording.values]
+    return first._replace(values=np.concatenate(each))
 
 
 def _refuse_unlike(recording: Recording, samples: int) -> None:
