@@ -19,8 +19,7 @@ WATERWORKS, BOTH_CRANKS = (str(ROOT / "configs" / f"waterworks{name}.yaml") for 
 NEEDLESS = (
     (["--help"], ("cli.table", "cli.output_options", "render", "report", "declared")),
     (["example"], ("report.check", "machine", "mechanisms", "quantities")),
-    (["table"], ("quantities", "solver")),
-    (["forces", WATERWORKS, "-f", "csv"], ("report.notes", "report.guide")),
+    (["table"], ("mechanisms", "quantities", "declared.units", "declared.keys", "machine", "solver")),
 )
 
 
