@@ -1,35 +1,13 @@
 """What a report is made of, whatever it will be rendered as."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple, TypeVar, Union
+from typing import NamedTuple, Union
 
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
 
 Value = Union[float, int, None]
-Item = TypeVar("Item")
-
-
-class Later(Collection[Item]):
-    """Lines of a report that are computed when they are first read: csv shows none of them."""
-
-    def __init__(self, make: Callable[[], Iterable[Item]]) -> None:
-        self._make = make
-
-    @cached_property
-    def _items(self) -> tuple[Item, ...]:
-        return tuple(self._make())
-
-    def __iter__(self) -> Iterator[Item]:
-        return iter(self._items)
-
-    def __contains__(self, item: object) -> bool:
-        return item in self._items
-
-    def __len__(self) -> int:
-        return len(self._items)
 
 
 class Column(NamedTuple):
@@ -103,9 +81,9 @@ class Part(NamedTuple):
 
     name: str | float
     columns: tuple[Column, ...]
-    key_values: Collection[KeyValue] = ()
-    left_out: Collection[LeftOut] = ()
-    warnings: Collection[str] = ()
+    key_values: tuple[KeyValue, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    warnings: tuple[str, ...] = ()
     place_tables: tuple[PlaceTable, ...] = ()
     nowhere: str = ""
     of: str = ""
@@ -123,7 +101,7 @@ class Input:
 class Provenance:
     """What results were made from: files, what was set over the machine file, and the versions of the libraries."""
 
-    inputs: Collection[Input]
+    inputs: tuple[Input, ...]
     overrides: tuple[str, ...]
     versions: dict[str, str]
 
@@ -145,7 +123,7 @@ class Report(NamedTuple):
     parts: tuple[Part, ...]
     whole: Part | None = None
     mirrored: str = ""
-    notes: Collection[str] = ()
+    notes: tuple[str, ...] = ()
     head: tuple[str, ...] = ()
     provenance: Provenance | None = None
     cylinders: tuple[str, ...] = ()
