@@ -317,7 +317,9 @@ def _unit(reading: Reading) -> str:
     factor, unit = _likely_unit(reading, least, 2 * compressed, max(most, ambient), _ENGINE if flat else 0.0)
     if factor == 1:
         return ""
-    what = f"{1 / factor:.3g} times too large" if factor < 1 else f"{factor:.3g} times too small"
+    times = max(factor, 1 / factor)
+    what = f"{times:.3g}" if times < 1000 else f"{times:.0f}"
+    what += " times too large" if factor < 1 else " times too small"
     power = math.log10(factor)
     scaled = f", or write 'scale: {trace.scale * factor:g}'" if abs(power - round(power)) < _ROUNDED else ""
     return (
