@@ -94,10 +94,9 @@ class Reading:
 
     def _slope(self, after: Array) -> Array:
         """Return dz/dφ of the stroke fraction, so many degrees after the chamber's dead centre."""
-        mechanism, head = self.setting.mechanism, self.setting.head_end
-        inner, outer = mechanism.dead_centres()
-        slope = mechanism.slope(CrankAngle.of(after + (inner if head else outer))) / mechanism.stroke
-        return np.asarray(slope if head else -slope)
+        mechanism = self.setting.mechanism
+        slope = mechanism.slope(CrankAngle.of(after + self.setting.own_dead_centre)) / mechanism.stroke
+        return np.asarray(slope if self.setting.head_end else -slope)
 
     def then(self, corrected: float) -> str:
         """Return p_i as corrected, in Pa, and as it is."""
