@@ -117,7 +117,7 @@ def _of_form(form: Form, path: str) -> Iterator[ListedKey]:
     if isinstance(form, Keyed):
         for name, case in form.cases.items():
             if not isinstance(case, Record):
-                yield Place(f"{path}.{name}", Key(case, form.texts.get(name, "")), False)
+                yield ListedKey(f"{path}.{name}", Key(case, form.texts.get(name, "")), False)
     if not form.inline():
         for name, inner in form.parts():
             yield from _of_form(inner, f"{path}.{name}" if name else path)
