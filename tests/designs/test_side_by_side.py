@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 from kurbel import Machine, load, loads
-from kurbel.designs.answers import Values, answers_of, is_slow
-from kurbel.designs.columns import Answer, answered_alone, asked_answers
+from kurbel.designs.answers import Answer, Values, answered_alone, answers_of, asked_answers, is_slow
 from kurbel.errors import KurbelError, RuleError
 from kurbel.machine import Cylinder
 from kurbel.machine.batch import Structures

@@ -16,10 +16,9 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Values, answers_of, is_slow
+from kurbel.designs.answers import Answer, Values, answers_of, is_slow
 from kurbel.designs.binding import Binder, written
-from kurbel.designs.columns import Answer
-from kurbel.designs.sampling import latin_hypercube
+from kurbel.designs.plan import latin_hypercube
 from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
