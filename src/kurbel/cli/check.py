@@ -1,7 +1,6 @@
 """`kurbel check`: reads machines, says what will be computed, and holds each against its limits."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
@@ -63,11 +62,11 @@ def check(
         raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
     refuse_overwriting(file_name, files)
     outcomes = [_outcome(file, overrides, file_name) for file in files]
-    look = Look() if file_name else stdout_look()
+    look = Look(width=width) if file_name else stdout_look(Look(width=width))
     if written == "json":
         write_out(_as_json(outcomes, look), file_name)
     else:
-        write_out(_as_text(outcomes, replace(look, width=width or look.width)), file_name)
+        write_out(_as_text(outcomes, look), file_name)
         for error in filter(None, map(_error, outcomes)):
             if len(files) == 1:
                 raise error

@@ -11,13 +11,13 @@ Value = Union[float, int, None]
 
 
 class Column(NamedTuple):
-    """One quantity over the crank angle, already in the unit in which it is shown; None where it has no value.
+    """One quantity over the crank angle, in the unit that is shown; None where it has no value.
 
-    values: a tuple, or an array of doubles, which takes a quarter of the memory;
-    decimals: fixed number of decimals in printed tables, where the digits of a source are to be kept;
-    marked: indices of the values that the printed table marks with an asterisk; alone: the digits of values of which
-    each has a scale of its own, since they run over many powers of ten, as errors do, 0 where they share one; size: of
-    the largest value of the whole curve, where the values here are but rounding beside it, and 0 where they are not.
+    values: a tuple, or an array of doubles, which takes a quarter of the memory.
+    decimals: a fixed number of them in print, to keep the digits of a source.
+    marked: indices of the values that have an asterisk in print.
+    alone: digits of values that each have their own scale, as errors over many powers of ten; 0 for a common one.
+    size: the largest value of the whole curve, if those here are but rounding relative to it; else 0.
     """
 
     id: str
@@ -33,7 +33,7 @@ class Column(NamedTuple):
 
 
 class KeyValue(NamedTuple):
-    """One key value, already in its unit; a tuple for a list of angles; `at_deg` is where an extreme stands.
+    """One key value, already in its unit; a tuple for a list of angles; `at_deg`: crank angle of an extreme.
 
     noise: the value is a residual of rounding alone, which has digits in json only.
     """
@@ -58,9 +58,10 @@ class LeftOut(NamedTuple):
 class PlaceTable(NamedTuple):
     """A table whose rows are named places instead of crank angles; `id` names it in csv and json.
 
-    heads: what the names are, such as (part, place), or none; names: those of each row, one to a head, with _ for a
-    blank; columns: as over the crank angle, one value to a row; headed: the heads are printed too, and the names are
-    texts as they stand; said: a note says all of it, so that it is not printed.
+    heads: what the names are, such as (part, place), or none.
+    names: those of each row, one to a head, with _ for a blank.
+    headed: the heads are printed, too, and the names are printed with their _.
+    said: a note has all of it, so that it is not printed.
     """
 
     id: str

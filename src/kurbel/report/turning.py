@@ -207,7 +207,7 @@ def _speeds_of_orders(machine: Machine, found: MachineOrders, speeds: Sequence[f
 
 def _uniform(found: Orders) -> bool:
     """Whether every order is zero, at every speed."""
-    return not any(one.amplitudes.any() for one in found if one)
+    return not any(one.amplitudes.any() for one in (found.gas, found.inertia) if one)
 
 
 def _orders_notes(found: MachineOrders) -> Iterator[str]:

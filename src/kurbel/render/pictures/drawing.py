@@ -7,7 +7,7 @@ from itertools import chain
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.output import replaced, stdout_charset, stdout_width, write_coloured, write_file, write_stdout
+from kurbel.render.output import replaced, stdout_look, write_coloured, write_file, write_stdout
 from kurbel.render.text import BLANK, Line, plain
 from kurbel.report.pictures.picture import Picture
 
@@ -55,7 +55,7 @@ def draw_file(pictures: list[Picture], look: Look, file_name: str) -> None:
 
 def draw_stdout(pictures: Iterable[Picture], look: Look) -> None:
     """Draw pictures as characters to standard output, in colour where that is a terminal that wants it."""
-    look = replace(look, encoding=stdout_charset().encoding, width=look.width or stdout_width())
+    look = stdout_look(look)
     lines = list(_lines(pictures, look))
     if not write_coloured(lines, look):
         write_stdout(plain(lines))
