@@ -13,6 +13,7 @@ from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import by_cylinder, guide_notes
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
+from kurbel.solver.indicated import CYCLE_ROWS
 from kurbel.solver.trace import TracePressure
 
 _TITLE = "Kräfte im Kurbeltriebe"
