@@ -1,16 +1,11 @@
 """`kurbel plot`: the pictures of a machine, in the terminal or in a file."""
 
-from typing import TYPE_CHECKING
-
 import click
 
 from kurbel.cli.completion import complete_cylinder, complete_picture
 from kurbel.cli.output_options import loaded, number_options, set_option, units_option
 from kurbel.cli.readings import numbers
 from kurbel.render import Look
-
-if TYPE_CHECKING:
-    from kurbel.report.pictures import PictureKind
 
 
 @click.command()
@@ -48,34 +43,28 @@ def plot(
     and pdf need typst. FILE may be - for standard input.
     """
     from kurbel.render.drawing import check_file, draw_file, draw_stdout
+    from kurbel.render.page import write_entries
     from kurbel.report.picture_source import PictureOptions
     from kurbel.report.pictures import PICTURES, pictures, pictures_of
     from kurbel.solver.case import Case
 
     if listed and file_name is not None:
         raise click.UsageError("--list draws nothing; leave --output out.")
-    if file is None:
-        if not listed:
-            raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
-        _write_list(PICTURES)
-        return
-    to_file = file_name is not None and file_name != "-"
-    if to_file:
-        check_file(file_name or "")
-    case = Case(loaded(file, overrides, file_name))
+    if file is None and not listed:
+        raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
+    if file_name == "-":
+        file_name = None
+    if file_name is not None:
+        check_file(file_name)
     options = PictureOptions(units or "metric", cylinder, angles)
-    if listed:
-        _write_list(pictures_of(case, options))
+    case = None if file is None else Case(loaded(file, overrides, file_name))
+    if case is None or listed:
+        kinds = PICTURES if case is None else pictures_of(case, options)
+        write_entries([(kind.id, f"{kind.title}. {kind.text}") for kind in kinds])
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
     drawn = pictures(case, names, options)
-    if to_file:
-        draw_file(list(drawn), look, file_name or "")
-    else:
+    if file_name is None:
         draw_stdout(drawn, look)
-
-
-def _write_list(declared: "tuple[PictureKind, ...]") -> None:
-    from kurbel.render.page import write_entries
-
-    write_entries([(one.id, f"{one.title}. {one.text}") for one in declared])
+    else:
+        draw_file(list(drawn), look, file_name)
