@@ -16,9 +16,9 @@ from kurbel.solver.case import Case
 ROOT = Path(__file__).parent.parent
 WATERWORKS, BOTH_CRANKS = (str(ROOT / "configs" / f"waterworks{name}.yaml") for name in ("", "-two-cranks"))
 NEEDLESS = (
-    (["--help"], ("cli.table", "cli.output_options", "render", "report", "declared")),
+    (["--help"], ("machine", "mechanisms", "solver", "declared.quantities")),
     (["example"], ("report.check", "machine", "mechanisms", "declared.quantities")),
-    (["table"], ("mechanisms", "declared.quantities", "declared.units", "declared.keys", "machine", "solver")),
+    (["table"], ("machine", "solver", "report.check")),
     (["forces", WATERWORKS, "-f", "csv"], ("solver.stress", "solver.torsion")),
     (["balance", WATERWORKS], ("solver.stress", "solver.torsion")),
 )

@@ -6,14 +6,16 @@ p V^n = const of compression and expansion follow.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags
+from kurbel.arrays import Array, Flags, Indivisible
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.keys import Rule
 from kurbel.errors import refused
 from kurbel.mechanisms import Mechanism
 
@@ -36,7 +38,7 @@ class KnownLevel:
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
+class Trace(Indivisible):
     """A measured trace over one whole cycle, or over many.
 
     angles (n,) in degrees as the trace counts them, rising over 360 or 720; samples (m, n) in Pa, of m laps one after
@@ -101,13 +103,11 @@ class Trace:
         joins = (self.period, 2 * self.period) if len(self.samples) > 1 else (self.period,)
         return tuple(cycle for cycle, turns in TURNS.items() if 360.0 * turns in joins)
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine, or an empty text."""
-        if cycle in self.cycles:
-            return ""
+    def rules_in(self, cycle: str, lift: float) -> Iterator[Rule]:
+        """Yield what does not fit the cycle of the machine."""
         other = next(name for name in TURNS if name != cycle)
         covers = f"the trace covers {self.period:g} deg, a {cycle} cycle has {360.0 * TURNS[cycle]:g} deg"
-        return f"{covers}; write 'cycle: {other}' at the top"
+        yield Rule((), cycle not in self.cycles, f"{covers}; write 'cycle: {other}' at the top")
 
     def over(self, period: float) -> "Trace":
         """Return it with laps that are cycles of these degrees; a last turn that has no other is left out."""
