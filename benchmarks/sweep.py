@@ -24,7 +24,7 @@ from kurbel.designs.answers import AT_ONCE, Answer, answered_alone, answers_of, 
 from kurbel.designs.binding import Binder
 from kurbel.designs.sweep import Spec, Sweep
 from kurbel.designs.workers import rows_of
-from kurbel.machine.variants import Lot
+from kurbel.machine.batch import Lot
 from kurbel.machine_file import source
 from kurbel.machine_file.reader import read_machine
 from kurbel.render import Look

@@ -14,8 +14,8 @@ import pytest
 from kurbel.designs.binding import Binder
 from kurbel.errors import MachineFileError, path_text
 from kurbel.machine import Machine
+from kurbel.machine.batch import values_of
 from kurbel.machine.origin import Origin
-from kurbel.machine.variants import values_of
 from kurbel.machine_file import source
 from kurbel.machine_file.given import tree_of
 from kurbel.machine_file.reader import read_machine

@@ -77,7 +77,7 @@ def test_every_kind_has_sizes_that_can_be_squared_and_divided(kind: str) -> None
 
 
 def test_bounds_are_those_of_the_file_not_of_python() -> None:
-    from kurbel.machine.piston import Piston
+    from kurbel.machine.parts import Piston
 
     assert Piston(1e-200).bore == 1e-200
 

@@ -10,11 +10,10 @@ from kurbel.declared.quantity import Quantity, ambiguity, called, joined
 from kurbel.declared.reading import shown
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.batch import Structures, batch
-from kurbel.machine.variants import Lot
-from kurbel.mechanisms.kinds import every_quantity
+from kurbel.machine.batch import Lot, Structures, batch
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
+from kurbel.quantities import every_quantity
 from kurbel.report.commands import subjects_of
 from kurbel.report.frame import too_large
 from kurbel.solver.case import Case

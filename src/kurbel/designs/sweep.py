@@ -15,8 +15,8 @@ from kurbel.designs.binding import Binder, CasesBinder, written_texts
 from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine.batch import Lot
 from kurbel.machine.origin import Origin
-from kurbel.machine.variants import Lot
 from kurbel.machine_file.given import case_names
 from kurbel.numerics.extreme import size_of
 from kurbel.solver.case import Case
