@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.records import TOO_EXTREME, Maker, too_extreme
+from kurbel.declared.forms.structures import TOO_EXTREME, Maker, too_extreme
 from kurbel.declared.keys import Described, Form, Rule
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown

@@ -22,9 +22,9 @@ from kurbel.designs.plan import latin_hypercube
 from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
+from kurbel.machine_file.events import located
 from kurbel.machine_file.given import tree_of
 from kurbel.machine_file.overrides import path_of
-from kurbel.machine_file.positions import located
 from kurbel.report.commands import subjects_of
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case

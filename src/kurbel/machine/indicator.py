@@ -7,12 +7,11 @@ from typing import Any, ClassVar, Protocol
 from kurbel.declared.forms import Choice, Keyed, OneOf, Physical, Points, UnitName
 from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.forms.figures import Bound
-from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import REFUSED, shown
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import written_unit
+from kurbel.declared.units import Factor, Point, size_faults, written_unit
 from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, Otto, Steam
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.forms import FiringOrder
 from kurbel.declared.forms import Record as RecordForm
-from kurbel.declared.kinds import MOST_ITEMS
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES, Cylinder
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Points, UnitName
-from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.units import Factor, Point, size_faults
 from kurbel.errors import Fault, Path, refuse
 from kurbel.machine.cylinder import CYCLES
 

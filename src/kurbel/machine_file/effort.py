@@ -7,7 +7,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms import FilePath, Number, Points, UnitName
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.kinds import Factor, Point, size_faults
+from kurbel.declared.units import Factor, Point, size_faults
 from kurbel.errors import refuse, refused
 from kurbel.machine.turning import Effort, Harmonics
 from kurbel.machine_file.trace import layout_keys

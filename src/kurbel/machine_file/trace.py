@@ -23,7 +23,7 @@ from kurbel.declared.forms import (
     positive,
 )
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.kinds import Factor, Point
+from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, RuleError, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak
