@@ -11,6 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from good_machines import ALL
+from kurbel.declared.forms import Record
+from kurbel.declared.units import parse_quantity
 from kurbel.designs.binding import Binder
 from kurbel.errors import MachineFileError, path_text
 from kurbel.machine import Machine
@@ -18,7 +21,7 @@ from kurbel.machine.batch import values_of
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.given import tree_of
-from kurbel.machine_file.reader import read_machine
+from kurbel.machine_file.reader import ROOT, read_machine
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
 
@@ -216,3 +219,53 @@ def test_a_row_with_more_faults_than_a_reader_tells_is_told_like_others() -> Non
     assert found[0].startswith("cylinders[0].indicator.head_end: -0.5 bar is below the vacuum")
     assert found[0].endswith("(reading stopped after 100 faults)")
     assert same(found[1], read(file, ("ambient",), ("2 bar",)))
+
+
+def kinds_of_numbers() -> set[tuple[str, str]]:
+    """The record and the key of every number that a machine file may have."""
+    found = set()
+    seen: set[int] = set()
+
+    def visit(form: Any) -> None:
+        if id(form) in seen:
+            return
+        seen.add(id(form))
+        if isinstance(form, Record):
+            name = form.load().__name__
+            found.update((name, key) for key, one in form.keys.items() if one.form.is_number)
+        for _, inner in form.parts():
+            visit(inner)
+        for inner in form.inline():
+            visit(inner)
+
+    visit(ROOT)
+    return found
+
+
+def test_every_number_of_every_record_may_be_an_array() -> None:
+    """Three values of each number of the shipped machines and of those of other tests, as arrays and one by one."""
+    files = [source.read(path) for path in sorted(CONFIGS.glob("*.yaml"))]
+    files += [source.decode("m.yaml", text.encode()) for text in ALL.values()]
+    met: set[tuple[str, str]] = set()
+    for file in files:
+        for key, number, unit in numbers_of(tree_of(file)):
+            if re.search(r"\.\d+\.\d+$|^kurbel$|^expect|^limits|uncertainty", key):
+                continue
+            text = f"{number!r}{unit}" if number != int(number) or unit else f"{int(number)}"
+            binder = Binder(file, (key,), (text,))
+            owners = {
+                (type(slot.given.form.load()).__name__ and slot.given.form.load().__name__, slot.name)
+                for slot in binder._slots.values()
+            }
+            if owners <= met or not all(slot.numeric for slot in binder._slots.values()):
+                continue
+            met |= owners
+            base = parse_quantity(text, binder.kinds[0])
+            values = base * np.array([1.0, 0.999, 1.001])
+            found = binder.of_columns([values], 3)
+            several = {row: lot.one(place) for lot in found.lots for place, row in enumerate(lot.rows)} | found.failures
+            for row in range(3):
+                alone = binder.of_columns([values[row : row + 1]], 1)
+                one = alone.lots[0].one(0) if alone.lots else alone.failures[0]
+                assert same(several[row], one), (key, row)
+    assert kinds_of_numbers() - met == set()
