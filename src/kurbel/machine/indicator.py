@@ -66,7 +66,11 @@ class Rectangular(Physical):
 
 
 class _OnPaper(Physical):
-    """A length that keeps the unit in which it is written."""
+    """A length that keeps the unit in which it is written, so that many are read one by one."""
+
+    @property
+    def is_number(self) -> bool:
+        return False
 
     def parse(self, text: str, folder: str) -> Bound:
         """Return the length in m, with its unit."""
