@@ -1,7 +1,8 @@
 """The command line: a thin command for every row of `SUMMARIES`; it imports what it computes with when it is called."""
 
+from kurbel.cli.check import check
 from kurbel.cli.group import BROKEN, COMMANDS, DONE, SUMMARIES, Context, exit_statuses, kurbel
-from kurbel.cli.machine import balance, bearings, check, flywheel, forces, harmonics, motion, stress, torsion
+from kurbel.cli.machine import balance, bearings, flywheel, forces, harmonics, motion, stress, torsion
 from kurbel.cli.pages import accuracy, plot, report
 from kurbel.cli.reference import example, friction, keys, schema, table, units
 from kurbel.cli.sweep import sweep

@@ -170,15 +170,25 @@ def complete_example(ctx: click.Context, param: click.Parameter, incomplete: str
 
 
 def complete_cylinder(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Return the cylinders of the machine file that stands on the line; none where it cannot be read."""
+    """Return the cylinders of the machine file on the line; none where it cannot be read."""
+    machine = _machine_of(ctx)
+    return _beginning((one.name for one in machine.cylinders), incomplete) if machine else []
+
+
+def complete_case(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the load cases of the machine file on the line; none where it cannot be read."""
+    machine = _machine_of(ctx)
+    return _beginning((one.name for one in machine.cases), incomplete) if machine else []
+
+
+def _machine_of(ctx: click.Context) -> "Machine | None":
     from kurbel.machine_file import load
 
     file = next(iter(ctx.args), "")  # a line that ends in an option is not read to its end
     try:
-        machine = load(file) if file and file != "-" else None
+        return load(file) if file and file != "-" else None
     except KurbelError:
-        return []
-    return _beginning((one.name for one in machine.cylinders), incomplete) if machine else []
+        return None
 
 
 def complete_picture(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
@@ -216,6 +226,14 @@ def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Comma
     return decorate
 
 
+case_option = click.option(
+    "--case",
+    "case_name",
+    default="",
+    metavar="NAME",
+    shell_complete=complete_case,
+    help="This load case of FILE; --set sets values over those of the case.",
+)
 set_option = click.option(
     "--set",
     "overrides",
@@ -224,7 +242,9 @@ set_option = click.option(
     shell_complete=complete_override,
     help="This value instead of that of FILE, such as cylinders.0.bore='450 mm'; may be repeated.",
 )
-machine_file = stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_option)
+set_options = stacked(case_option, set_option)
+"""Values over those of a file: those of a load case of it, and others over these."""
+machine_file = stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_options)
 """The machine file, or - for standard input, and values over those in it."""
 
 angle_options = stacked(
@@ -382,15 +402,15 @@ def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts:
     return angles
 
 
-def loaded(file: str, overrides: Sequence[str], *outputs: str | None) -> "Machine":
-    """Read the machine, with these values over those of its file.
+def loaded(file: str, case_name: str, overrides: Sequence[str], *outputs: str | None) -> "Machine":
+    """Read the machine, with the values of a load case of its file, '' for none, and these values over them.
 
     Raises UsageError where an output would overwrite its file, or a trace that it names.
     """
     from kurbel.machine_file import load
     from kurbel.render.output import refuse_overwriting
 
-    machine = load(file, overrides)
+    machine = load(file, overrides, case_name)
     for output in outputs:
         refuse_overwriting(output, (file, *machine.trace_files))
     return machine
@@ -408,6 +428,7 @@ class Asked:
     """
 
     file: str
+    case_name: str
     overrides: tuple[str, ...]
     units: str
     cylinder: str | None
@@ -424,7 +445,7 @@ class Asked:
         """Read the machine and return it with its results, none of which is computed yet."""
         from kurbel.solver.case import Case
 
-        return Case(loaded(self.file, self.overrides, self.output.file_name))
+        return Case(loaded(self.file, self.case_name, self.overrides, self.output.file_name))
 
     def frame(self, command: str, end: float, parts: int = 1) -> "Frame":
         """Return the frame of the report: rows from 0 to `end` degrees, for each of so many parts, or where wanted."""
@@ -446,12 +467,12 @@ class Asked:
             raise click.UsageError(f"{' and '.join(given)} both say at which crank angles; leave one of them out.")
         if not self.over and self.where is None:
             return None
-        from kurbel.report.rows import Place, over_stroke
+        from kurbel.report.rows import over_stroke, rows_where
 
         if self.where is None:
             return over_stroke(self.step, end)
         # where a force has a value there is a motion to tell, too
-        return Place.parsed(self.where, "forces" if command == "motion" else command, end).angles
+        return rows_where(self.where, "forces" if command == "motion" else command, end)
 
     def write(self, report: Report, case: "Case | None" = None, spreads: Spreads = ()) -> None:
         """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""

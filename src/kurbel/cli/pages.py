@@ -17,7 +17,7 @@ from kurbel.cli.options import (
     number_options,
     numbers,
     output_options,
-    set_option,
+    set_options,
     units_option,
 )
 from kurbel.render import Look
@@ -25,7 +25,7 @@ from kurbel.render import Look
 if TYPE_CHECKING:
     from kurbel.accuracy.inexact import Difference
     from kurbel.machine import Machine
-    from kurbel.report.pictures import Declared
+    from kurbel.report.pictures import PictureKind
 
 _PATIENCE = 1.0
 """Seconds after which a terminal is told what is being done."""
@@ -33,13 +33,14 @@ _PATIENCE = 1.0
 
 @click.command()
 @click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
-@set_option
+@set_options
 @click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
 @click.option("--step", type=number, default=15.0, metavar="DEGREES", help="Step of the tables; 15 if not given.")
 @units_option
 @number_options
 def report(
     files: tuple[str, ...],
+    case_name: str,
     overrides: tuple[str, ...],
     file_name: str | None,
     step: float,
@@ -66,7 +67,7 @@ def report(
         refuse_overwriting(file_name, (file,))
     with Progress("kurbel report") as progress:
         progress("reading and checking")
-        cases = [Case(loaded(file, overrides, file_name)) for file in files]
+        cases = [Case(loaded(file, case_name, overrides, file_name)) for file in files]
         keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
         system = units or "metric"
         if len(cases) == 1:
@@ -117,7 +118,7 @@ class Progress:
 
 @click.command()
 @click.argument("file", metavar="FILE", required=False, type=click.Path(allow_dash=True))
-@set_option
+@set_options
 @click.argument("names", metavar="[PICTURE]...", nargs=-1, shell_complete=complete_picture)
 @click.option(
     "--list", "listed", is_flag=True, help="Say which pictures this machine has; without FILE, which there are."
@@ -132,6 +133,7 @@ class Progress:
 @click.option("--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill in the terminal.")
 def plot(
     file: str | None,
+    case_name: str,
     overrides: tuple[str, ...],
     names: tuple[str, ...],
     listed: bool,
@@ -147,11 +149,11 @@ def plot(
 
     Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked where they stand. Without -o
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
-    and pdf need matplotlib. FILE may be - for standard input.
+    and pdf need typst. FILE may be - for standard input.
     """
-    from kurbel.render.pictures.drawing import check_file, draw_file, draw_stdout
+    from kurbel.render.drawing import check_file, draw_file, draw_stdout
+    from kurbel.report.picture_source import PictureOptions
     from kurbel.report.pictures import PICTURES, pictures, pictures_of
-    from kurbel.report.pictures.source import FILE, TERMINAL, Wish
     from kurbel.solver.case import Case
 
     if listed and file_name is not None:
@@ -164,20 +166,20 @@ def plot(
     to_file = file_name is not None and file_name != "-"
     if to_file:
         check_file(file_name or "")
-    case = Case(loaded(file, overrides, file_name))
-    wish = Wish(units or "metric", FILE if to_file else TERMINAL, cylinder, angles)
+    case = Case(loaded(file, case_name, overrides, file_name))
+    options = PictureOptions(units or "metric", cylinder, angles)
     if listed:
-        _write_list(pictures_of(case, wish))
+        _write_list(pictures_of(case, options))
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
-    drawn = pictures(case, names, wish)
+    drawn = pictures(case, names, options)
     if to_file:
         draw_file(list(drawn), look, file_name or "")
     else:
         draw_stdout(drawn, look)
 
 
-def _write_list(declared: "tuple[Declared, ...]") -> None:
+def _write_list(declared: "tuple[PictureKind, ...]") -> None:
     from kurbel.render.page import write_entries
 
     write_entries([(one.id, f"{one.title}. {one.text}") for one in declared])
@@ -185,13 +187,19 @@ def _write_list(declared: "tuple[Declared, ...]") -> None:
 
 @click.command()
 @click.argument("file", metavar="[FILE]", required=False, type=click.Path(allow_dash=True))
-@set_option
+@set_options
 @click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")
 @click.option("--extremes", is_flag=True, help="Put stiff and extreme machines to kurbel instead.")
 @click.option("--plot", "picture", metavar="FILE.svg|png|pdf", help="Draw the picture too.")
 @output_options
 def accuracy(
-    file: str | None, overrides: tuple[str, ...], quick: bool, extremes: bool, picture: str | None, output: Output
+    file: str | None,
+    case_name: str,
+    overrides: tuple[str, ...],
+    quick: bool,
+    extremes: bool,
+    picture: str | None,
+    output: Output,
 ) -> int:
     """Compare kurbel's own methods with others, quantity by quantity: error, time, and what went wrong.
 
@@ -200,22 +208,22 @@ def accuracy(
     errors of the data (0.1 deg of dead centre, 0.5 % noise, what the file gives as 'uncertainty') stand apart; the last
     section says what leaving out saves.
     """
-    if overrides and file is None:
-        raise click.UsageError("--set sets a value over that of FILE; give the FILE.")
+    if (case_name or overrides) and file is None:
+        raise click.UsageError("--case and --set are values over those of FILE; give the FILE.")
     if extremes:
         return _extremes(file, picture, output)
-    from kurbel.render.pictures.drawing import check_file, draw_file
+    from kurbel.render.drawing import check_file, draw_file
 
     if picture is not None:
         check_file(picture, "--plot")
     from kurbel.machine_file import loads
     from kurbel.report.accuracy import accuracy_report
 
-    machine = None if file is None else loaded(file, overrides, output.file_name, picture)
+    machine = None if file is None else loaded(file, case_name, overrides, output.file_name, picture)
     report = accuracy_report(machine, quick, loads, _uncertain(machine))
     output.write(report)
     if picture is not None:
-        from kurbel.report.pictures.accuracy import accuracy_picture
+        from kurbel.report.accuracy_picture import accuracy_picture
 
         draw_file([accuracy_picture(report)], output.look, picture)
     return 0

@@ -183,6 +183,31 @@ class Binder:
         }
 
 
+class CasesBinder:
+    """Binders of the load cases of a file; the first of the keys is `case`, and its texts are their names."""
+
+    def __init__(self, origin: Origin, keys: Sequence[str], start: Sequence[str]) -> None:
+        self._origin, self._keys, self._start = origin, keys[1:], start[1:]
+        self._binders: dict[str, Binder] = {}
+        first = self._of(start[0])
+        self.machine, self.kinds = first.machine, ["", *first.kinds]
+
+    def _of(self, name: str) -> Binder:
+        if name not in self._binders:
+            self._binders[name] = Binder(self._origin._replace(case=name), self._keys, self._start)
+        return self._binders[name]
+
+    def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
+        """Return the machines of rows of texts, case by case; see `Binder.bound`."""
+        found = Bound([], {})
+        for name in dict.fromkeys(row[0] for row in rows):
+            places = [place for place, row in enumerate(rows) if row[0] == name]
+            own = self._of(name).bound([rows[place][1:] for place in places])
+            found.lots.extend(Lot(lot.machine, [places[row] for row in lot.rows]) for lot in own.lots)
+            found.failures.update({places[row]: why for row, why in own.failures.items()})
+        return found
+
+
 class _Maker(Maker):
     """Makes records again in which something is read anew; of many machines, their numbers arrays (count,)."""
 

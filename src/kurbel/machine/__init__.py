@@ -23,6 +23,7 @@ from kurbel.declared.forms import (
     Limits,
     Listing,
     OneOf,
+    Settings,
     Uncertainties,
 )
 from kurbel.declared.forms import Record as RecordForm
@@ -61,6 +62,16 @@ def _names(cylinders: Sequence[Cylinder]) -> list[str]:
 def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: Sequence[Cylinder] | EqualCylinders) -> list[Fault]:
     names = _names(cylinders.cylinders if isinstance(cylinders, EqualCylinders) else cylinders)
     return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LoadCase(Record):
+    """A load case: values by dotted key, as in the file, that stand there instead of its own."""
+
+    name: str = field(str, "Name of the case, for `--case`", required=True, example="full load")
+    values: tuple[tuple[str, Any], ...] = field(
+        Settings(), "Values instead of those of the file, by dotted key", required=True, key="set"
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -199,6 +210,13 @@ class Machine(Record):
         also=("direction", "sense"),
     )
     origin: Origin | None = None
+    cases: tuple[LoadCase, ...] = field(
+        [LoadCase],
+        "Load cases: `--case NAME` computes one, `kurbel check` checks the limits in all, `kurbel sweep --cases` has a "
+        "row for each",
+        default=(),
+        absent="one case, the file as it is",
+    )
 
     @classmethod
     def of_keys(
@@ -273,6 +291,10 @@ class Machine(Record):
             yield Rule.of(Fault(place, f"two cylinders are called '{name}'"))._replace(broken=name in names[:index])
             whole = f"'{MACHINE}' stands for the whole machine in 'limits' and 'expect'; give another name"
             yield Rule(place, name == MACHINE, whole)
+        cases = [case.name for case in self.cases]
+        for index, name in enumerate(cases):
+            twice = Rule.of(Fault(("cases", index, "name"), f"two cases are called '{name}'"))
+            yield twice._replace(broken=name in cases[:index])
         scopes = tuple(dict.fromkeys((MACHINE, *names)))
         for key, figures in (("limits", self.limits), ("expect", self.expect)):
             for id, figure in figures:

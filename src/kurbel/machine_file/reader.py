@@ -13,6 +13,7 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import parse
+from kurbel.machine_file.zeroed_units import without_zeros
 
 if TYPE_CHECKING:
     from kurbel.machine_file.overrides import Override
@@ -21,13 +22,14 @@ ROOT = Record(Machine)
 """The form of a whole machine file."""
 
 
-def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Machine:
+def load(path: str | os.PathLike[str], overrides: Iterable[str] = (), case: str = "") -> Machine:
     """Return the machine that a file describes; "-" is standard input.
 
-    overrides: values in place of those of the file, such as `cylinders.0.bore=450 mm`. Raises UsageError for one that
+    overrides: values in place of those of the file, such as `cylinders.0.bore=450 mm`; case: the name of one of its
+    load cases, over which they are set. Raises UsageError for one that
     cannot be set, MachineFileError with every fault of the file, UnreadableFileError where there is none to read.
     """
-    return read_machine(source.read(path).set_over(overrides))
+    return read_machine(source.read(path)._replace(case=case).set_over(overrides))
 
 
 def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Machine:
@@ -49,7 +51,9 @@ def reading_of(origin: Origin) -> Reading:
 
 def read_machine(origin: Origin) -> Machine:
     """Return the machine that a file describes; errors: see `load`."""
-    return replace(read_values(origin, reading_of(origin)).made, origin=origin)  # type: ignore[no-any-return]
+    machine: Machine = read_values(origin, reading_of(origin)).made
+    name = f"{machine.name}, {origin.case}" if origin.case else machine.name
+    return replace(machine, name=name, origin=origin)
 
 
 def read_values(origin: Origin, reading: Reading) -> Given:
@@ -66,11 +70,15 @@ def read_values(origin: Origin, reading: Reading) -> Given:
 
 def set_over(tree: Any, origin: Origin) -> "list[Override]":
     """Put the overrides of a file into its tree, and return them."""
-    if not (origin.overrides or origin.varied) or not isinstance(tree, dict):
+    if not (origin.case or origin.overrides or origin.varied) or not isinstance(tree, dict):
         return []
-    from kurbel.machine_file.overrides import overridden, read_override
+    from kurbel.machine_file.overrides import overridden, overrides_of_case, read_override
 
-    read = [*map(read_override, origin.overrides), *(read_override(one, "--vary") for one in origin.varied)]
+    read = [
+        *(overrides_of_case(tree, origin.case) if origin.case else ()),
+        *map(read_override, origin.overrides),
+        *(read_override(one, "--vary") for one in origin.varied),
+    ]
     overridden(tree, read)
     return read
 
@@ -78,7 +86,7 @@ def set_over(tree: Any, origin: Origin) -> "list[Override]":
 def _given(reading: Reading, tree: Any, stem: str) -> Any:
     try:
         if isinstance(tree, dict):
-            given = ROOT.read(reading, {"name": stem, **tree}, ())
+            given = ROOT.read(reading, {"name": stem, **without_zeros(tree, reading)}, ())
             Maker(reading).made(given)
             return given
         if isinstance(tree, Plain) and not tree:
