@@ -60,9 +60,9 @@ class Reading:
         self.after = trace.angles - trace.angles[0] + self.place[0]
         self.step = trace.period / (len(self.p) - 1)
         widths = np.append(np.diff(trace.angles), 0.0) + np.append(0.0, np.diff(trace.angles))
-        order = np.argsort(self.p, kind="stable")
-        passed = np.cumsum(widths[order])
-        self.low = float(self.p[order][np.searchsorted(passed, _LOW * passed[-1])])
+        order = np.argsort(self.p)
+        share = np.cumsum(widths[order]) / (2 * trace.period)
+        self.low = float(self.p[order[np.searchsorted(share, _LOW)]])
         self.top = int(np.argmax(self.p))
         self.peak = float(self.p[self.top])
         # a single top sample may be noise; the closing one would count twice
@@ -217,29 +217,21 @@ def _rounded_angles(reading: Reading) -> str:
     )
 
 
-def _closing_sample(reading: Reading) -> str:
-    """A cycle that comes back to where it began, up to its last sample but one, has no drift."""
-    p, trace = reading.p, reading.trace
-    if trace.completed or len(p) < _FEWEST or trace.angles[-1] - trace.angles[-4] > 3 * LAST:
-        return ""
-    jump = float(p[0] - p[-1])
-    before = abs(float(extrapolated(trace.angles, reading.p[np.newaxis])[0]))
-    if abs(jump) <= max(_LEAST * reading.setting.ambient, _bends(reading), 3 * before):
-        return ""
-    closed = np.append(p[:-1], p[0])
-    angle = trace.as_written(float(trace.angles[0 if trace.against else -1]))
-    return (
-        f"the closing sample at {angle:.10g} deg is {in_bar(p[-1])}, though the cycle begins with {in_bar(p[0])} and "
-        f"comes back to it just before: leave that sample out; {reading.then(reading.p_i(pressures=closed))}"
-    )
-
-
 def _drift(reading: Reading) -> str:
+    """Judge the jump where the cycle closes: of the closing sample alone, or of a drift over the cycle."""
     p, trace = reading.p, reading.trace
     jump = float(drift_of(trace, p[np.newaxis])[0])
     closes = abs(float(p[0]) - reading.low)
     if abs(jump) <= max(_RANGE * closes, _LEAST * reading.setting.ambient, _bends(reading)):
         return ""
+    dense = len(p) >= _FEWEST and trace.angles[-1] - trace.angles[-4] <= 3 * LAST
+    if dense and 3 * abs(float(extrapolated(trace.angles, p[np.newaxis])[0])) < abs(jump) and not trace.completed:
+        angle = trace.as_written(float(trace.angles[0 if trace.against else -1]))
+        return (
+            f"the closing sample at {angle:.10g} deg is {in_bar(p[-1])}, though the cycle begins with {in_bar(p[0])} "
+            f"and comes back to it just before: leave that sample out; "
+            f"{reading.then(reading.p_i(pressures=np.append(p[:-1], p[0])))}"
+        )
     levelled = reading.p_i(pressures=without_drift(trace, p[np.newaxis])[0])
     if abs(levelled - reading.p_i()) <= _WORTH_IT * abs(reading.p_i()):
         return ""
@@ -521,7 +513,7 @@ def _common_exponent(reading: Reading) -> float:
 
 
 CHECKS: tuple[Callable[[Reading], str], ...] = (
-    *(_column_of_pulses, _turns_in_pairs, _wandering_cycles, _rounded_angles, _closing_sample, _drift),
+    *(_column_of_pulses, _turns_in_pairs, _wandering_cycles, _rounded_angles, _drift),
     *(_inverted, _unit),
     *(_backward, _peak_elsewhere, _motored_peak),
     *(_level, _exponents),
