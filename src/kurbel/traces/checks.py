@@ -166,7 +166,7 @@ def _turns_in_pairs(reading: Reading) -> str:
     odd, even = each[0::2].mean(axis=0), each[1::2].mean(axis=0)
     if np.abs(odd - even).max() <= _TURNS_DIFFER * max(np.ptp(odd), np.ptp(even)):
         return ""
-    peaks = f"differ by twos, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
+    peaks = f"differ in pairs, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
     if reading.setting.cycle == 360:
         return (
             f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; p_i is then "
@@ -193,7 +193,7 @@ def _wandering_cycles(reading: Reading) -> str:
         return ""
     off = wandered / (trace.period * (len(each) - 1))
     change = f"{abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'}"
-    remedy = f" If it is told by time: a 'recorded_speed' about {change} brings both together"
+    remedy = f" If the file counts time: a 'recorded_speed' about {change} brings both together"
     first, last = (in_bar(reading.p_i(pressures=one)) for one in (each[0], each[-1]))
     return (
         f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last, "
@@ -211,10 +211,7 @@ def _rounded_angles(reading: Reading) -> str:
     moved = f" and 'angle_zero: {zero:g} deg'" if trace.angles[0] else ""
     key = f"write 'angle_step: {reading.step:g} deg'{moved}" if trace.files else "give each point an angle of its own"
     even = reading.after[0] + reading.step * np.arange(len(trace.angles))
-    return (
-        f"{twins} samples stand at the angle of the one before: rounded angles? {key}; "
-        f"{reading.then(reading.p_i(even))}"
-    )
+    return f"{twins} samples have the angle of the one before: rounded angles? {key}; {reading.then(reading.p_i(even))}"
 
 
 def _drift(reading: Reading) -> str:
@@ -280,7 +277,7 @@ def _inverted(reading: Reading) -> str:
     if middle - float(p.min()) < _ENGINE * max(float(p.max()) - middle, _LEAST_SWING):
         return ""
     return (
-        f"its swing from {in_bar(middle)} goes down to {in_bar(float(p.min()))}: does it stand on its head? write "
+        f"its swing from {in_bar(middle)} goes down to {in_bar(float(p.min()))}: is it inverted? write "
         f"'scale: {-reading.trace.scale:g}'; {reading.then(-reading.p_i())}"
     )
 
@@ -368,7 +365,7 @@ def _backward(reading: Reading) -> str:
     if turned <= 0 or not _is_usual(reading, -reading.peak_at):
         return ""
     return (
-        f"the peak stands {-reading.peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
+        f"the peak is {-reading.peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
         f"count against the rotation? write 'angle_sense: against'; {reading.then(turned)}"
     )
 
@@ -395,7 +392,7 @@ def _peak_elsewhere(reading: Reading) -> str:
     where = "firing dead centre" if cycle == 720 else "dead centre"
     gas_exchange = ", in the gas exchange" if abs(reading.peak_at) > 180 else ""
     return (
-        f"the peak stands {abs(top):.4g} deg {'after' if reading.peak_at > 0 else 'before'} the {where}"
+        f"the peak is {abs(top):.4g} deg {'after' if reading.peak_at > 0 else 'before'} the {where}"
         f"{gas_exchange}: write {key}; {effect}"
     )
 
@@ -409,8 +406,8 @@ def _motored_peak(reading: Reading) -> str:
         return ""
     key, effect = reading.put_later(after)
     return (
-        f"no combustion shows, and the peak stands {abs(after):.2g} deg {'after' if after > 0 else 'before'} "
-        f"the dead centre; that of a motored engine stands at it or just before: check angle_zero; with "
+        f"no combustion shows, and the peak is {abs(after):.2g} deg {'after' if after > 0 else 'before'} "
+        f"the dead centre; that of a motored engine is at it or just before: check angle_zero; with "
         f"{key} {effect.replace('is then', 'is')}"
     )
 
