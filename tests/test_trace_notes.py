@@ -106,11 +106,11 @@ def obeyed(note: str, keys: str, pressures: str, cycle: str) -> tuple[str, str, 
 
 
 WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
-    "90 deg late": (FINE, late(90), "", "absolute", "the peak stands 103.6 deg after the firing dead centre"),
+    "90 deg late": (FINE, late(90), "", "absolute", "the peak is 103.6 deg after the firing dead centre"),
     "180 deg late": (FINE, late(180), "", "absolute", "in the gas exchange: write 'angle_zero: 180 deg'"),
-    "90 deg early": (FINE, late(-90), "", "absolute", "the peak stands 76.4 deg before the firing dead centre"),
+    "90 deg early": (FINE, late(-90), "", "absolute", "the peak is 76.4 deg before the firing dead centre"),
     "one turn late": (FINE, late(360), "", "absolute", "write 'angle_zero: 360 deg'; p_i stays"),
-    "by no quarter": (FINE, late(61.2), "", "absolute", "the peak stands 74.8 deg after the firing dead centre"),
+    "by no quarter": (FINE, late(61.2), "", "absolute", "the peak is 74.8 deg after the firing dead centre"),
     "gauge as absolute": (FINE, late(0) - AMBIENT, "", "absolute", "these look like gauge pressures"),
     "absolute as gauge": (FINE, late(0), "", "gauge", "about the ambient: absolute?"),
     "with clearance": (FINE, late(0), ", clearance: 1/14", "gauge", "about the ambient: absolute?"),
@@ -121,7 +121,7 @@ WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
     "a hundredth, gauge": (FINE, (late(0) - AMBIENT) / 100, ", clearance: 1/14", "gauge", "100 times too small"),
     "kPa as bar": (FINE, (late(0) - AMBIENT) * 100, "", "gauge", "100 times too large"),
     "backward": (FINE, absolute(ENGINE, -FINE), "", "absolute", "does its angle count against the rotation?"),
-    "on its head": (FINE, AMBIENT - late(0), "", "gauge", "does it stand on its head? write 'scale: -1'"),
+    "on its head": (FINE, AMBIENT - late(0), "", "gauge", "is it inverted? write 'scale: -1'"),
     "no level": (FINE, late(0) - 7.3, "", "absolute", "the perfect vacuum being at 0 bar; write 'pegging: ambient'"),
     "no level, gauge": (FINE, late(0) - 7.3, "", "gauge", "the perfect vacuum being at -1.013 bar; write 'pegging"),
     "drift": (FINE, late(0) + 3 * FINE / 720, "", "absolute", "the pressure jumps by -2.9"),
@@ -138,7 +138,7 @@ WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
         absolute(ENGINE, np.arange(0.0, 720.0, 0.5)),
         "",
         "absolute",
-        "samples stand at the angle of the one before: rounded angles? write 'angle_step: 0.5 deg'",
+        "samples have the angle of the one before: rounded angles? write 'angle_step: 0.5 deg'",
     ),
     "dead centre": (FINE, late(-6), ", clearance: 1/14", "absolute", "its compression goes by p V^1."),
     "level": (FINE, late(0) - 0.5, ", clearance: 1/14", "absolute", "its compression goes by p V^1.5"),
@@ -175,11 +175,11 @@ def test_what_it_would_change_is_the_true_figure(tmp_path: Path) -> None:
 
 
 def test_four_strokes_told_as_two(tmp_path: Path) -> None:
-    """The angle begins anew in every turn and 'cycle: four-stroke' is forgotten: the turns differ by twos."""
+    """The angle begins anew in every turn and 'cycle: four-stroke' is forgotten: the turns differ in pairs."""
     _, each = cycles(ENGINE, 3, 0.5, noise=0.05)
     file = written(tmp_path, np.tile(np.arange(0.0, 360.0, 0.5), 6), each.ravel())
     (note,) = notes_of(machine_text(file, cycle="two-stroke"))
-    assert "its turns differ by twos" in note
+    assert "its turns differ in pairs" in note
     assert notes_of(machine_text(file, cycle=obeyed(note, "", "", "")[2])) == []
 
 
@@ -224,7 +224,7 @@ def test_every_command_shows_the_same_notes_once(tmp_path: Path, command: str) -
         "flywheel: {inertia: 1 kg m2}\n"
     )
     (tmp_path / "m.yaml").write_text(shaft + machine_text(written(tmp_path, FINE, late(90))))
-    (note,) = [one for one in notes_of((tmp_path / "m.yaml").read_text()) if "the peak stands" in one]
+    (note,) = [one for one in notes_of((tmp_path / "m.yaml").read_text()) if "the peak is" in one]
     ran = CliRunner().invoke(kurbel, [command, str(tmp_path / "m.yaml"), "-f", "json"])
     assert ran.exit_code == 0, ran.output
     found = json.loads(ran.stdout)

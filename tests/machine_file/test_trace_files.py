@@ -213,7 +213,7 @@ def test_what_is_no_text_is_named(tmp_path: Path, begin: bytes, said: str) -> No
         (", pegging: {angle: 5 deg}", "'pressure' is missing"),
         (", angle_zero: {motored: p.csv}", "'loss_angle' is missing"),
         (", clearance: 0.1, compression_ratio: 11", "say the same thing"),
-        (", decimal: comma", "a comma cannot stand both in numbers and between columns"),
+        (", decimal: comma", "a comma cannot be both in numbers and between columns"),
     ],
 )
 def test_keys_that_contradict_or_lack_one_another(tmp_path: Path, keys: str, said: str) -> None:

@@ -441,7 +441,7 @@ def test_motored_peak_away_from_the_dead_centre(late: float, text: str) -> None:
 def test_motored_traces_are_known_by_their_shape(late: float) -> None:
     """Too late, a motored trace does positive work; its two sides are alike all the same."""
     (warning,) = warned(finely_motored(late))
-    assert warning.startswith("piston, head end: no combustion shows, and the peak stands")
+    assert warning.startswith("piston, head end: no combustion shows, and the peak is")
     assert f"{abs(late):.2g} deg {'after' if late > 0 else 'before'}" in warning
 
 

@@ -29,7 +29,7 @@ ANGLE_STEP = alternative(
 )
 SKIP_ROWS = alternative(Count(least=0), "Number of lines above the first figures", absent="0")
 DELIMITER = alternative(
-    (*DELIMITERS, *DELIMITERS.values()), "What stands between two columns", absent="comma", also=("separator", "sep")
+    (*DELIMITERS, *DELIMITERS.values()), "Sign between two columns", absent="comma", also=("separator", "sep")
 )
 DECIMAL = alternative(tuple(DECIMALS), "Decimal point or decimal comma", absent="point")
 
@@ -43,7 +43,7 @@ def layout_rules(what: str, given: Mapping[str, Any]) -> Iterator[Rule]:
     timed, speed = given.get("angle_unit") in SECONDS, "recorded_speed" in given
     message = "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"
     yield Rule("angle_unit", timed and not speed, message)
-    message = "the speed is asked for times only; write 'angle_unit: s'"
+    message = "a speed is for times only; write 'angle_unit: s'"
     yield Rule("recorded_speed", speed and not timed, message)
 
 
@@ -204,7 +204,7 @@ def dead_centre(given: Motored, layout: Layout, base: Callable[[Array], Array], 
     zero = sense * (peak.place + given.loss_angle)
     note = (
         f"angle_zero is {zero:.4g} deg, uncertain by {doubt:.2g} deg: the peak of a parabola through "
-        f"{peak.samples} samples of {basename(given.motored)} stands at {sense * peak.place:.4g} deg, the dead centre "
+        f"{peak.samples} samples of {basename(given.motored)} is at {sense * peak.place:.4g} deg, the dead centre "
         f"{given.loss_angle:g} deg later"
     )
     return zero, note

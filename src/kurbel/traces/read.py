@@ -105,7 +105,7 @@ def read_table(file: str, layout: Layout) -> Table:
     """Return angles and columns of a file; raises RuleError with the line of the first that cannot be read."""
     text = text_of(file)
     if layout.ambiguous and '"' not in text:
-        refused("a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'", "decimal")
+        refused("a comma cannot be both in numbers and between columns; write 'delimiter: semicolon'", "decimal")
     numbers = _numbers(text, layout)
     if not numbers.size:
         lines = "line" if layout.skip_rows == 1 else f"{layout.skip_rows} lines"
