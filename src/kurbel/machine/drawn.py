@@ -1,62 +1,52 @@
-"""Cards as the indicator drew them: points on the paper, by the length of the card and the scale of its spring."""
+"""Cards as the indicator drew them: by the length of the card on the paper and the scale of the spring."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from kurbel.declared.forms import Physical
+from kurbel.declared.forms.figures import Bound
 from kurbel.declared.kinds import Factor
 from kurbel.declared.record import Record, field
-from kurbel.declared.units import unit_factor, written_unit
+from kurbel.declared.units import written_unit
 from kurbel.machine.rectangle import Rectangle
 
 
-class PaperLength(float):
-    """A length in m with the unit that it is written in, which is also that of the points on the paper."""
+class _OnPaper(Physical):
+    """A length that keeps the unit in which it is written."""
 
-    unit = "mm"
-
-
-class _Paper(Physical):
-    """The length of a card, with its unit."""
-
-    def parse(self, text: str, folder: str) -> PaperLength:
-        """Return the length; raises RuleError."""
-        length = PaperLength(super().parse(text, folder))
-        length.unit = written_unit(text)
-        return length
-
-    @property
-    def is_number(self) -> bool:
-        """Whether the value is a mere number: it has a unit, too."""
-        return False
-
-    def numbers(self, texts: Sequence[str]) -> None:
-        """Return nothing: each text has a unit of its own."""
+    def parse(self, text: str, folder: str) -> Bound:
+        """Return the length in m, with its unit."""
+        return Bound(super().parse(text, folder), written_unit(text))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Drawn(Record):
-    """The paper of a card: its length, and the scale of the spring in m/Pa."""
+    """The paper of a card: its length, and the scale of the spring in m/Pa.
 
-    length: float = field(_Paper("length", above=0), "Length of the card on the paper", "l", required=True)
+    Points are in millimetres, or in inches where the length is.
+    """
+
+    length: float = field(
+        _OnPaper("length", above=0),
+        "Length of the card on the paper",
+        "l",
+        required=True,
+    )
     spring: float = field("spring", "Scale of the spring: height on the paper over pressure", above=0, required=True)
 
     @property
-    def paper_unit(self) -> str:
-        """The unit of the points: that of the length, or mm."""
-        return self.length.unit if isinstance(self.length, PaperLength) else PaperLength.unit
+    def unit(self) -> str:
+        """The unit of the points."""
+        return "in" if isinstance(self.length, Bound) and self.length.unit.startswith("in") else "mm"
 
     @property
-    def unit(self) -> Factor:
+    def factor(self) -> Factor:
         """What turns heights above the atmospheric line into Pa."""
-        up, down = unit_factor(self.paper_unit, "length")
-        return up, down * self.spring
+        return (1.0, 1e3 * self.spring) if self.unit == "mm" else (254.0, 1e4 * self.spring)
 
     @property
     def whole(self) -> float:
         """The length of the card in the unit of its points."""
-        up, down = unit_factor(self.paper_unit, "length")
-        return round(self.length * down / up, 9)
+        return round(1e3 * self.length if self.unit == "mm" else self.length * 1e4 / 254, 9)
 
     def rectangle(self, mean_height: float | None = None, area: float | None = None) -> Rectangle:
         """Return the card of the mean height in m, or of the area in m² by planimeter: p_i = a/(l · spring)."""

@@ -68,8 +68,8 @@ class Card(Record):
     )
     _drawn = alternative(
         Drawn,
-        "The paper of the card: all points are then in the unit of its length, from the card's own dead centre and "
-        "from the atmospheric line",
+        "The paper of the card: all points are then millimetres, or inches where its length is, from the card's own "
+        "dead centre and from the atmospheric line",
         instead="unit",
         key="drawn",
     )
@@ -112,9 +112,9 @@ class Card(Record):
         """Return the card that these keys of a machine file describe; raises RuleError with every fault."""
         if drawn and given.keys() & {"area", "mean_height"}:
             return _by_planimeter(drawn, **given)
-        factor = drawn.unit if drawn else unit or (1, 1)
-        whole, paper_unit = (drawn.whole, drawn.paper_unit) if drawn else (1.0, "")
-        faults = [*_missing_lines(given), *_all_line_faults(given, whole, paper_unit)]
+        factor = drawn.factor if drawn else unit or (1, 1)
+        whole = drawn.whole if drawn else 1.0
+        faults = [*_missing_lines(given), *_all_line_faults(given, whole, drawn.unit if drawn else "")]
         if interpolate == "polytropic" and not clearance:
             needed = "'polytropic' needs the 'clearance' volume over the stroke volume"
             faults.append(Fault(("interpolate",), needed + (", more than 0" if clearance == 0 else "")))
@@ -187,10 +187,7 @@ def _line(name: str, points: list[Point], unit: Factor, whole: float, start: int
 
 
 def _all_line_faults(lines: Mapping[str, list[Point]], whole: float, unit: str) -> list[Fault]:
-    """Return what keeps lines from running once through the whole stroke; of points that are not on it the first.
-
-    unit: of points on paper; '' where they are fractions of the stroke.
-    """
+    """Return what keeps lines from running once through the whole stroke; points that are not on it are told once."""
     faults = []
     for name, points in lines.items():
         beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= whole]
@@ -253,6 +250,7 @@ _CHAMBER = Keyed(
         "diesel": RecordForm(Diesel),
     },
     otherwise=RecordForm(Card),
+    texts={"mean_pressure": "Indicated mean pressure in place of a card: work and power hold, forces do not"},
 )
 _ONE_PRESSURE = Rectangular("level")
 
