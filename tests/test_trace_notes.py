@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,11 @@ from indicated import Engine, absolute, columns_file, cycles, indicated
 from kurbel.cli import kurbel
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
+from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.warnings import Note, machine_notes
 from kurbel.solver.case import Case
+from kurbel.traces.checks import CHECKS, Reading
+from kurbel.traces.correct import Setting, Trace, corrected
 from representative import few
 
 AMBIENT = 1.01325
@@ -279,6 +283,31 @@ def test_a_measured_stirling_engine(tmp_path: Path) -> None:
     assert [note.text for note in noted(machine) if "left out" not in note.text] == []
     notes = [note.text for note in noted(loads(text % (STIRLING, 60 / period, zero)))]
     assert any("the cycles wander" in note for note in notes)
+
+
+def drawn_trace(random: np.random.Generator) -> tuple[Trace, Setting]:
+    """Any trace in any chamber: few samples or many, even or not, of noise, pulses, nothing or an engine."""
+    cycle, count = float(random.choice([360, 720])), int(random.choice([3, 4, 8, 37, 400]))
+    inside = np.sort(random.uniform(0, cycle, count)) if random.random() < 0.5 else np.arange(1, count + 1) * 1.0
+    angles = np.concatenate(([0.0], inside * (1 if random.random() < 0.5 else cycle / (inside[-1] + 1)), [cycle]))
+    angles = np.sort(np.clip(angles, 0, cycle))
+    shapes = [0 * angles, random.standard_normal(len(angles)), absolute(ENGINE, angles), 1.0 * (angles > cycle / 2)]
+    pressures = shapes[random.integers(len(shapes))] * 10 ** random.uniform(-8, 14)
+    laps = pressures * (1 + 0.1 * random.standard_normal((int(random.integers(1, 5)), 1)))
+    clearance = random.choice([None, 0.07, 1e-6, 1e6])
+    trace = Trace(angles, laps, clearance=clearance, completed=bool(random.random() < 0.5), unit=1e5, column=2)
+    ambient, gauge = random.choice([0.0, 101325.0]), bool(random.random() < 0.5)
+    return trace, Setting(SliderCrank(0.05, 0.2), cycle, bool(random.random() < 0.5), float(ambient), not gauge)
+
+
+def test_no_trace_stops_a_check() -> None:
+    """Every check ends with a sentence or none, and what numpy warns of is a fault."""
+    random = np.random.default_rng(11)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for _ in range(400):
+            reading = Reading(*(drawn := drawn_trace(random)), corrected(*drawn))
+            assert all(isinstance(check(reading), str) for check in CHECKS)
 
 
 # what is judged wrongly, or not at all

@@ -302,7 +302,7 @@ def _unit(reading: Reading) -> str:
         if setting.cycle == 360 or not (against_vacuum if setting.absolute else reading.ratio <= _ENGINE):
             return ""
         can = f"four strokes compress more than from {in_bar(low)}"
-    factor, unit = _likely_unit(reading, least, 2 * compressed, max(most, ambient), _ENGINE if flat else 0.0)
+    factor, unit = _likely_unit(reading, least, max(2 * compressed, 1.0), max(most, ambient), _ENGINE if flat else 0.0)
     if factor == 1:
         return ""
     times = max(factor, 1 / factor)
@@ -505,7 +505,7 @@ def _common_exponent(reading: Reading) -> float:
 
     now, later = apart(0.0), 1.0
     for _ in range(3):
-        later *= now / (now - apart(later))
+        later *= now / (now - apart(later) or math.nan)
     return later
 
 
