@@ -290,4 +290,4 @@ def test_equal_cylinders_are_told_once_in_the_input() -> None:
     case = case_of("v8-cross-plane")
     told = checked(case)
     assert sum(one.cylinder for one in told.sections) == 8
-    assert [one.title for one in told.told_once if one.cylinder] == ["left 1–4, right 1–4"]
+    assert [one.title for one in told.shown_once if one.cylinder] == ["left 1–4, right 1–4"]
