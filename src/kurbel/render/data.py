@@ -46,7 +46,7 @@ def csv_cell(value: Any, look: Look) -> Any:
     Numbers have the digits that are wanted, or all; the values of a list are parted by blanks.
     """
     if isinstance(value, str):
-        text = look.charset.data(value)
+        text = look.data(value)
         return f"'{text}" if text.startswith(_FORMULA) else text
     if isinstance(value, tuple):
         return " ".join(str(csv_cell(one, look)) for one in value)
@@ -240,7 +240,7 @@ def _column_pieces(column: Column, look: Look) -> Iterator[str]:
 
 def _written(node: Any, look: Look) -> str:
     """Return a node on one line; characters that turn the writing are escaped."""
-    return json.dumps(node, ensure_ascii=not look.charset.has("φ"), allow_nan=False).translate(_ESCAPED)
+    return json.dumps(node, ensure_ascii=not look.has("φ"), allow_nan=False).translate(_ESCAPED)
 
 
 # the JSON Schema of what `-f json` prints

@@ -84,7 +84,7 @@ def json_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]:
 
 def markdown_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]:
     """Yield a table in Markdown, numbers to four digits."""
-    heads = [*(f"{name} ({look.charset.unit(unit)})" if unit else name for name, unit in titles.names)]
+    heads = [*(f"{name} ({look.unit(unit)})" if unit else name for name, unit in titles.names)]
     rules = ["--:"] * (len(heads) + 1) + ["---"] * len(titles.last)
     for line in chain(([titles.row, *heads, *titles.last], rules), _cells(titles, rows, look)):
         escaped = (text.replace("\\", "\\\\").replace("|", "\\|") for text in line)
@@ -94,14 +94,14 @@ def markdown_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[s
 def table_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]:
     """Yield a table of numbers to four digits, flush right, heads and units over it."""
     names = [titles.row, *(name for name, _ in titles.names), *titles.last]
-    units = ["", *(look.charset.unit(unit) for _, unit in titles.names), *("" for _ in titles.last)]
+    units = ["", *(look.unit(unit) for _, unit in titles.names), *("" for _ in titles.last)]
     cells = _cells(titles, rows, look)
     first = list(islice(cells, _WIDTH_OF))
     widths = [max(map(len, column)) for column in zip(names, units, *first)]
     if titles.last:  # a reason may be long, and nothing follows it
         widths[-1] = 0
-    heads = [[look.charset.text(one) for one in line] for line in ((names, units) if any(units) else (names,))]
-    rule = [look.charset.text("─") * (sum(widths) + 2 * (len(widths) - 1))]
+    heads = [[look.text(one) for one in line] for line in ((names, units) if any(units) else (names,))]
+    rule = [look.text("─") * (sum(widths) + 2 * (len(widths) - 1))]
     for line in chain(heads, (rule,), first, cells):
         yield "  ".join(cell.rjust(width) for cell, width in zip(line, widths)).rstrip() + "\n"
 
@@ -113,7 +113,7 @@ def _cells(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[list[str
 
 def _cell(value: Any, look: Look) -> str:
     if isinstance(value, str):
-        return look.charset.unit(value) if isinstance(value, Unit) else look.charset.text(value)
+        return look.unit(value) if isinstance(value, Unit) else look.text(value)
     if isinstance(value, tuple):
         return " ".join(_cell(one, look) for one in value)
     if value is None:
