@@ -172,7 +172,7 @@ def _made_from(given: Provenance | None) -> dict[str, Any]:
     if given is None:
         return {}
     versions = {"kurbel": __version__, **given.versions}
-    return {"inputs": [vars(one) for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
+    return {"inputs": [one._asdict() for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
 
 
 def _ratio(part: Part, look: Look) -> dict[str, Any]:
