@@ -32,7 +32,7 @@ def complete_override(ctx: click.Context, param: click.Parameter, incomplete: st
 
 def complete_columns(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
     """Return the columns of the command that may follow those named already."""
-    from kurbel.mechanisms.kinds import every_quantity
+    from kurbel.quantities import every_quantity
 
     named, comma, begun = incomplete.rpartition(",")
     known = [one for one in every_quantity().columns(ctx.info_name or "") if one not in named.split(",")]

@@ -47,14 +47,10 @@ def words(text: str) -> tuple[str, ...]:
 
 def columns(text: str) -> tuple[str, ...]:
     """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
-    from kurbel.declared.quantities import COLUMNS
+    from kurbel.quantities import every_quantity
+    from kurbel.quantity import ambiguity, called, joined
 
     named = words(text)
-    if all(word in COLUMNS for word in named):
-        return named
-    from kurbel.declared.quantity import ambiguity, called, joined
-    from kurbel.mechanisms.kinds import every_quantity
-
     known = [column for column in every_quantity().all_columns if column.commands]
 
     def only(name: str) -> str:

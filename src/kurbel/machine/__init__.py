@@ -31,7 +31,6 @@ from kurbel.declared.forms import (
 )
 from kurbel.declared.forms.figures import MACHINE, Expected, scoped
 from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.quantity import Quantity, by_id
 from kurbel.declared.reading import REFUSED, shown
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
@@ -43,7 +42,6 @@ from kurbel.machine.origin import Origin
 from kurbel.machine.shaft_line import ShaftLine, ShaftPart
 from kurbel.machine.shaft_list import line_of, shaft_faults
 from kurbel.machine.turning import Coupling, Effort, Harmonics, Load
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
@@ -51,10 +49,6 @@ __all__ = ["CYCLES", "Cylinder", "Machine"]
 FORMAT = 1
 """Number of the machine-file format that this version reads."""
 STANDARD_ATMOSPHERE = 101325.0
-
-
-def _key_values() -> dict[str, Quantity]:
-    return by_id(*every_quantity().all_key_values)
 
 
 def _names(cylinders: Sequence[Cylinder]) -> list[str]:
@@ -184,13 +178,13 @@ class Machine(Described):
             also=("shaft_line", "torsion"),
         ),
         "limits": Key(
-            Limits(_key_values),
+            Limits(),
             "Bounds for key values, checked by `kurbel check`: of each cylinder that has one, else of the machine; "
             "`machine.T_max` of the whole machine, `NAME.T_max` of one cylinder",
             absent="none",
         ),
         "expect": Key(
-            Expectations(_key_values),
+            Expectations(),
             "Figures that key values are to meet, compared by `kurbel check`, with the names of `limits`",
             absent="none",
         ),

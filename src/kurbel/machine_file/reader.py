@@ -1,7 +1,7 @@
 """From a machine file to a `Machine`: text, tree, records; or one error with all faults."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,9 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import parse
+from kurbel.machine_file.zeroed_units import without_zeros
+from kurbel.quantities import every_quantity
+from kurbel.quantity import Quantity, by_id
 
 if TYPE_CHECKING:
     from kurbel.machine_file.overrides import Override
@@ -43,7 +46,12 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
 
 def reading_of(origin: Origin) -> Reading:
     """Return a pass over a file that has not begun."""
-    return Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
+    return Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"), key_values)
+
+
+def key_values() -> Mapping[str, Quantity]:
+    """Return the key values on which a machine file may put limits, by id."""
+    return by_id(*every_quantity().all_key_values)
 
 
 def read_machine(origin: Origin, reading: Reading | None = None) -> Machine:
@@ -73,7 +81,7 @@ def set_over(tree: Any, origin: Origin) -> "list[Override]":
 def _machine(reading: Reading, tree: Any, stem: str) -> Any:
     try:
         if isinstance(tree, dict):
-            return ROOT.read(reading, {"name": stem, **tree}, ())
+            return ROOT.read(reading, {"name": stem, **without_zeros(tree, reading)}, ())
         if isinstance(tree, Plain) and not tree:
             return reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")
         return reading.fault((), f"expected lines such as 'crank: 400 mm', got {kind_of(tree)}{glued_hint(tree)}")

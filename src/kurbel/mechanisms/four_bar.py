@@ -8,7 +8,6 @@ from typing import Any, ClassVar, NamedTuple
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
 from kurbel.mechanisms import (
@@ -26,6 +25,7 @@ from kurbel.mechanisms import (
 from kurbel.mechanisms.offers import F_COUPLER, SWING_OFFERS, SWING_VALUES
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import Quantity
 
 
 def _coupler(end: str, symbol: str, kind: str, text: str) -> Quantity:
@@ -41,12 +41,12 @@ COUPLER_OFFERS = (
     Offer(
         _coupler("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
         lambda four_bar, angle: four_bar.coupler_at(angle).slope,
-        ("omega",),
+        omega=1,
     ),
     Offer(
         _coupler("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
         lambda four_bar, angle: four_bar.coupler_at(angle).curvature,
-        ("omega", "omega"),
+        omega=2,
     ),
 )
 

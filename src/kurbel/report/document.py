@@ -2,7 +2,7 @@
 
 from typing import NamedTuple, Union
 
-from kurbel.report.pictures.picture import Picture
+from kurbel.report.picture import Picture
 from kurbel.report.tables import Provenance, Report
 
 
