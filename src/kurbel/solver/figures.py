@@ -291,9 +291,8 @@ def declared_rows(command: str) -> Rows:
 
     columns = declared.columns(command)
     state_rows = {id: Row(one, partial(lambda id, state: state[id], id)) for id, one in columns.items()}
-    first, others = declared.key_values(command)
     extremes = printed_by(searched(columns.values(), command), command)
-    return Rows(state_rows, in_order((*map(row, first), *extremes, *map(row, others))))
+    return Rows(state_rows, in_order((*extremes, *map(row, declared.key_values(command)))))
 
 
 def passed_on(part: str, name: str, text: str) -> Any:
