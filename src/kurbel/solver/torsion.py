@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -252,12 +252,12 @@ class SegmentState(AtAngles):
         self._segment, self.phi = segment, phi
 
     @column("M_w", "torque")
-    def M_shaft(self) -> Array | None:
+    def M_shaft(self) -> Any:
         """Torque in the piece of shaft, mean and vibration."""
         return self._segment.over(self.phi) if self._segment else None
 
     @column("τ", "stress")
-    def tau(self) -> Array | None:
+    def tau(self) -> Any:
         """Torsional stress where the piece is thinnest."""
         return self._segment.factor * self.M_shaft if self._segment and self._segment.factor else None
 
