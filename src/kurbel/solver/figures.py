@@ -16,7 +16,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared import quantities as declared
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI
+from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.errors import UsageError
 from kurbel.mechanisms import KeyOffer, Offer
 from kurbel.near_words import did_you_mean
@@ -25,6 +25,7 @@ from kurbel.quantity import (
     ITS_OWN,
     PHI,
     Computed,
+    Condition,
     ForEach,
     Lists,
     Quantity,
@@ -46,6 +47,19 @@ class Figure(NamedTuple):
     unit: str
     degrees: float | None
     quantity: Quantity
+
+    def __str__(self) -> str:
+        """Return it as people read it, with four digits in metric units.
+
+        >>> str(Figure(10000.0, "N", 90.0, Quantity("T_max", "T_max", "force", "Largest tangential force")))
+        '10.00 kN at 90.00°'
+        """
+        values = self.value if isinstance(self.value, tuple) else (self.value,)
+        kind = self.quantity.kind
+        unit = shown_unit(kind, "metric", max(map(abs, values), default=0.0))
+        numbers = ", ".join(f"{convert(one, kind, unit):#.4g}".rstrip(".") for one in values)
+        where = "" if self.degrees is None else f" at {self.degrees:.2f}°"
+        return f"{numbers} {self.quantity.marked(unit)}".rstrip() + where
 
 
 class Shown:
@@ -138,14 +152,17 @@ class Rows(NamedTuple):
 class Part(Computed[V]):
     """Results that are a part of others; their rows stand in the place of the attribute."""
 
-    def __init__(self, function: Callable[[Any], V], kind: type[Results]) -> None:
+    def __init__(self, function: Callable[[Any], V], kind: type[Results], unless: Condition | None) -> None:
         super().__init__(function, Quantity(function.__name__, "", "", ""))
-        self.kind = kind
+        self.kind, self.unless = kind, unless
 
 
-def part(kind: type[Results]) -> Callable[[Callable[[Any], V]], Part[V]]:
-    """Return what makes a method a part of results, of this class; it may return None where there is no such part."""
-    return lambda function: Part(function, kind)
+def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Callable[[Any], V]], Part[V]]:
+    """Return what makes a method a part of results, of this class; it may return None where there is no such part.
+
+    unless: takes the results; where it is true, all of the part says nothing new.
+    """
+    return lambda function: Part(function, kind, unless)
 
 
 class Searched:
@@ -264,7 +281,8 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
     for item in _definitions(kind):
         if isinstance(item, Part):
             inner = rows_of(item.kind, offers, key_offers).key_values.values()
-            found += [row.through(item.value_of) for row in inner]
+            seen = (row.through(item.value_of) for row in inner)
+            found += [row._replace(unless=item.unless) if item.unless else row for row in seen]
         elif isinstance(item, Searched):
             found += searched(quantities, kind.command)
         elif isinstance(item, (Computed, ForEach)):
@@ -291,9 +309,8 @@ def declared_rows(command: str) -> Rows:
 
     columns = declared.columns(command)
     state_rows = {id: Row(one, partial(lambda id, state: state[id], id)) for id, one in columns.items()}
-    first, others = declared.key_values(command)
     extremes = printed_by(searched(columns.values(), command), command)
-    return Rows(state_rows, in_order((*map(row, first), *extremes, *map(row, others))))
+    return Rows(state_rows, in_order((*extremes, *map(row, declared.key_values(command)))))
 
 
 def passed_on(part: str, name: str, text: str) -> Any:
@@ -304,6 +321,11 @@ def passed_on(part: str, name: str, text: str) -> Any:
         return None if one is None else getattr(one, name)
 
     return property(answer, doc=text)
+
+
+def told(values: Array, count: int | None) -> Any:
+    """Return values (machines,) as they are for many machines, and as a float for one, whose count is None."""
+    return float(values[0]) if count is None else values
 
 
 def crank_angles(degrees: Any) -> Array:
