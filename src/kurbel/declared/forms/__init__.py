@@ -16,8 +16,6 @@ from kurbel.declared.forms.values import (
     Truth,
     Uncertainties,
     UnitName,
-    not_negative,
-    positive,
 )
 
 __all__ = [
@@ -43,6 +41,4 @@ __all__ = [
     "Uncertainties",
     "UnitName",
     "Variant",
-    "not_negative",
-    "positive",
 ]
