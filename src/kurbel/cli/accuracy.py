@@ -7,7 +7,7 @@ import click
 from kurbel.cli.output_options import Output, loaded, output_options, set_option
 
 if TYPE_CHECKING:
-    from kurbel.accuracy.inexact import Difference
+    from kurbel.accuracy.trials import Difference
     from kurbel.machine import Machine
 
 
