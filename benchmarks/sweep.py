@@ -29,7 +29,7 @@ from kurbel.machine.variants import Lot
 from kurbel.machine_file import source
 from kurbel.machine_file.reader import read_machine
 from kurbel.render import Look
-from kurbel.render.sweep_output import Titles, csv_rows
+from kurbel.render.sweep_rows import Titles, csv_rows
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = "waterworks"

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 import gallery  # docs/gallery.py
 from kurbel.cli import kurbel
 from kurbel.machine.alike import gathered
-from kurbel.render.charset import Charset
+from kurbel.render.text import Charset
 from kurbel.report.alike import together
 
 _CONFIGS = Path(__file__).parent.parent / "configs"

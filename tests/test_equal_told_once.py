@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from kurbel.cli import kurbel
-from kurbel.render.charset import width
+from kurbel.render.text import width
 from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -202,9 +202,6 @@ def test_the_front_of_two_aims_takes_hardly_more_than_its_rows() -> None:
     assert chosen < 4 * plain
 
 
-@pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="148 calls to read a row that stands, 99 to compute and write one"
-)
 def test_resume_reads_a_row_faster_than_it_is_computed() -> None:
     found = {}
     for rows in (500, 1500):
@@ -216,9 +213,6 @@ def test_resume_reads_a_row_faster_than_it_is_computed() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="the whole file in memory, four times: 25 MB for one of 6.7 MB, else 17"
-)
 def test_resume_does_not_hold_the_whole_file() -> None:
     wide = ("--vary", f"name={'x' * 200}", "--vary", f"tandem.0.name={'x' * 200}")
     found = []

@@ -20,7 +20,7 @@ from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.commands import report_of
-from kurbel.report.forces import forces_report
+from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.balance import BookBalance, LocomotiveBalance, MachineBalance
 from kurbel.solver.bearings import Bearing

@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from imported import modules_after
@@ -20,7 +19,7 @@ NEEDLESS = (
     (["--help"], ("cli.table", "cli.output_options", "render", "report", "declared")),
     (["example"], ("report.check", "machine", "mechanisms", "declared.quantities")),
     (["table"], ("mechanisms", "declared.quantities", "declared.units", "declared.keys", "machine", "solver")),
-    (["forces", WATERWORKS, "-f", "csv"], ("report.notes", "report.guide", "solver.stress", "solver.torsion")),
+    (["forces", WATERWORKS, "-f", "csv"], ("solver.stress", "solver.torsion")),
     (["balance", WATERWORKS], ("solver.stress", "solver.torsion")),
 )
 
@@ -30,10 +29,6 @@ def test_a_command_imports_nothing_that_it_does_not_need(arguments: list[str], n
     assert {f"kurbel.{name}" for name in needless} & modules_after(arguments) == set()
 
 
-def test_what_kurbel_writes_itself_is_laid_out_without_the_tables_of_unicode() -> None:
-    assert {"unicodedata", "cmath"} & modules_after(["balance", WATERWORKS], ["plot", WATERWORKS]) == set()
-
-
 def test_the_end_loses_nothing_that_was_written_before() -> None:
     code = (
         "import sys\nfrom kurbel.__main__ import main\n"
@@ -41,12 +36,6 @@ def test_the_end_loses_nothing_that_was_written_before() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True)
     assert done.stdout.startswith("before kurbel")
-
-
-def test_the_torque_at_given_angles_needs_no_search() -> None:
-    case = Case(load(WATERWORKS))
-    assert case.balance.at(np.array([10.0])).M_roll is not None
-    assert "pieces" not in vars(case.cylinders[0])
 
 
 def test_no_reversal_of_the_rod_load_of_an_engine_is_searched() -> None:

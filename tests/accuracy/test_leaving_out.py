@@ -12,7 +12,7 @@ from kurbel.accuracy.leaving_out import evaluated, savings
 from kurbel.accuracy.timing import Patience
 from kurbel.machine_file import loads
 from kurbel.report.accuracy import everything
-from kurbel.report.forces import forces_report
+from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 
@@ -23,7 +23,7 @@ FULL = """
  masses: {piston: 200 kg}, friction: {crosshead: 0.05},
  flywheel: {inertia: 900 kg m2}, load: {slip: 0.1}}
 """
-NOT_OF_A_BARE_MACHINE = ("kurbel.accuracy", "scipy", "matplotlib", "rich")
+NOT_OF_A_BARE_MACHINE = ("kurbel.accuracy", "scipy", "typst", "rich")
 
 
 def test_nothing_is_imported_for_what_is_absent(tmp_path: Path) -> None:

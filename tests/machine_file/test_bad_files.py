@@ -75,7 +75,7 @@ def test_pretty_clears_what_could_steer_a_terminal() -> None:
 def test_the_caret_stands_below_the_fault_at_every_width(cells: int, encoding: str) -> None:
     """Wide letters, letters that become two, and lines wider than the terminal."""
     from kurbel.errors import Fault
-    from kurbel.render.charset import Charset, width
+    from kurbel.render.text import Charset, width
 
     for before, (filling, after) in product((0, 1, 7, 40, 90), (("x", 0), ("φ", 3), ("宽", 200), ("ß", 50))):
         text = filling * before + "@" + filling * after

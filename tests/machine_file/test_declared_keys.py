@@ -14,10 +14,10 @@ from kurbel.declared.forms import Record
 from kurbel.declared.keys import Key
 from kurbel.errors import MachineFileError, RuleError
 from kurbel.machine.masses import ConnectingRod
-from kurbel.machine.trace import Trace
 from kurbel.machine_file import loads
 from kurbel.machine_file.reader import ROOT
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.traces.correct import Trace
 from representative import law_of_each
 from schemas import whole_schema
 

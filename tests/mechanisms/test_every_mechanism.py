@@ -66,7 +66,7 @@ MACHINES = {
 STROKES = {name: machine for name, machine in MACHINES.items() if not machine.turns}
 TURNING = {name: machine for name, machine in MACHINES.items() if machine.turns}
 DIRECTIONS = {
-    "four-bar": lambda machine, angle: machine.loop.at(angle).direction,
+    "four-bar": lambda machine, angle: machine.closed_at(angle)[:2],
     "slotted-lever": lambda machine, angle: machine._lever_at(angle)[:2],
 }
 """(sin θ, cos θ) of the member that swings."""

@@ -27,35 +27,30 @@ SLIPS = [
     ("scotch_yoke", "radial", "angle.cos", "angle.sin"),
     ("scotch_yoke", "guide_pair_factor", "angle.sin", "angle.cos"),
     ("yoke_frame", "bending_arm", "self.gland + self.coordinate", "self.gland - self.coordinate"),
-    ("slotted_lever", "_turning", "bend = -crank", "bend = crank"),
+    ("slotted_lever", "_lever_at", "bend = -crank", "bend = crank"),
     ("slotted_lever", "pin_force_factor", "/ lever.reach", "* lever.reach"),
     ("slotted_lever", "radial", "-self.pin", "self.pin"),
     ("slotted_lever", "radial", "angle.sin", "angle.cos"),
     ("slotted_lever", "block_slope", "-self.crank", "self.crank"),
-    ("ram", "lead", "cos - sin", "cos + sin"),
-    ("four_bar_loop", "direction", "self.area * across - foot", "self.area * across + foot"),
-    ("four_bar_loop", "slope", "+ a * (self.near", "- a * (self.near"),
-    ("four_bar_loop", "turned", "lead - bearing", "lead + bearing"),
-    ("four_bar_loop", "turned", "self.near - self", "self.near + self"),
-    ("four_bar", "coupler_force_factor", "1 / (", "-1 / ("),
-    (
-        "parallel_crank",
-        "coupler_path",
-        "angle.versine, self.crank * angle.sin",
-        "angle.sin, self.crank * angle.versine",
-    ),
-    ("parallel_crank", "coupler_acceleration", "-self.crank * angle.cos", "self.crank * angle.cos"),
-    ("parallel_crank", "_squared", "math.prod(known) *", "math.prod(known) * known[-1] *"),
+    ("slotted_lever", "_ram", "cos - sin *", "cos + sin *"),
+    ("slotted_lever", "_ram", "sin + cos * (rise / run)", "sin - cos * (rise / run)"),
+    ("four_bar", "closed_loop", "H * across - foot", "H * across + foot"),
+    ("four_bar", "closed_loop", "+ a * (angle.versine", "- a * (angle.versine"),
+    ("four_bar", "swing_at", "ahead - bearing", "ahead + bearing"),
+    ("four_bar", "swing_at", "angle.versine + (self", "angle.versine - (self"),
+    ("four_bar", "coupler_force_factor", "self.coupler / self.frame", "-self.coupler / self.frame"),
+    ("parallel_crank", "", "-one.crank * angle.versine", "-one.crank * angle.sin"),
+    ("parallel_crank", "", "-one.crank * angle.cos", "one.crank * angle.cos"),
+    ("parallel_crank", "_acceleration", "one.crank * results.omega", "one.crank * one.crank * results.omega"),
     ("parallel_crank", "coupler_force_factor", "angle.sin", "angle.cos"),
 ]
-"""File, function, its text and the wrong one: signs, sine for cosine, factors."""
-SERVES = {"crank_formulas": "slider_crank", "ram": "slotted_lever", "four_bar_loop": "four_bar"}
+"""File, function ('' for the columns before the class), its text and the wrong one: signs, sine for cosine, factors."""
 
 
 def planted(file: str, function: str, right: str, wrong: str) -> types.ModuleType:
     """Return the module with this text replaced where it first stands from that function on."""
     module = importlib.import_module(f"kurbel.{file}" if file == "crank_formulas" else f"kurbel.mechanisms.{file}")
-    before, head, after = inspect.getsource(module).partition(f"def {function}(")
+    before, head, after = inspect.getsource(module).partition(f"def {function}(" if function else "OFFERS = (")
     assert right in after, (
         f"{file}.{function} has no '{right}' any more: plant the slip in the formula as it stands now"
     )
@@ -98,7 +93,7 @@ def named(names: str | tuple[str, ...], value: object) -> dict[str, object]:
 
 def broken(file: str) -> Iterator[str]:
     """Yield the names of the laws that the machines of a file now break."""
-    own = f"kurbel.mechanisms.{SERVES.get(file, file)}"
+    own = f"kurbel.mechanisms.{'slider_crank' if file == 'crank_formulas' else file}"
     for name, test in vars(laws).items():
         calls = asked(test) if name.startswith("test_") else ()
         try:

@@ -9,11 +9,10 @@ import pytest
 from test_every_mechanism import MACHINES
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms import PIN, SHAFT, Mechanism, Sketch
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.mechanisms.parallel_crank import ParallelCrank
-from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from representative import law_of_each

@@ -12,8 +12,7 @@ import pytest
 
 from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms.four_bar import FourBar
-from kurbel.mechanisms.four_bar_loop import Loop
+from kurbel.mechanisms.four_bar import FourBar, closed_loop
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.solver.motion import Motion
@@ -76,9 +75,8 @@ def test_example_8_5_a_loop_that_does_not_turn_fully():
     300 + 600 mm is more than 360 + 360 mm: no crank-rocker, but the loop closes at 60°. The crank turns toward the
     rocker, clockwise above the ground link: the same as a crank below it, at −60°, turning on.
     """
-    loop = Loop.of(0.3, 0.36, 0.36, 0.6)
     w, acceleration = 10.0, 30.0
-    at = loop.at(CrankAngle.of(60.0))
+    at = closed_loop(0.3, 0.36, 0.36, 0.6, CrankAngle.of(60.0))
     rocker = -w * at.slope
     rocker_pull = -acceleration * at.slope + w * w * at.curvature
     assert abs(rocker) == pytest.approx(6.01929265429, rel=1e-11)
@@ -86,7 +84,7 @@ def test_example_8_5_a_loop_that_does_not_turn_fully():
     assert abs(rocker_pull) == pytest.approx(77.4514993288, rel=1e-11)
     assert math.hypot(rocker_pull, rocker**2) * 0.36 == pytest.approx(30.7825981444, rel=1e-11)
     # the coupler from the velocities and accelerations of its ends, as numbers of the plane
-    sin, cos = at.direction
+    sin, cos = at.sin, at.cos
     pin, joint = 0.3 * cmath.exp(1j * math.pi / 3), 0.6 + 0.36 * (cos + 1j * sin)
     coupler, arm = joint - pin, 0.36 * (cos + 1j * sin)
     turning = ((1j * rocker * arm - 1j * -w * pin) / (1j * coupler)).real
@@ -96,8 +94,7 @@ def test_example_8_5_a_loop_that_does_not_turn_fully():
 
 
 def test_example_8_5_with_the_opposite_sense_of_rotation():
-    loop = Loop.of(0.3, 0.36, 0.36, 0.6)
-    at = loop.at(CrankAngle.of(60.0))
+    at = closed_loop(0.3, 0.36, 0.36, 0.6, CrankAngle.of(60.0))
     assert 30 * at.slope + 100 * at.curvature == pytest.approx(113.567, abs=5e-4)
 
 

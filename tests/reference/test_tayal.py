@@ -8,7 +8,7 @@ import math
 import pytest
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms.four_bar_loop import Loop
+from kurbel.mechanisms.four_bar import closed_loop
 from kurbel.mechanisms.slider_crank import SliderCrank
 
 
@@ -28,10 +28,9 @@ def test_example_21_13_four_bar_by_its_instantaneous_centre():
     pin = 0.2 * cmath.exp(1j * math.radians(30))
     joint = pin + 0.15
     pivot = joint - 0.3 * cmath.exp(1j * math.radians(120))
-    loop = Loop.of(0.2, 0.15, 0.3, abs(pivot))
     tilt = math.degrees(cmath.phase(pivot))
-    at = loop.at(CrankAngle.of(30.0 - tilt))
-    sin, cos = at.direction
+    at = closed_loop(0.2, 0.15, 0.3, abs(pivot), CrankAngle.of(30.0 - tilt))
+    sin, cos = at.sin, at.cos
     assert math.degrees(math.atan2(sin, cos)) + tilt == pytest.approx(120, abs=1e-10)
     rocker = 5 * at.slope
     assert abs(rocker) == pytest.approx(1.9245008973, rel=1e-10)

@@ -6,17 +6,15 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from unicodedata import combining, east_asian_width
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.render import Look
-from kurbel.render.book import _book_sizes, _fitting_sizes
-from kurbel.render.charset import _NARROW, Charset, width
 from kurbel.render.formats import render
-from kurbel.render.prose import folded
+from kurbel.render.page import book_sizes, fitting_sizes
+from kurbel.render.text import Charset, folded, width
 from kurbel.report.zusammenstellung import zusammenstellung
 from render.sample_report import ONE, REPORT, texts
 
@@ -52,12 +50,12 @@ def test_golden(name: str, kept: Callable[[Path, str], str]) -> None:
     ("count", "sizes"), [(0, [0]), (1, [1]), (9, [9]), (10, [10]), (11, [9, 2]), (19, [9, 10]), (37, [9, 9, 9, 10])]
 )
 def test_blocks_as_in_the_book(count: int, sizes: list[int]) -> None:
-    assert _book_sizes(count) == sizes
+    assert book_sizes(count) == sizes
 
 
 @given(st.integers(1, 400), st.integers(-5, 60))
 def test_blocks_that_fit_are_even_and_complete(count: int, most: int) -> None:
-    sizes = _fitting_sizes(count, most)
+    sizes = fitting_sizes(count, most)
     assert sum(sizes) == count
     assert max(sizes) <= max(most, 1)
     assert max(sizes) - min(sizes) <= 1
@@ -129,11 +127,6 @@ def test_charset_always_encodes(text: str, encoding: str) -> None:
 def test_same_text_every_time() -> None:
     for look in (Look(), Look("csv"), Look("json"), Look("markdown")):
         assert render(REPORT, look) == render(REPORT, look)
-
-
-def test_what_kurbel_writes_takes_one_cell_each_by_the_tables_of_unicode_too() -> None:
-    assert {"−", "φ", "⁶", "½", "∠"} <= _NARROW
-    assert [one for one in _NARROW if combining(one) or east_asian_width(one) in "WF" or not one.isprintable()] == []
 
 
 def test_width_counts_cells() -> None:

@@ -44,7 +44,8 @@ CYLINDER = Cylinder(
 def ratio_of(machine: MachineTurning, degrees: np.ndarray) -> np.ndarray:
     """Return (ω/ω_n)² − 1 of the speed line at crank angles (n,) in degrees."""
     line: Any = machine.speed
-    return line.pieces.at(line.ratio, np.zeros(len(degrees), dtype=int), degrees)
+    u = line.pieces.at(line.u, np.zeros(len(degrees), dtype=int), degrees)
+    return u * (2 + u)
 
 
 def kinetic(machine: MachineTurning, degrees: np.ndarray) -> np.ndarray:

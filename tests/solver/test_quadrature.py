@@ -14,11 +14,11 @@ from kurbel.machine.ideal_cards import Diesel
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
-from kurbel.machine.trace import Trace
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.stress import CrankshaftStrength
+from kurbel.traces.correct import Trace
 from machines import one_cylinder
 from random_cylinders import cylinders
 from shafts import shaft

@@ -21,7 +21,6 @@ from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.masses import Masses
 from kurbel.machine.piston import Piston
-from kurbel.machine.trace import Trace
 from kurbel.machine_file import load, loads
 from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
@@ -29,6 +28,7 @@ from kurbel.report.check import checked
 from kurbel.report.warnings import brake_warnings, trace_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
+from kurbel.traces.correct import Trace
 from machines import one_cylinder
 from representative import few
 
@@ -492,14 +492,14 @@ def test_firing_in_the_gas_exchange() -> None:
 
 def test_indicated_below_brake_power(tmp_path: Path) -> None:
     machine = machine_of(tmp_path, "\n".join(GOOD), more="brake_power: 500 kW\n")
-    (warning,) = brake_warnings(machine, Case(machine).cylinders)
+    (warning,) = brake_warnings(Case(machine))
     assert "far below what the driven shaft takes, 500 kW" in warning
-    notes = [entry.text for section in checked(machine).sections for entry in section.entries]
+    notes = [entry.text for section in checked(Case(machine)).sections for entry in section.entries]
     assert warning in notes
 
 
 def test_samples_too_far_apart_are_told() -> None:
-    from kurbel.report.forces import forces_report
+    from kurbel.report.crank import forces_report
     from kurbel.report.frame import Frame
 
     def told(points: list[tuple[float, float]]) -> bool:

@@ -18,7 +18,7 @@ from kurbel import __version__
 from kurbel.errors import KurbelError, MachineFileError
 
 if TYPE_CHECKING:
-    from kurbel.render.charset import Charset
+    from kurbel.render.text import Charset
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -139,10 +139,8 @@ class _Kurbel(click.Group):
             status = INTERRUPTED
         except SystemExit:  # click's answer to a reader of its help that leaves early
             status = DONE
-        except MachineFileError as error:
-            status = _failed(_pretty(error), error.exit_status)
         except KurbelError as error:
-            status = _failed(f"Error: {error}", error.exit_status)
+            status = _failed(message_of(error), error.exit_status)
         except (OverflowError, FloatingPointError, RuntimeWarning) as error:
             beyond = f"these numbers lead beyond what can be computed with ({error})"
             status = _failed(f"Error: {beyond}; check the sizes of what the file gives", KurbelError.exit_status)
@@ -187,17 +185,19 @@ def _shown(error: click.ClickException) -> str:
     return text.getvalue()
 
 
-def _pretty(error: MachineFileError) -> str:
-    """Return the faults of a machine file, their source lines cut to what fits a terminal."""
+def message_of(error: KurbelError) -> str:
+    """Return what went wrong; of a machine file all faults, their source lines cut to what fits a terminal."""
+    if not isinstance(error, MachineFileError):
+        return f"Error: {error}"
     from shutil import get_terminal_size
 
-    from kurbel.render.charset import width
+    from kurbel.render.text import width
 
     return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_charset().text, width)
 
 
 def _stderr_charset() -> "Charset":
-    from kurbel.render.charset import Charset
+    from kurbel.render.text import Charset
 
     return Charset(getattr(sys.stderr, "encoding", None) or "utf-8")
 

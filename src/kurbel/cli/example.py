@@ -23,8 +23,8 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks > engine.yaml
       kurbel example waterworks | kurbel forces -
     """
-    from kurbel.render.listing import write_entries
     from kurbel.render.output import write_out
+    from kurbel.render.page import write_entries
 
     if name is None:
         write_entries([(each, _described(each)) for each in shipped_names()], file_name)

@@ -14,7 +14,7 @@ def keys(key: str | None) -> None:
       kurbel keys
       kurbel keys masses.connecting_rod.share
     """
-    from kurbel.render.listing import write_entries
+    from kurbel.render.page import write_entries
     from kurbel.report.keys import every_place, places_at
 
     if key is None:

@@ -267,7 +267,8 @@ class Asked:
                 "--columns names columns of the table that --key-values leaves out; a key value is a line, grep 'p_i '"
             )
         angles = self._rows(command, end) or crank_angles(self.step, self.angles, end, parts)
-        return Frame(command, angles, self.columns, self.units, "z" if self.over else "", self.compare)
+        prose = self.output.look.format != "csv" or self.key_values_only
+        return Frame(command, angles, self.columns, self.units, "z" if self.over else "", self.compare, prose)
 
     def _rows(self, command: str, end: float) -> Any:
         """Return what finds the crank angles of a subject, None for a table over the angle itself."""
@@ -277,12 +278,12 @@ class Asked:
             raise click.UsageError(f"{' and '.join(given)} both say at which crank angles; leave one of them out.")
         if not self.over and self.where is None:
             return None
-        from kurbel.report.rows import Place, over_stroke
+        from kurbel.report.rows import over_stroke, rows_where
 
         if self.where is None:
             return over_stroke(self.step, end)
         # where a force has a value there is a motion to tell, too
-        return Place.parsed(self.where, "forces" if command == "motion" else command, end).angles
+        return rows_where(self.where, "forces" if command == "motion" else command, end)
 
     def write(self, report: Report, case: "Case | None" = None, spreads: Spreads = ()) -> None:
         """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""

@@ -17,7 +17,7 @@ def schema(answers: bool, file_name: str | None) -> None:
     import json
 
     from kurbel.machine_file.schema import json_schema
-    from kurbel.render.answer_schema import answer_schema
+    from kurbel.render.data import answer_schema
     from kurbel.render.output import write_out
 
     # escapes instead of Greek: valid in whatever encoding a shell redirects to

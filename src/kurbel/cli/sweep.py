@@ -15,7 +15,7 @@ from kurbel.render import Look
 if TYPE_CHECKING:
     from kurbel.designs.chosen import Condition
     from kurbel.designs.sweep import Row, Spec, Sweep
-    from kurbel.render.sweep_output import SweepOutput
+    from kurbel.render.sweep_rows import SweepOutput
 
 _SUFFIXES = {".csv": "csv", ".json": "json", ".jsonl": "json", ".md": "markdown", ".parquet": "parquet"}
 _LINES = ("csv", "json")
@@ -211,7 +211,7 @@ class _Asked(NamedTuple):
     def _out(self, found: "Sweep", rows: range, conditions: "Sequence[Condition]") -> "tuple[SweepOutput, range]":
         """Return where the rows go, and those that are not there yet."""
         from kurbel.designs.chosen import summary_heads
-        from kurbel.render.sweep_output import SweepOutput, Titles
+        from kurbel.render.sweep_rows import KeptRows, SweepOutput, Titles
 
         types = found.types() if self._written == "parquet" else ()
         titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.texts, types=types)
@@ -219,8 +219,6 @@ class _Asked(NamedTuple):
             titles = Titles(summary_heads(found.heads), row="column")
         if not self.resume:
             return SweepOutput(titles, self._look, self.file_name, headed=rows.start == 0), rows
-        from kurbel.render.kept_rows import KeptRows
-
         assert self.file_name is not None
         kept = KeptRows(self.file_name, titles, self._look, rows)
         headed = rows.start == 0 and not any(kept.kept)

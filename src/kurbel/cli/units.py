@@ -15,7 +15,7 @@ def units(kind: str | None) -> None:
     """
     from kurbel.declared.units import kinds, unit_names
     from kurbel.near_words import did_you_mean
-    from kurbel.render.listing import write_entries
+    from kurbel.render.page import write_entries
 
     named = {kind.replace("_", " "): ", ".join(unit_names(kind)) for kind in kinds()}
     if kind is None:

@@ -188,10 +188,9 @@ class Sweep:
             return self._unanswered(number, inputs, found)
         return Row(number, (*inputs, *next(values)), *self._judged(found[len(self.asked) :]))
 
-    def unanswered(self, row: int) -> Row:
-        """Return the row with this index from 0 on without its answers: what varies is known unsolved."""
-        (inputs,) = self._inputs([self.plan.texts(row)])
-        return self._unanswered(row + 1, inputs)
+    def inputs(self, rows: Iterable[int]) -> Iterable[tuple[Any, ...]]:
+        """Return what is under the heads of the inputs in these rows, counted from 0: it is known unsolved."""
+        return self._inputs([self.plan.texts(row) for row in rows])
 
     def _unanswered(self, number: int, inputs: tuple[Any, ...], failure: str = "") -> Row:
         return Row(number, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=failure)
@@ -207,7 +206,7 @@ class Sweep:
 
     def _judged(self, found: Sequence[Any]) -> tuple[bool | None, str, str]:
         """Return whether the limits are kept, the first that is not, and which cannot be judged."""
-        from kurbel.report.compared import breaks, without
+        from kurbel.report.limits import breaks, without
 
         there = [(one, value) for one, value in zip(self._limits, found) if value is not None]
         broken = next((one.name for one, value in there if breaks(one.answer.quantity, one.bound, value)), "")
@@ -271,7 +270,7 @@ def _in_unit(number: Any, kind: str, unit: str) -> Any:
 
 def _limit_answers(machine: Machine) -> Iterable[_Limit]:
     """Yield whose value each limit of the file is for, with its bound; raises UsageError where nobody has it."""
-    from kurbel.report.compared import holders, without
+    from kurbel.report.limits import holders, without
 
     case = Case(machine)
     for name, bound in machine.limits:

@@ -15,10 +15,10 @@ import numpy as np
 from kurbel.arrays import Indices
 from kurbel.machine import Machine
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.trace import Trace
 from kurbel.machine.turning import Effort, Harmonics
 from kurbel.machine.variants import Chambers, Lot, one_of, record_of, values_of, varies
 from kurbel.numerics.varied import Varied
+from kurbel.traces.correct import Trace
 
 _MECHANISMS = ("slider-crank", "yoke-frame", "scotch-yoke")
 """Mechanisms whose formulas take parameters that are arrays; machines with others are computed one by one."""

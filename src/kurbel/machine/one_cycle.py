@@ -8,7 +8,7 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.piston import Piston
-from kurbel.machine.trace import Trace
+from kurbel.traces.correct import Trace
 
 
 def of_cycle(machine: Machine, number: int) -> Machine:

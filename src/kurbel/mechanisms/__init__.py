@@ -1,24 +1,26 @@
 """The mechanisms of the book behind one interface: the output coordinate and its first two derivatives by crank angle.
 
-A mechanism is one file with one class, named in `kurbel.mechanisms.kinds`. None imports numpy: the formulas work on
-whatever numbers the crank angle has. `Mechanism` lists what a new one must supply.
+A mechanism is one file with one class, named in `kurbel.mechanisms.kinds`. The formulas work on whatever numbers the
+crank angle has. `Mechanism` lists what a new one must supply.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
+import numpy as np
+
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.keys import Described, Keys
 from kurbel.declared.quantities import Lists
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import Fault, UsageError, refuse
+from kurbel.numerics.arithmetic import sqrt
 from kurbel.numerics.extreme import Extreme
-
-if TYPE_CHECKING:
-    from kurbel.mechanisms.coupler import Coupler
-    from kurbel.mechanisms.sketch import Sketch
+from kurbel.numerics.roots import bracketed_roots
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +58,51 @@ class KeyOffer:
     bound: float | None = None
 
 
+class Turning(NamedTuple):
+    """How a member of a mechanism turns: its angle in degrees, and dθ/dφ and d²θ/dφ², each shaped as the crank angle.
+
+    A connecting rod or coupler counts its angle τ as φ counts, from the crank pin toward its other pin.
+    """
+
+    degrees: Any
+    slope: Any
+    curvature: Any
+
+
+class PointMotion(NamedTuple):
+    """Place in m of a point from the shaft axis: x along φ = 0, y along φ = 90°; |dr/dφ| and |d²r/dφ²|, in m."""
+
+    x: Any
+    y: Any
+    speed: Any
+    acceleration: Any
+
+
+Point = tuple[Any, Any]
+"""Place in m from the shaft, along φ = 0 and along φ = 90°; each a number, or shaped as the angle."""
+SHAFT, PIN = "shaft", "pin"
+
+
+@dataclass(frozen=True, eq=False)
+class Sketch:
+    """What is drawn of a mechanism at crank angles, to scale.
+
+    joints: places by name, the shaft and the crank pin among them; links: stiff members, each the joints it runs
+    through; blocks: joints that slide along a link; fixed: joints on the frame; guides: lines on the frame on which
+    the output slides. output: the joint at which P acts; toward: the direction in which P counts positive, and `across`
+    that in which the output presses on its guide where N is positive; of what only swings, None.
+    """
+
+    joints: dict[str, Point]
+    links: tuple[tuple[str, ...], ...]
+    fixed: tuple[str, ...]
+    blocks: tuple[tuple[str, tuple[str, str]], ...] = ()
+    guides: tuple[tuple[Point, Point], ...] = ()
+    output: str = ""
+    toward: Point | None = None
+    across: Point | None = None
+
+
 class Mechanism(Described):
     """What every mechanism supplies. It serves forces, work and torque through these alone:
 
@@ -63,7 +110,7 @@ class Mechanism(Described):
        birth; `crank`, the radius that T is referred to;
     2. `coordinate`, `slope`, `curvature`: q, dq/dφ and d²q/dφ² at a crank angle, pointwise, so that c = q′ω, b = q″ω²
        and torque = P q′. q is a length in m where the output `slides`, an angle in radians where it only swings. It
-       rises from `start` at the inner dead centre (0 unless the book counts otherwise) by `stroke`;
+       rises from `start` at the inner dead centre (0 unless the book counts otherwise) by `stroke`, in the same unit;
     3. `dead_centres` in degrees, the end of the outstroke after its beginning.
 
     A class without one of these is refused. All else has a default here that a mechanism may override:
@@ -79,6 +126,8 @@ class Mechanism(Described):
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = ()
     guided: ClassVar[bool] = True
     """Whether the side force N rests on a guide; otherwise it bends the piston rod."""
+    has_rod: ClassVar[bool] = False
+    """Whether there is a connecting rod on the crank, with rod force S and side force N."""
     far_pin: ClassVar[str] = "crosshead_pin"
     """What the pin of the connecting rod or coupler that is not on the crank is called."""
     known_across: ClassVar[bool] = False
@@ -96,6 +145,10 @@ class Mechanism(Described):
     """Whether the outstroke is the working stroke; otherwise the return stroke is."""
     start: ClassVar[Any] = 0.0
     """The coordinate at the inner dead centre."""
+    notes: ClassVar[Any] = ()
+    """What a reader of the results should know about this mechanism, each in one sentence."""
+    lacks: ClassVar[Any] = ()
+    """Results that need further keys of the file, each with the reason why it is missing: (what, why)."""
     crank: float
     offset: float = 0.0
     """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
@@ -103,49 +156,45 @@ class Mechanism(Described):
     def __init_subclass__(cls) -> None:
         own = [one for one in cls.__mro__ if issubclass(one, Mechanism) and one is not Mechanism]
         given = {name for one in own for name in (*vars(one), *getattr(one, "__annotations__", ()))}
-        missing = [name for name in _REQUIRED if name not in given]
+        required = ("name", "KEYS", "crank", "stroke", "dead_centres", "coordinate", "slope", "curvature")
+        missing = [name for name in required if name not in given]
         if missing:
             raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
 
     @property
     def stroke(self) -> float:
         """Stroke in m; of what only swings, its swing in radians."""
-        raise AssertionError
+        raise NotImplementedError
 
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return q at the crank angle, in m (or rad), of the shape of the angle."""
-        raise AssertionError
+        raise NotImplementedError
 
     def slope(self, angle: CrankAngle) -> Any:
         """Return dq/dφ in m (or rad) per radian."""
-        raise AssertionError
+        raise NotImplementedError
 
     def curvature(self, angle: CrankAngle) -> Any:
         """Return d²q/dφ² in m (or rad) per radian squared."""
-        raise AssertionError
+        raise NotImplementedError
 
     def dead_centres(self) -> tuple[float, float]:
         """Return inner and outer dead centre in degrees; the outstroke runs from the first to the second."""
-        raise AssertionError
+        raise NotImplementedError
 
-    def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
+    def crank_angles_at(self, displacement: Array, outstroke: bool) -> Array:
         """Return the crank angles in degrees where q − start (n,), from 0 to the stroke, is passed on that stroke.
 
         Here by search between the dead centres, to the rounding of `coordinate`.
         """
-        import numpy as np
-
-        from kurbel.crank_angle import CrankAngle
-        from kurbel.numerics.roots import bracketed_roots
-
-        way = np.asarray(displacement, dtype=float)
-        inner, outer = (np.full_like(way, degrees) for degrees in self.dead_centres())
-        ends = ((inner, -way), (outer, self.stroke - way))
-        (low, f_low), (high, f_high) = ends if outstroke else (ends[1], (inner + 360.0, -way))
+        passed = np.asarray(displacement, dtype=float)
+        inner, outer = (np.full_like(passed, degrees) for degrees in self.dead_centres())
+        ends = ((inner, -passed), (outer, self.stroke - passed))
+        (low, f_low), (high, f_high) = ends if outstroke else (ends[1], (inner + 360.0, -passed))
         found = bracketed_roots(
-            lambda degrees: self.coordinate(CrankAngle.of(degrees)) - self.start - way, low, high, f_low, f_high
+            lambda degrees: self.coordinate(CrankAngle.of(degrees)) - self.start - passed, low, high, f_low, f_high
         )
-        # beside a dead centre the rounding of the coordinate leaves 1e-6 degrees open
+        # near a dead centre the rounding of the coordinate leaves 1e-6 degrees open
         return np.where(f_low == 0, low, np.where(f_high == 0, high, found))
 
     def remaining(self, angle: CrankAngle) -> Any:
@@ -172,30 +221,43 @@ class Mechanism(Described):
         """Return (sin ψ, cos ψ) of the connecting rod, or None where there is none."""
         return None
 
-    def coupler_at(self, angle: CrankAngle) -> "Coupler | None":
-        """Return how the connecting rod or coupler on the crank pin lies and turns, or None where there is none."""
-        return None
-
-    def sketch(self, angle: CrankAngle) -> "Sketch | None":
-        """Return what is drawn of the mechanism at the crank angle, or None where that cannot be drawn."""
-        return None
-
-    @property
-    def has_rod(self) -> bool:
-        """Whether there is a connecting rod on the crank, with rod force S and side force N."""
-        from kurbel.crank_angle import CrankAngle
-
-        return self.rod_angle(CrankAngle.of(0.0)) is not None
-
     @property
     def rod_length(self) -> float:
         """Length L in m of the connecting rod on the crank; infinite where there is none."""
-        return float("inf")
+        return math.inf
 
     @property
     def coupler_length(self) -> float:
         """Length in m of the connecting rod or coupler on the crank pin; infinite where there is none."""
         return self.rod_length
+
+    def coupler_at(self, angle: CrankAngle) -> Turning | None:
+        """Return how the connecting rod or coupler on the crank pin lies and turns, or None where there is none."""
+        return None
+
+    def point_at(self, angle: CrankAngle, along: float, across: float) -> PointMotion | None:
+        """Return the motion of a point of the rod or coupler, or None where there is none.
+
+        It is `along` from the crank pin toward the other pin and `across` to the left of that, in m: at
+        r = R e^{iφ} + (along + i across) e^{iτ}.
+        """
+        coupler, R = self.coupler_at(angle), self.crank
+        if coupler is None:
+            return None
+        turned = CrankAngle.of(coupler.degrees)
+        x, y = turned.cos * along - turned.sin * across, turned.sin * along + turned.cos * across
+        turn, bend = coupler.slope, coupler.curvature
+        speed = -R * angle.sin - y * turn, R * angle.cos + x * turn
+        acceleration = (
+            -R * angle.cos - y * bend - x * turn * turn,
+            -R * angle.sin + x * bend - y * turn * turn,
+        )
+        sizes = (sqrt(one * one + other * other) for one, other in (speed, acceleration))
+        return PointMotion(R * angle.cos + x, R * angle.sin + y, *sizes)
+
+    def sketch(self, angle: CrankAngle) -> Sketch | None:
+        """Return what is drawn of the mechanism at the crank angle, or None where that cannot be drawn."""
+        return None
 
     @cached_property
     def lam(self) -> float:
@@ -218,19 +280,6 @@ class Mechanism(Described):
         """Return a key value that this mechanism offers, from the results of its command; None where it has none."""
         return next((one.value(self, results) for one in self.KEY_OFFERS if one.quantity.id == id), None)
 
-    @property
-    def lacks(self) -> tuple[tuple[str, str], ...]:
-        """Results that need further keys of the file, each with the reason why it is missing: (what, why)."""
-        return ()
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a reader of the results should know about this mechanism, each in one sentence."""
-        return ()
-
-
-_REQUIRED = ("name", "KEYS", "crank", "stroke", "dead_centres", "coordinate", "slope", "curvature")
-
 
 def quantities_of(mechanism: Mechanism) -> Lists:
     """Return what a machine with this mechanism may have."""
@@ -246,5 +295,10 @@ def lists_of(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...]) -> Lis
 
 def check_lengths(**lengths: float | None) -> None:
     """Raise RuleError for every length that is not positive and finite; None is one that is not given."""
-    wrong = [name for name, value in lengths.items() if value is not None and not 0 < value < float("inf")]
+    wrong = [name for name, value in lengths.items() if value is not None and not 0 < value < math.inf]
     refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
+
+
+def on_circle(radius: Any, cos: Any, sin: Any, centre: Point = (0.0, 0.0)) -> Point:
+    """Return the point of a circle in a direction."""
+    return centre[0] + radius * cos, centre[1] + radius * sin

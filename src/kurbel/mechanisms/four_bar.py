@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import positive
@@ -11,33 +11,102 @@ from kurbel.declared.keys import Keys
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, on_request
-from kurbel.mechanisms.coupler import Coupler
-from kurbel.mechanisms.four_bar_loop import Loop
-from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
-from kurbel.mechanisms.swing import F_COUPLER, SWING_OFFERS, SWING_VALUES, Swing, turning_offers
-from kurbel.numerics.arithmetic import bearing
+from kurbel.mechanisms import (
+    PIN,
+    SHAFT,
+    KeyOffer,
+    Mechanism,
+    Offer,
+    Sketch,
+    Turning,
+    check_lengths,
+    on_circle,
+    on_request,
+)
+from kurbel.mechanisms.offers import F_COUPLER, SWING_OFFERS, SWING_VALUES
+from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
 
 
-def _transmission(id: str, end: str, text: str) -> KeyOffer:
-    return KeyOffer(
-        Quantity(id, f"μ_{end}", "angle", text, commands=("motion", "forces"), after="theta_ddot_min"),
-        lambda four_bar, _: four_bar.transmission[0 if end == "min" else 1],
-    )
-
-
-def _coupler_column(end: str, symbol: str, kind: str, text: str) -> Quantity:
+def _coupler(end: str, symbol: str, kind: str, text: str) -> Quantity:
     id, plain = f"theta_coupler{end}", f"theta_K{end}"
     return on_request(id, symbol, kind, f"{text} of the coupler", plain, after="theta_ddot")
 
 
-COUPLER_OFFERS = turning_offers(
-    "coupler_at",
-    _coupler_column("", "θ_K", "angle", "Angle, from the line crank pivot → rocker pivot,"),
-    _coupler_column("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
-    _coupler_column("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
+COUPLER_OFFERS = (
+    Offer(
+        _coupler("", "θ_K", "angle", "Angle, from the line crank pivot → rocker pivot,"),
+        lambda four_bar, angle: four_bar.coupler_at(angle).degrees,
+    ),
+    Offer(
+        _coupler("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
+        lambda four_bar, angle: four_bar.coupler_at(angle).slope,
+        ("omega",),
+    ),
+    Offer(
+        _coupler("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
+        lambda four_bar, angle: four_bar.coupler_at(angle).curvature,
+        ("omega", "omega"),
+    ),
 )
+
+
+def _transmission(end: str, size: str, degrees: float) -> KeyOffer:
+    text, after = f"{size} transmission angle", "theta_ddot_min"
+    quantity = Quantity(f"transmission_{end}", f"μ_{end}", "angle", text, "", ("motion", "forces"), after=after)
+    return KeyOffer(quantity, lambda four_bar, _: four_bar.transmission(degrees))
+
+
+class Closure(NamedTuple):
+    """The closed loop at a crank angle: (sin θ, cos θ) of the rocker, θ′, θ″; lengths over the frame.
+
+    H: twice the area of the triangle of coupler, rocker and diagonal from crank pin to rocker pivot; foot: product of
+    rocker and diagonal, times the cosine of the angle between them.
+    """
+
+    sin: Any
+    cos: Any
+    slope: Any
+    curvature: Any
+    H: Any
+    foot: Any
+
+
+def closed_loop(crank: float, coupler: float, rocker: float, frame: float, angle: CrankAngle) -> Closure:
+    """Return the loop of four lengths in m closed at a crank angle, wherever its triangle closes.
+
+    With a, b, c over the frame, the diagonal p from the crank pin to the rocker's pivot has the square
+    w = 1 + a² − 2a cos φ, and
+
+        H² = (b + c + p)(b + c − p)(p + b − c)(p + c − b)/4     twice the area of coupler, rocker and p (Heron)
+        θ′ = [a sin φ E/(2H) + a(a − cos φ)]/w                  E = w + b² − c²: the triangle turns, and p
+        θ″ = a sin φ (1 − a²)/w² + [w″E + w′²(1 − EG/(4H²) − E/w)]/(4Hw)             G = b² + c² − w
+
+    Every difference is built from positive terms, so that a linkage that is nearly flat keeps its digits.
+    """
+    a, b, c = crank / frame, coupler / frame, rocker / frame
+    near, far = min(crank, frame), max(crank, frame)
+    flat, near_coupler, near_rocker = (
+        math.fsum(one) / frame
+        for one in (
+            (coupler, rocker, -crank, -frame),  # b + c − a − 1
+            (far, coupler, -near, -rocker),  # |1 − a| + b − c
+            (far, rocker, -near, -coupler),
+        )
+    )
+    span, unlike = (frame - crank) / frame, (coupler - rocker) / frame * (b + c)
+    w = span * span + 2 * a * angle.versine
+    p = sqrt(w)
+    lift = 2 * a * angle.versine / (p + abs(span))  # p − |1 − a|
+    drop = 2 * a * angle.vercosine / (1 + a + p)  # 1 + a − p
+    H = sqrt((flat + drop) * (b + c + p)) * sqrt((near_coupler + lift) * (near_rocker + lift)) / 2
+    across, along, foot = a * angle.sin, span + a * angle.versine, (w - unlike) / 2
+    sin, cos = (foot * across + H * along) / (w * c), (H * across - foot * along) / (w * c)
+    E, G, rise, bend = w + unlike, b * b + c * c - w, 2 * across, 2 * a * angle.cos
+    slope = (across * E / (2 * H) + a * (angle.versine - span)) / w
+    triangle = bend * E + rise * rise * (1 - (E / (2 * H)) * (G / (2 * H)) - E / w)
+    curvature = across * span * (1 + a) / (w * w) + triangle / (4 * H * w)
+    return Closure(sin, cos, slope, curvature, H, foot)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -60,8 +129,8 @@ class FourBar(Mechanism):
     OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *COUPLER_OFFERS, F_COUPLER)
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (
         *SWING_VALUES,
-        _transmission("transmission_min", "min", "Smallest transmission angle"),
-        _transmission("transmission_max", "max", "Largest transmission angle"),
+        _transmission("min", "Smallest", 0.0),
+        _transmission("max", "Largest", 180.0),
     )
     far_pin: ClassVar[str] = "rocker_pin"
     KEYS: ClassVar[Keys] = {
@@ -79,26 +148,23 @@ class FourBar(Mechanism):
         gap = math.fsum((*(links[name] for name in others), -links[shortest], -links[longest]))
         # lengths that were written in decimals meet a change point only within their rounding
         rounding = 2 * math.ulp(links[longest])
-        if gap <= rounding or shortest not in ("crank", "frame"):
-            refused(self._locked(shortest, longest, gap, rounding), "crank")
-
-    def _locked(self, shortest: str, longest: str, gap: float, rounding: float) -> str:
-        def named(name: str) -> str:
-            return f"{name} {show(getattr(self, name), 'length')}"
-
-        rest = [name for name in self.KEYS if name != longest]
-        pair = " + ".join(named(name) for name in rest if name != shortest)
-        if math.fsum((*(getattr(self, name) for name in rest), -getattr(self, longest))) <= 0:
-            sides = " + ".join(named(name) for name in rest)
-            return f"the links do not meet: {named(longest)} is no shorter than {sides}"
-        if shortest not in ("crank", "frame"):
-            crank = show(self.crank, "length")
-            return f"{crank} is longer than the {named(shortest)}; the crank or the frame must be the shortest link"
-        sums = f"{named(shortest)} + {named(longest)}"
-        if abs(gap) <= rounding:
+        if gap > rounding and shortest in ("crank", "frame"):
+            return
+        named = {name: f"{name} {show(links[name], 'length')}" for name in self.KEYS}
+        rest = [text for name, text in named.items() if name != longest]
+        ends = f"{named[shortest]} + {named[longest]}"
+        pair = " + ".join(one for one in rest if one != named[shortest])
+        if gap + 2 * links[shortest] <= 0:
+            message = f"the links do not meet: {named[longest]} is no shorter than {' + '.join(rest)}"
+        elif shortest not in ("crank", "frame"):
+            longer = f"{show(self.crank, 'length')} is longer than the {named[shortest]}"
+            message = f"{longer}; the crank or the frame must be the shortest link"
+        elif abs(gap) <= rounding:
             flat = "the linkage folds flat once a turn and may go on either way from there (change point)"
-            return f"{flat}: {sums} = {pair}"
-        return f"it cannot turn fully: {sums} is more than {pair} (Grashof)"
+            message = f"{flat}: {ends} = {pair}"
+        else:
+            message = f"it cannot turn fully: {ends} is more than {pair} (Grashof)"
+        refused(message, "crank")
 
     @property
     def turns(self) -> bool:
@@ -112,100 +178,99 @@ class FourBar(Mechanism):
 
     has_dead_centres = quick_return
 
-    @cached_property
-    def loop(self) -> Loop:
-        """The four links over the frame."""
-        return Loop.of(self.crank, self.coupler, self.rocker, self.frame)
+    def closed_at(self, angle: CrankAngle) -> Closure:
+        """Return the loop closed at a crank angle."""
+        return closed_loop(self.crank, self.coupler, self.rocker, self.frame, angle)
 
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return θ in radians; where it turns fully, it runs on with φ."""
         return self.swing_at(angle).degrees * (math.pi / 180)
 
     def slope(self, angle: CrankAngle) -> Any:
-        """Return dθ/dφ, by loop closure."""
-        return self.loop.at(angle).slope
+        """Return dθ/dφ."""
+        return self.closed_at(angle).slope
 
     def curvature(self, angle: CrankAngle) -> Any:
-        """Return d²θ/dφ², by loop closure."""
-        return self.loop.at(angle).curvature
+        """Return d²θ/dφ²."""
+        return self.closed_at(angle).curvature
 
-    def swing_at(self, angle: CrankAngle) -> Swing:
-        """Return the rocker at the crank angle."""
-        closure = self.loop.at(angle)
-        degrees = closure.turned if self.turns else bearing(*closure.direction)
-        return Swing(degrees, closure.slope, closure.curvature)
+    def swing_at(self, angle: CrankAngle) -> Turning:
+        """Return how the rocker turns."""
+        loop = self.closed_at(angle)
+        if not self.turns:
+            return Turning(bearing(loop.sin, loop.cos), loop.slope, loop.curvature)
+        # the diagonal runs ahead of the crank, and the rocker behind it
+        ahead = bearing(angle.sin, angle.versine + (self.crank - self.frame) / self.frame)
+        return Turning(angle.degrees + ahead - bearing(loop.H, loop.foot), loop.slope, loop.curvature)
+
+    def coupler_at(self, angle: CrankAngle) -> Turning:
+        """Return how the coupler turns, by the velocities and accelerations of its ends.
+
+        b τ′ sin(θ−τ) = −a sin(θ−φ), b τ″ sin(θ−τ) = a cos(θ−φ) + b τ′² cos(θ−τ) − c θ′².
+        """
+        loop, d = self.closed_at(angle), self.frame
+        a, b, c = self.crank / d, self.coupler / d, self.rocker / d
+        along, across = (1 + c * loop.cos - a * angle.cos) / b, (c * loop.sin - a * angle.sin) / b
+        lever = loop.H / c
+        slope = -a * (loop.sin * angle.cos - loop.cos * angle.sin) / lever
+        pull = a * (loop.cos * angle.cos + loop.sin * angle.sin) - c * loop.slope * loop.slope
+        toward = b * slope * slope * (loop.cos * along + loop.sin * across)
+        return Turning(bearing(across, along), slope, (pull + toward) / lever)
 
     @property
     def coupler_length(self) -> float:
         """b in m."""
         return self.coupler
 
+    def coupler_force_factor(self, angle: CrankAngle) -> Any:
+        """Return the coupler's force over the moment on the rocker, 1/(c sin μ) in 1/m, with sin μ = H/(b c)."""
+        return self.coupler / self.frame / self.frame / self.closed_at(angle).H
+
+    def transmission(self, degrees: float) -> Extreme:
+        """Return the transmission angle μ between coupler and rocker, smallest at 0° and largest at 180°."""
+        loop, c = self.closed_at(CrankAngle.of(degrees)), self.rocker / self.frame
+        return Extreme(bearing(loop.H, c * c - loop.foot), degrees)  # b c sin μ and b c cos μ
+
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return crank, coupler and rocker."""
-        sin, cos = self.loop.at(angle).direction
-        pivot = (self.frame, 0.0)
+        loop, pivot = self.closed_at(angle), (self.frame, 0.0)
         joints = {
             SHAFT: (0.0, 0.0),
             PIN: on_circle(self.crank, angle.cos, angle.sin),
-            "rocker pin": on_circle(self.rocker, cos, sin, pivot),
+            "rocker pin": on_circle(self.rocker, loop.cos, loop.sin, pivot),
             "pivot": pivot,
         }
         return Sketch(joints, ((SHAFT, PIN), (PIN, "rocker pin"), ("rocker pin", "pivot")), (SHAFT, "pivot"))
 
-    def coupler_at(self, angle: CrankAngle) -> Coupler:
-        """Return the coupler at the crank angle."""
-        return self.loop.at(angle).coupler
-
-    def coupler_force_factor(self, angle: CrankAngle) -> Any:
-        """Return the coupler's force over the moment on the rocker, 1/(c sin μ) in 1/m."""
-        return 1 / (self.rocker * self.loop.at(angle).sin_transmission)
-
-    @property
-    def lacks(self) -> tuple[tuple[str, str], ...]:
-        """Name the inertia of its links."""
-        return (("inertia of coupler and rocker", "kurbel takes no masses on what only swings"),)
-
-    def _half_tangents(self, reach: float) -> tuple[float, float]:
-        """Return tan of half the angles at the crank's and the rocker's pivot, crank and coupler in line.
-
-        reach: 1 for the coupler's joint at b + a from the crank's pivot, −1 at b − a. All differences are positive.
-        """
-        a, b, c, d = reach * self.crank, self.coupler, self.rocker, self.frame
-        no_line, no_rocker = math.fsum((c, d, -a, -b)), math.fsum((a, b, d, -c))
-        frame_share = math.fsum((a, b, c, -d)) / math.fsum((a, b, c, d))
-        return math.sqrt(frame_share * (no_line / no_rocker)), math.sqrt(frame_share * (no_rocker / no_line))
+    lacks: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("inertia of coupler and rocker", "kurbel takes no masses on what only swings"),
+    )
 
     def dead_centres(self) -> tuple[float, float]:
         """Return the crank angles of smallest and of largest θ: crank and coupler in line, stretched and folded.
 
-        Where the rocker turns fully there is none, and a turn counts from 0° by way of 180°.
+        Half of each is the arctangent of a root of products of positive differences. Where the rocker turns fully there
+        is no dead centre, and a turn counts from 0° by way of 180°.
         """
         if self.turns:
             return 0.0, 180.0
-        return 2 * bearing(self._half_tangents(1)[0], 1.0), 180.0 + 2 * bearing(self._half_tangents(-1)[0], 1.0)
+        b, c, d, halves = self.coupler, self.rocker, self.frame, []
+        for a in (self.crank, -self.crank):
+            share = math.fsum((a, b, c, -d)) / math.fsum((a, b, c, d))
+            ratio = math.fsum((c, d, -a, -b)) / math.fsum((a, b, d, -c))
+            halves.append(bearing(math.sqrt(share * ratio), 1.0))
+        return 2 * halves[0], 180.0 + 2 * halves[1]
 
-    @property
+    @cached_property
     def limits(self) -> tuple[float, float]:
-        """Smallest and largest θ in degrees."""
-        return 180.0 - 2 * bearing(self._half_tangents(1)[1], 1.0), 180.0 - 2 * bearing(self._half_tangents(-1)[1], 1.0)
+        """Smallest and largest θ in degrees, those of the dead centres."""
+        inner, outer = (float(self.swing_at(CrankAngle.of(end)).degrees) for end in self.dead_centres())
+        return inner, outer
 
     @property
     def swing(self) -> float | None:
-        """θ_max − θ_min in degrees, from the difference of the half tangents: a small swing keeps its digits.
-
-        None where the rocker turns fully.
-        """
-        if self.turns:
-            return None
-        stretched, folded = self._half_tangents(1)[1], self._half_tangents(-1)[1]
-        a, b, c = self.loop.crank, self.loop.coupler, self.loop.rocker
-        below = self._line_gap(1) * self._line_gap(-1) * (stretched + folded)
-        return float(2 * bearing(16 * a * b * c / below, 1 + stretched * folded))
-
-    def _line_gap(self, reach: float) -> float:
-        """(c + d)² − (b ± a)², over d²."""
-        a, b, c, d = reach * self.crank, self.coupler, self.rocker, self.frame
-        return math.fsum((c, d, -a, -b)) / d * (math.fsum((c, d, a, b)) / d)
+        """θ_max − θ_min in degrees; None where the rocker turns fully."""
+        return None if self.turns else self.limits[1] - self.limits[0]
 
     @property
     def stroke(self) -> float:
@@ -215,7 +280,7 @@ class FourBar(Mechanism):
     @property
     def start(self) -> float:
         """The smallest θ in radians; where the rocker turns fully, that of φ = 0."""
-        return float(self.coordinate(CrankAngle.of(0.0))) if self.turns else math.radians(self.limits[0])
+        return math.radians(self.limits[0])
 
     @property
     def works_outward(self) -> bool:
@@ -227,19 +292,9 @@ class FourBar(Mechanism):
     def phi_work(self) -> float:
         """Crank rotation of the slower swing in degrees."""
         inner, outer = self.dead_centres()
-        return outer - inner if self.works_outward else 360.0 - (outer - inner)
+        return max(outer - inner, 360.0 - (outer - inner))
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Say that the rocker turns fully, where it does."""
         return ("The frame is the shortest link: the rocker turns fully with the crank (drag link).",) * self.turns
-
-    @property
-    def transmission(self) -> tuple[Extreme, Extreme]:
-        """The transmission angle μ between coupler and rocker at 0° and at 180°, its smallest and largest."""
-        c, b, loop = self.rocker / self.frame, self.coupler / self.frame, self.loop
-        twice = 2 * min(loop.crank, 1.0)
-        small = math.sqrt(loop.near_coupler / (b + c + abs(loop.span)) * (loop.near_rocker / (loop.flat + twice)))
-        far_coupler, far_rocker = loop.near_coupler + twice, loop.near_rocker + twice
-        large = math.sqrt(far_coupler / loop.flat * (far_rocker / (b + c + 1 + loop.crank)))
-        return Extreme(2 * bearing(small, 1.0), 0.0), Extreme(2 * bearing(large, 1.0), 180.0)

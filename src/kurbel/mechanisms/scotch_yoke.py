@@ -3,17 +3,24 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import positive
 from kurbel.declared.keys import Keys
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths, own_force
-from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, check_pin, pin_pressure
-from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
-from kurbel.mechanisms.slider_crank import CRANK_KEYS
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, Sketch, check_lengths, own_force
+from kurbel.mechanisms.offers import BLOCK_OFFERS, NO_PIN, PIN_KEYS, check_pin, pin_pressure
+from kurbel.mechanisms.slider_crank import CRANK_KEYS, yoke_sketch
 from kurbel.numerics.extreme import Extreme
 
-_CALLED = "force on each of the two guides of a yoke"
-_N_PAIR = own_force("N_pair", "N_2", "force", f"{_CALLED.capitalize()}, opposite to one another", called=_CALLED)
+_N_PAIR = own_force(
+    "N_pair",
+    "N_2",
+    "force",
+    "Force on each of the two guides of a yoke, opposite to one another",
+    called="force on each of the two guides of a yoke",
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -56,20 +63,8 @@ class ScotchYoke(Mechanism):
         return cls(stroke / 2 if crank is None else crank, **others)
 
     def sketch(self, angle: CrankAngle) -> Sketch:
-        """Return the crank with its block in an upright yoke, and the rod that this moves."""
-        pin, reach = on_circle(self.crank, angle.cos, angle.sin), 1.2 * self.crank
-        joints = {
-            SHAFT: (0.0, 0.0),
-            PIN: pin,
-            "top": (pin[0], reach),
-            "bottom": (pin[0], -reach),
-            "yoke": (pin[0], 0.0),
-            "rod": (pin[0] + 2 * self.crank, 0.0),
-        }
-        links = ((SHAFT, PIN), ("bottom", "top"), ("yoke", "rod"))
-        guide = ((self.crank, 0.0), (3 * self.crank, 0.0))
-        blocks = ((PIN, ("bottom", "top")),)
-        return Sketch(joints, links, (SHAFT,), blocks, (guide,), "rod", (-1.0, 0.0), (0.0, -1.0))
+        """Return the crank with its block in the yoke."""
+        return yoke_sketch(self.crank, angle)
 
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank, guide_length=self.guide_length)
@@ -118,12 +113,10 @@ class ScotchYoke(Mechanism):
         guides = () if self.guide_length is not None else (("force on the guides", "no guide_length given"),)
         return guides if self.pin_diameter is not None else (*guides, NO_PIN)
 
-    def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
+    def crank_angles_at(self, displacement: Array, outstroke: bool) -> Array:
         """Return φ = 2 arctan √(x/(2R − x)) in degrees, and 360° less on the return stroke."""
-        import numpy as np
-
         sweep = np.degrees(2 * np.arctan2(np.sqrt(displacement), np.sqrt(self.stroke - displacement)))
-        return sweep if outstroke else 360.0 - sweep
+        return np.asarray(sweep if outstroke else 360.0 - sweep)
 
     def velocity_extremes(self) -> tuple[Extreme, ...]:
         """Return ±R: c_max = v at 90°."""

@@ -4,21 +4,20 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
+
+import numpy as np
 
 from kurbel import crank_formulas as formulas
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Number, Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.mechanisms import Mechanism, Offer, on_request
+from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
 from kurbel.numerics.extreme import Extreme
-
-if TYPE_CHECKING:
-    from kurbel.mechanisms.coupler import Coupler
-    from kurbel.mechanisms.sketch import Sketch
 
 _INFINITE = (("infinite", math.inf),)
 CRANK_KEYS: Keys = {
@@ -68,6 +67,7 @@ class SliderCrank(Mechanism):
     offset: float = 0.0
 
     name: ClassVar[str] = "slider-crank"
+    has_rod: ClassVar[bool] = True
     OFFERS: ClassVar[tuple[Offer, ...]] = ROD_OFFERS
     KEYS: ClassVar[Keys] = {
         **CRANK_KEYS,
@@ -122,21 +122,9 @@ class SliderCrank(Mechanism):
         return f"{rod} {relation} the crank ({crank}); the crank turns fully only with a longer rod"
 
     @property
-    def has_rod(self) -> bool:
-        """Always."""
-        return True
-
-    @property
     def rod_length(self) -> float:
         """L in m, `math.inf` for the infinite rod."""
         return self.rod
-
-    @cached_property
-    def rho(self) -> float:
-        """ρ = 1 − λ², from the lengths."""
-        if self._endless:
-            return 1.0
-        return (self.rod - self.crank) / self.rod * ((self.rod + self.crank) / self.rod)
 
     @cached_property
     def _endless(self) -> bool:
@@ -147,23 +135,22 @@ class SliderCrank(Mechanism):
         return every(self.offset == 0) or self._endless
 
     @cached_property
-    def _gaps(self) -> tuple[float, float]:
-        """(L − R + e)/L and (L − R − e)/L: how far sin ψ stays from 1 and from −1."""
+    def _gaps(self) -> tuple[float, ...]:
+        """(L − R + e)/L and (L − R − e)/L, how far sin ψ stays from 1 and from −1; (L + R + e)/L and (L + R − e)/L."""
         if self._endless:
-            return 1.0, 1.0
-        return (
-            total(self.rod, -self.crank, self.offset) / self.rod,
-            total(self.rod, -self.crank, -self.offset) / self.rod,
-        )
+            return 1.0, 1.0, 1.0, 1.0
+        sums = ((crank, offset) for crank in (-self.crank, self.crank) for offset in (self.offset, -self.offset))
+        return tuple(total(self.rod, *both) / self.rod for both in sums)
+
+    @cached_property
+    def rho(self) -> float:
+        """ρ = 1 − λ² without its cancellation; of a straight slider-crank."""
+        return self._gaps[0] * self._gaps[2]
 
     @cached_property
     def _reaches(self) -> tuple[float, float]:
         """√((L+R)² − e²)/L and √((L−R)² − e²)/L: the crosshead's distances from the shaft at the dead centres."""
-        if self._endless:
-            return 1.0, 1.0
-        beyond, within = self._gaps
-        # from the lengths: with a short crank and a large offset L + R − e nearly cancels
-        above, below = (total(self.rod, self.crank, sign * self.offset) / self.rod for sign in (1, -1))
+        beyond, within, above, below = self._gaps
         return sqrt(above * below), sqrt(beyond * within)
 
     @cached_property
@@ -176,55 +163,52 @@ class SliderCrank(Mechanism):
         if self._straight:
             return 0.0, 180.0
         outer, inner = self._reaches
-        eps = self.offset / self.rod
-        return bearing(eps, outer), 180.0 + bearing(eps, inner)
+        return bearing(self.offset / self.rod, outer), 180.0 + bearing(self.offset / self.rod, inner)
 
     def rod_angle(self, angle: CrankAngle) -> tuple[Any, Any]:
         """Return (sin ψ, cos ψ) with sin ψ = (R sin φ − e)/L."""
         if angle.rod is not None:
             return angle.rod
+        lam = self.lam
         if self._straight:
-            return self.lam * angle.sin, formulas.cos_rod_angle(angle.sin, angle.cos, self.rho)
-        lam, (beyond, within) = self.lam, self._gaps
+            return lam * angle.sin, formulas.cos_rod_angle(angle.sin, angle.cos, self.rho)
         near = 1 + abs(angle.sin)
         far = angle.cos * angle.cos / near
         up = angle.sin >= 0
         # 1 − sin ψ and 1 + sin ψ, each as a gap plus λ(1 ∓ sin φ), both positive
-        below_one = beyond + lam * where(up, far, near)
-        above_minus_one = within + lam * where(up, near, far)
+        below_one = self._gaps[0] + lam * where(up, far, near)
+        above_minus_one = self._gaps[1] + lam * where(up, near, far)
         return lam * angle.sin - self.offset / self.rod, sqrt(below_one) * sqrt(above_minus_one)
 
-    def coupler_at(self, angle: CrankAngle) -> "Coupler":
+    def coupler_at(self, angle: CrankAngle) -> Turning:
         """Return the rod, which leads from the crank pin to the crosshead in the direction −ψ."""
-        from kurbel.mechanisms.coupler import Coupler
-
         sin_psi, cos_psi = self.rod_angle(angle)
         slope = formulas.rod_slope(angle.cos, cos_psi, self.lam)
-        return Coupler(-sin_psi, cos_psi, -slope, -formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.lam))
+        curvature = formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.lam)
+        return Turning(bearing(-sin_psi, cos_psi), -slope, -curvature)
 
-    def sketch(self, angle: CrankAngle) -> "Sketch":
-        """Return crank, rod and crosshead, whose line runs e beside the shaft; for an infinite rod its twin, a yoke."""
+    def sketch(self, angle: CrankAngle) -> Sketch:
+        """Return crank, rod and crosshead, whose line runs e from the shaft; for an infinite rod a Scotch yoke."""
         if math.isinf(self.rod):
-            from kurbel.mechanisms.scotch_yoke import ScotchYoke
-
-            return ScotchYoke(self.crank).sketch(angle)
-        from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
-
-        pin, far = on_circle(self.crank, angle.cos, angle.sin), self.rod * self._reaches[0]
-        guide = ((far - self.stroke, self.offset), (far, self.offset))
+            return yoke_sketch(self.crank, angle)
+        far = self.rod * self._reaches[0]
         return Sketch(
-            {SHAFT: (0.0, 0.0), PIN: pin, "crosshead": (far - self.coordinate(angle), self.offset)},
+            {
+                SHAFT: (0.0, 0.0),
+                PIN: on_circle(self.crank, angle.cos, angle.sin),
+                "crosshead": (far - self.coordinate(angle), self.offset),
+            },
             ((SHAFT, PIN), (PIN, "crosshead")),
             (SHAFT,),
-            guides=(guide,),
+            guides=(((far - self.stroke, self.offset), (far, self.offset)),),
             output="crosshead",
             toward=(-1.0, 0.0),
             across=(0.0, -1.0),
         )
 
-    def _known(self, angle: CrankAngle) -> tuple[Any, Any, Any, Any, Any]:
-        """Return what the formulas for R = 1 take."""
-        return angle.sin, angle.cos, self.rod_angle(angle)[1], self.lam, self.rho
+    def _of_radius_1(self, formula: Callable[..., Any], angle: CrankAngle) -> Any:
+        """Return R times a formula for the straight slider-crank of R = 1."""
+        return self.crank * formula(angle.sin, angle.cos, self.rod_angle(angle)[1], self.lam, self.rho)
 
     @cached_property
     def _start(self) -> CrankAngle:
@@ -233,13 +217,15 @@ class SliderCrank(Mechanism):
         return start._replace(rod=self.rod_angle(start))
 
     def coordinate(self, angle: CrankAngle) -> Any:
-        """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0."""
+        """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0.
+
+        With θ = φ − φ_i, m = (φ + φ_i)/2:  x = 2R sin(θ/2) [sin m + cos m (sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)].
+        """
         if self._straight:
-            return self.crank * formulas.displacement_factor(*self._known(angle))
+            return self._of_radius_1(formulas.displacement_factor, angle)
         start = self._start
         sin_start, cos_start = self.rod_angle(start)
         sin_psi, cos_psi = self.rod_angle(angle)
-        # with θ = φ − φ_i and m = (φ + φ_i)/2: x = 2R sin(θ/2) [sin m + cos m (sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)]
         half_sin, half_cos = _half_angle(
             angle.sin * start.cos - angle.cos * start.sin, angle.cos * start.cos + angle.sin * start.sin
         )
@@ -258,14 +244,14 @@ class SliderCrank(Mechanism):
     def slope(self, angle: CrankAngle) -> Any:
         """Return dx/dφ = R sin(φ+ψ)/cos ψ in m, R 288."""
         if self._straight:
-            return self.crank * formulas.velocity_factor(*self._known(angle))
+            return self._of_radius_1(formulas.velocity_factor, angle)
         sin_psi, cos_psi = self.rod_angle(angle)
         return self.crank * (angle.sin + angle.cos * sin_psi / cos_psi)
 
     def curvature(self, angle: CrankAngle) -> Any:
         """Return d²x/dφ² = R [cos(φ+ψ)/cos ψ + λ cos²φ/cos³ψ] in m."""
         if self._straight:
-            return self.crank * formulas.acceleration_factor(*self._known(angle))
+            return self._of_radius_1(formulas.acceleration_factor, angle)
         sin_psi, cos_psi = self.rod_angle(angle)
         bend = self.lam * (angle.cos * angle.cos) / (cos_psi * cos_psi * cos_psi)
         return self.crank * (angle.cos - angle.sin * sin_psi / cos_psi + bend)
@@ -279,28 +265,22 @@ class SliderCrank(Mechanism):
         sin_psi, cos_psi = self.rod_angle(angle)
         return angle.cos - angle.sin * (sin_psi / cos_psi)
 
-    def crank_angles_at(self, displacement: Any, outstroke: bool) -> Any:
+    def crank_angles_at(self, displacement: Array, outstroke: bool) -> Array:
         """Return the crank angles in degrees at which x (n,) in m is passed on the outstroke or the return stroke.
 
-        From the triangle shaft, pin, crosshead by half angles, so that no digit is lost beside the dead centres.
-        Cards over the stroke ask it for every point, of every design of a sweep: a search takes fifty times as long.
+        From the triangle shaft, pin, crosshead by half angles, so that no digit is lost near the dead centres.
+        Cards over the stroke need it for every point, of every design of a sweep: a search takes fifty times as long.
         """
-        import numpy as np
-
-        lam, way = self.lam, displacement / self.crank
-        straight = self._straight
-        eps = 0.0 if straight else self.offset / self.rod
-        outer, inner = (1 + lam, 1 - lam) if straight else self._reaches
-        whole = self.stroke / self.crank
-        distance = outer - lam * way  # of the crosshead from the foot of the shaft axis, over L
-        line = distance if straight else np.hypot(distance, eps)
+        lam, passed, whole = self.lam, displacement / self.crank, self.stroke / self.crank
+        eps, (outer, inner) = self.offset / self.rod, self._reaches
+        distance = outer - lam * passed  # of the crosshead from the foot of the shaft axis, over L
+        line = np.hypot(distance, eps)
         # over λ: L + R − line, and line + R − L, from differences of squares
-        before = way * (2 * outer - lam * way) / (1 + lam + line)
-        after = (whole - way) * (distance + inner) / (line + 1 - lam)
+        before = passed * (2 * outer - lam * passed) / (1 + lam + line)
+        after = (whole - passed) * (distance + inner) / (line + 1 - lam)
         half = np.arctan2(np.sqrt(before * (1 + line - lam)), np.sqrt(after * (line + lam + 1)))
-        sweep = np.degrees(2 * half)
-        bearing = 0.0 if straight else np.degrees(np.arctan2(eps, distance))
-        return bearing + sweep if outstroke else 360.0 + bearing - sweep
+        lead, sweep = np.degrees(np.arctan2(eps, distance)), np.degrees(2 * half)
+        return np.asarray(lead + sweep if outstroke else 360.0 + lead - sweep)
 
     def velocity_extremes(self) -> tuple[Extreme, ...]:
         """Return ±c_max/ω in m in closed form, straight slider-crank only."""
@@ -314,12 +294,35 @@ class SliderCrank(Mechanism):
         """Return b/ω² in m at its extremes: both dead centres (R 292, 294) and the dip inside the stroke, if any."""
         if not self._straight:
             return ()
-        found = [Extreme(self.crank * (1 + self.lam), 0.0), Extreme(-self.crank * (self._gaps[0]), 180.0)]
+        found = [Extreme(self.crank * (1 + self.lam), 0.0), Extreme(-self.crank * self._gaps[0], 180.0)]
         dip = formulas.acceleration_dip(self.lam, self.rho)
         if dip:
             value = self.crank * dip.value
             found += [Extreme(value, dip.degrees), Extreme(value, 360 - dip.degrees)]
         return tuple(found)
+
+
+def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
+    """Return a crank whose block slides in an upright yoke, and the rod that this moves."""
+    x, y = on_circle(crank, angle.cos, angle.sin)
+    joints = {
+        SHAFT: (0.0, 0.0),
+        PIN: (x, y),
+        "top": (x, 1.2 * crank),
+        "bottom": (x, -1.2 * crank),
+        "yoke": (x, 0.0),
+        "rod": (x + 2 * crank, 0.0),
+    }
+    return Sketch(
+        joints,
+        ((SHAFT, PIN), ("bottom", "top"), ("yoke", "rod")),
+        (SHAFT,),
+        blocks=((PIN, ("bottom", "top")),),
+        guides=(((crank, 0.0), (3 * crank, 0.0)),),
+        output="rod",
+        toward=(-1.0, 0.0),
+        across=(0.0, -1.0),
+    )
 
 
 def _half_angle(sin: Any, cos: Any) -> tuple[Any, Any]:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
@@ -9,21 +10,31 @@ from kurbel.declared.forms import Physical, positive
 from kurbel.declared.keys import Key, Keys
 from kurbel.declared.unit_systems import show
 from kurbel.errors import refused
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, check_lengths
-from kurbel.mechanisms.crank_pin import BLOCK_OFFERS, NO_PIN, PIN_KEYS, check_pin, pin_pressure, sum_along
-from kurbel.mechanisms.ram import ConnectingLink, Direction, ForkHead
-from kurbel.mechanisms.sketch import PIN, SHAFT, Sketch, on_circle
-from kurbel.mechanisms.swing import SWING_OFFERS, SWING_VALUES, Swing
-from kurbel.numerics.arithmetic import bearing, sqrt
+from kurbel.mechanisms import PIN, SHAFT, KeyOffer, Mechanism, Offer, Sketch, Turning, check_lengths, on_circle
+from kurbel.mechanisms.offers import BLOCK_OFFERS, NO_PIN, PIN_KEYS, SWING_OFFERS, SWING_VALUES, check_pin, pin_pressure
+from kurbel.numerics.arithmetic import bearing, sqrt, where
 from kurbel.numerics.extreme import Extreme
 
 
-class _Lever(NamedTuple):
-    """The lever at a crank angle: its direction, and the pin's distance from the pivot over the longer of r and e."""
+class Lever(NamedTuple):
+    """The lever at a crank angle: (sin θ, cos θ), θ′ and θ″.
+
+    reach: distance of the pin from the pivot over the longer of r and e.
+    """
 
     sin: Any
     cos: Any
     reach: Any
+    slope: Any
+    curvature: Any
+
+
+class Ram(NamedTuple):
+    """The ram over the length of the lever: its place, its derivative by θ, and minus the derivative of that."""
+
+    place: Any
+    lead: Any
+    bend: Any
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,41 +84,49 @@ class SlottedLever(Mechanism):
 
     def __post_init__(self) -> None:
         check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
-        if not (self.slides or self._forked):
+        forked = math.isinf(self.link)
+        if not (self.slides or forked):
             refused("has no lever's end to hang on; give 'lever' with it", "link")
         check_pin(self.pin_diameter, self.pin_length)
         if self.crank == self.frame:
             same = show(self.crank, "length")
             refused(f"{same} is also the crank: the pin would pass through the lever's pivot", "frame")
-        if math.isinf(self.link) and self.ram_height is not None:
+        if forked and self.ram_height is not None:
             refused("has no meaning for a fork head; give 'link' with it", "ram_height")
         if not math.isfinite(self._height):
             refused("must be finite", "ram_height")
-        if not self._forked:
+        if not forked:
             check_lengths(link=self.link)
-            fault = self._full_turn_fault() if self.rotates else self._swing_fault()
-            if fault:
+            if fault := self._link_fault():
                 refused(f"{show(self.link, 'length')} {fault}", "link")
 
-    def _full_turn_fault(self) -> str:
-        if math.fsum((self.link, -self._end, -abs(self._height))) > 0:
-            return ""
-        arms = f"{show(self._end, 'length')} + {show(abs(self._height), 'length')}"
-        return f"does not reach: as the lever turns fully it must be longer than lever and ram_height together ({arms})"
-
-    def _swing_fault(self) -> str:
-        farthest = max(abs(self._height - self._end), abs(self._height - self._end * self._kappa[1]))
+    def _link_fault(self) -> str:
+        """Return why the link cannot follow the lever, or an empty text."""
+        end, height = self._end, self._height
+        if self.rotates:
+            arms = f"{show(end, 'length')} + {show(abs(height), 'length')}"
+            turning = "as the lever turns fully it must be longer than lever and ram_height together"
+            reaches = math.fsum((self.link, -end, -abs(height))) > 0
+            return "" if reaches else f"does not reach: {turning} ({arms})"
+        farthest = max(abs(height - end), abs(height - end * self._kappa[1]))
         if self.link <= farthest:
-            height = show(self._height, "length")
-            return f"does not reach the ram at {height}; it must be longer than {show(farthest, 'length')}"
-        if min(self._ram.lead(sin, cos) for sin, cos in self._limits) <= 0:
+            ram, least = show(height, "length"), show(farthest, "length")
+            return f"does not reach the ram at {ram}; it must be longer than {least}"
+        if min(self._ram(sin, cos).lead for sin, cos in self._limits) <= 0:
             return "gets into line with the lever within its swing; give a longer link or another ram_height"
         return ""
+
+    # what it is, by its lengths
 
     @property
     def slides(self) -> bool:
         """Whether there is a ram, since the length of the lever is given."""
         return self.lever is not None
+
+    @property
+    def rotates(self) -> bool:
+        """Whether the lever turns fully (e < r, Whitworth) instead of swinging."""
+        return self.frame < self.crank
 
     @property
     def turns(self) -> bool:
@@ -117,45 +136,68 @@ class SlottedLever(Mechanism):
     @property
     def _end(self) -> float:
         """R_l in m, where there is a ram."""
-        assert self.lever is not None
-        return self.lever
+        return self.lever or 0.0
 
-    @property
-    def rotates(self) -> bool:
-        """Whether the lever turns fully (e < r, Whitworth) instead of swinging."""
-        return self.frame < self.crank
-
-    @property
-    def _forked(self) -> bool:
-        return math.isinf(self.link)
-
-    @property
+    @cached_property
     def _shares(self) -> tuple[float, float, float]:
         """r, e and e − r, over the longer of r and e."""
         longer = max(self.crank, self.frame)
         return self.crank / longer, self.frame / longer, (self.frame - self.crank) / longer
 
-    @property
+    @cached_property
     def _kappa(self) -> tuple[float, float]:
         """κ, the shorter of r and e over the longer, and √(1 − κ²)."""
         crank, frame, gap = self._shares
         return min(crank, frame), math.sqrt(abs(gap) * (crank + frame))
 
-    @property
-    def _ram(self) -> ForkHead | ConnectingLink:
-        return ForkHead() if self._forked else ConnectingLink(self.link / self._end, self._height / self._end)
-
-    @property
-    def _limits(self) -> tuple[Direction, Direction]:
-        """(sin θ, cos θ) of the lever at the inner and the outer dead centre of the ram."""
-        kappa, root = self._kappa
-        return self._ram.ends if self.rotates else ((-kappa, root), (kappa, root))
-
-    @property
+    @cached_property
     def _height(self) -> float:
         if self.ram_height is not None:
             return self.ram_height
-        return 0.0 if self.rotates or not self.slides else self._end * (1 + self._kappa[1]) / 2
+        return 0.0 if self.rotates else self._end * (1 + self._kappa[1]) / 2
+
+    # the lever, and the ram that it drives
+
+    def _lever_at(self, angle: CrankAngle) -> Lever:
+        """Return θ′ = r(r + e cos φ)/ρ², θ″ = −r e (e² − r²) sin φ/ρ⁴ and the rest of the lever at a crank angle."""
+        crank, frame, gap = self._shares
+        reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
+        square = reach * reach
+        bend = -crank * frame * (gap * (crank + frame)) * angle.sin / (square * square)
+        cos = _sum_along(frame, crank, gap, angle) / reach
+        return Lever(
+            crank * angle.sin / reach, cos, reach, crank * _sum_along(crank, frame, -gap, angle) / square, bend
+        )
+
+    def _ram(self, sin: Any, cos: Any) -> Ram:
+        """Return the ram where the lever is at (sin θ, cos θ), by the link's angle γ, sin γ = (h − cos θ)/l.
+
+            x = sin θ − l(1 − cos γ)      x′ = cos(θ + γ)/cos γ      −x″ = sin θ + cos θ tan γ + sin²θ/(l cos³γ)
+
+        h and l are over R_l; a fork head is an infinite link, x = sin θ.
+        """
+        short = self._end / self.link  # 1/l
+        height = self._height / self._end - cos
+        rise = height * short
+        run = sqrt((1 - rise) * (1 + rise))
+        place = sin - height * rise / (1 + run)
+        return Ram(place, cos - sin * (rise / run), sin + cos * (rise / run) + sin * sin * short / (run * run * run))
+
+    @cached_property
+    def _limits(self) -> tuple[tuple[float, float], ...]:
+        """(sin θ, cos θ) of the lever at the inner and the outer dead centre of the ram.
+
+        The rotating lever is there in line with the link, folded behind and stretched ahead.
+        """
+        kappa, root = self._kappa
+        if not self.rotates:
+            return (-kappa, root), (kappa, root)
+        short, height = self._end / self.link, self._height / self.link
+        folded, stretched = -height / (1 - short), height / (1 + short)
+        return (
+            (-math.sqrt((1 - folded) * (1 + folded)), folded),
+            (math.sqrt((1 - stretched) * (1 + stretched)), stretched),
+        )
 
     def dead_centres(self) -> tuple[float, float]:
         """Return the ends of the working stroke, ∓(180° − β) with cos β = r/e (e/r for the rotating lever), R p. 615.
@@ -163,21 +205,93 @@ class SlottedLever(Mechanism):
         With a link on the rotating lever they are where link and lever lie in line: φ = θ + arcsin(κ sin θ).
         """
         kappa, root = self._kappa
-        if self._forked or not self.rotates:
+        if math.isinf(self.link) or not self.rotates:
             end = 180.0 - bearing(root, kappa)
             return -end, end
-        ends = [bearing(sin, cos) + bearing(kappa * sin, self._cos_shift(sin, cos)) for sin, cos in self._limits]
-        return ends[0], ends[1]
+        inner, outer = (
+            bearing(sin, cos) + bearing(kappa * sin, sqrt(cos * cos + root * root * (sin * sin)))
+            for sin, cos in self._limits
+        )
+        return inner, outer
 
-    def _cos_shift(self, sin: Any, cos: Any) -> Any:
-        """√(1 − κ² sin²), from cosine and sine of one angle."""
-        root = self._kappa[1]
-        return sqrt(cos * cos + root * root * (sin * sin))
+    def swing_at(self, angle: CrankAngle) -> Turning:
+        """Return how the lever turns; the rotating lever's θ runs on with φ from turn to turn."""
+        (crank, frame, _), lever = self._shares, self._lever_at(angle)
+        if self.rotates:
+            degrees = angle.degrees - bearing(frame * angle.sin, crank + frame * angle.cos)
+        else:
+            degrees = bearing(lever.sin, lever.cos)
+        return Turning(degrees, lever.slope, lever.curvature)
 
-    def _lever_at(self, angle: CrankAngle) -> _Lever:
+    @property
+    def swing(self) -> float | None:
+        """2 arcsin(r/e) in degrees; None where the lever turns fully."""
+        return None if self.rotates else 2 * bearing(*self._kappa)
+
+    @cached_property
+    def _places(self) -> tuple[float, ...]:
+        """Where the ram is in its dead centres, over R_l."""
+        return tuple(float(self._ram(sin, cos).place) for sin, cos in self._limits)
+
+    @property
+    def stroke(self) -> float:
+        """s = 2 R_l r/e (2 R_l for the rotating lever) with a fork head or a swinging lever; of θ without a ram."""
+        if not self.slides:
+            return math.tau if self.swing is None else math.radians(self.swing)
+        return self._end * (self._places[1] - self._places[0])
+
+    @property
+    def start(self) -> float:
+        """−s/2: x, and θ of what swings, count from the middle of the stroke; where it turns fully from φ = 0."""
+        return 0.0 if self.turns else -self.stroke / 2
+
+    def coordinate(self, angle: CrankAngle) -> Any:
+        """Return x of the ram in m from the middle of its stroke: R_l sin θ for the fork head; θ without a ram."""
+        if not self.slides:
+            return self.swing_at(angle).degrees * (math.pi / 180)
+        lever = self._lever_at(angle)
+        return self._end * (self._ram(lever.sin, lever.cos).place - sum(self._places) / 2)
+
+    def slope(self, angle: CrankAngle) -> Any:
+        """Return dx/dφ = R_l θ′ cos(θ + γ)/cos γ in m; for the fork head R_l r (r + e cos φ)(e + r cos φ)/ρ³."""
+        lever = self._lever_at(angle)
+        return self._end * (lever.slope * self._ram(lever.sin, lever.cos).lead) if self.slides else lever.slope
+
+    def curvature(self, angle: CrankAngle) -> Any:
+        """Return d²x/dφ² = R_l [θ″ dx/dθ + θ′² d²x/dθ²] in m."""
+        lever = self._lever_at(angle)
+        if not self.slides:
+            return lever.curvature
+        ram = self._ram(lever.sin, lever.cos)
+        return self._end * (lever.curvature * ram.lead - lever.slope * lever.slope * ram.bend)
+
+    def velocity_extremes(self) -> tuple[Extreme, ...]:
+        """Return dx/dφ at 0°, R_l r/(e + r), R 304, and at 180°, −R_l r/|e − r|, R 305; fork head only."""
+        if not math.isinf(self.link) or not self.slides:
+            return ()
         crank, frame, gap = self._shares
-        reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
-        return _Lever(crank * angle.sin / reach, sum_along(frame, crank, gap, angle) / reach, reach)
+        return Extreme(self._end * crank / (crank + frame), 0.0), Extreme(-self._end * crank / abs(gap), 180.0)
+
+    # the block on the crank pin
+
+    def block_slope(self, angle: CrankAngle) -> Any:
+        """Return dρ/dφ = −r e sin φ/ρ in m: times ω, the speed at which the block slides along the lever."""
+        return -self.crank * self._shares[1] * angle.sin / self._lever_at(angle).reach
+
+    def pin_force_factor(self, angle: CrankAngle) -> Any:
+        """Return the force on the crank pin, square to the lever, over the force P on the ram: (dx/dθ)/ρ."""
+        if not self.slides:
+            return None
+        lever = self._lever_at(angle)
+        return self._end / max(self.crank, self.frame) * self._ram(lever.sin, lever.cos).lead / lever.reach
+
+    def radial(self, angle: CrankAngle) -> Any:
+        """Return D/P = −(force on the pin over P) (e sin φ)/ρ: the part of that force toward the shaft."""
+        if not self.slides:
+            return None
+        return -self.pin_force_factor(angle) * (self._shares[1] * angle.sin / self._lever_at(angle).reach)
+
+    # what readers see of it
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return the crank with its block on the lever, and the ram on its line, which is upright where φ = 0 lies."""
@@ -189,106 +303,12 @@ class SlottedLever(Mechanism):
         blocks, fixed = ((PIN, ("pivot", "end")),), (SHAFT, "pivot")
         if not self.slides:
             return Sketch(joints, links, fixed, blocks)
-        line = pivot[0] + (length if self._forked else self._height)
-        middle = 0.0 if self._forked else length * (self._middle + self.link / length)
+        forked = math.isinf(self.link)
+        line = pivot[0] + (length if forked else self._height)
+        middle = 0.0 if forked else length * sum(self._places) / 2 + self.link
         joints["ram"] = (line, middle + self.coordinate(angle))
         guide = ((line, middle - self.stroke / 2), (line, middle + self.stroke / 2))
         return Sketch(joints, (*links, ("end", "ram")), fixed, blocks, (guide,), "ram", (0.0, 1.0))
-
-    def swing_at(self, angle: CrankAngle) -> Swing:
-        """Return θ, θ′ = r(r + e cos φ)/ρ² and θ″ = −r e (e² − r²) sin φ/ρ⁴, with ρ the pin's distance from the pivot.
-
-        The rotating lever's θ runs on with φ from turn to turn.
-        """
-        crank, frame, _ = self._shares
-        lever = self._lever_at(angle)
-        degrees = bearing(lever.sin, lever.cos)
-        if self.rotates:
-            degrees = angle.degrees - bearing(frame * angle.sin, crank + frame * angle.cos)
-        return Swing(degrees, *self._turning(angle, lever))
-
-    def _turning(self, angle: CrankAngle, lever: _Lever) -> tuple[Any, Any]:
-        """Return θ′ and θ″, pure arithmetic as the rest."""
-        crank, frame, gap = self._shares
-        square = lever.reach * lever.reach
-        bend = -crank * frame * (gap * (crank + frame)) * angle.sin / (square * square)
-        return crank * sum_along(crank, frame, -gap, angle) / square, bend
-
-    @property
-    def stroke(self) -> float:
-        """s = 2 R_l r/e (2 R_l for the rotating lever) with a fork head or a swinging lever; of θ without a ram."""
-        if not self.slides:
-            return math.tau if self.swing is None else math.radians(self.swing)
-        if not self.rotates:
-            return 2 * self._end * self._kappa[0]
-        inner, outer = (self._ram.place(sin, cos) for sin, cos in self._limits)
-        return self._end * float(outer - inner)
-
-    @property
-    def start(self) -> float:
-        """−s/2: x, and θ of what swings, count from the middle of the stroke; where it turns fully from φ = 0."""
-        return 0.0 if self.turns else -self.stroke / 2
-
-    @property
-    def swing(self) -> float | None:
-        """2 arcsin(r/e) in degrees; None where the lever turns fully."""
-        return None if self.rotates else 2 * bearing(*self._kappa)
-
-    def coordinate(self, angle: CrankAngle) -> Any:
-        """Return x of the ram in m from the middle of its stroke: R_l sin θ for the fork head; θ without a ram."""
-        if not self.slides:
-            return self.swing_at(angle).degrees * (math.pi / 180)
-        lever = self._lever_at(angle)
-        place = self._ram.place(lever.sin, lever.cos)
-        return self._end * (place if self._forked else place - self._middle)
-
-    @property
-    def _middle(self) -> float:
-        """The middle of the stroke, as the ram counts its place."""
-        return sum(float(self._ram.place(sin, cos)) for sin, cos in self._limits) / 2
-
-    def slope(self, angle: CrankAngle) -> Any:
-        """Return dx/dφ = R_l θ′ cos(θ + γ)/cos γ in m; for the fork head R_l r (r + e cos φ)(e + r cos φ)/ρ³."""
-        lever = self._lever_at(angle)
-        if not self.slides:
-            return self._turning(angle, lever)[0]
-        return self._end * (self._turning(angle, lever)[0] * self._ram.lead(lever.sin, lever.cos))
-
-    def curvature(self, angle: CrankAngle) -> Any:
-        """Return d²x/dφ² in m; for the fork head with u = er(1 + cos φ), g = (e − r)²
-
-        −R_l r sin φ [g(g + 3er) + u(g + u)]/ρ⁵, whose terms are all positive.
-        """
-        if not self.slides:
-            return self._turning(angle, self._lever_at(angle))[1]
-        if not self._forked:
-            return self._curvature_with_link(angle)
-        crank, frame, gap = self._shares
-        reach, beyond = self._lever_at(angle).reach, crank * frame * angle.vercosine
-        inside = gap * gap * (gap * gap + 3 * crank * frame) + beyond * (gap * gap + beyond)
-        square = reach * reach
-        return -self._end * crank * angle.sin * (inside / (square * square * reach))
-
-    def _curvature_with_link(self, angle: CrankAngle) -> Any:
-        """d²x/dφ² = R_l [θ″ cos(θ + γ)/cos γ − θ′² (sin θ + cos θ tan γ + (R_l/l) sin²θ/cos³γ)]."""
-        lever, ram = self._lever_at(angle), self._ram
-        slope, curvature = self._turning(angle, lever)
-        bent = slope * slope * ram.bend(lever.sin, lever.cos)
-        return self._end * (curvature * ram.lead(lever.sin, lever.cos) - bent)
-
-    def pin_force_factor(self, angle: CrankAngle) -> Any:
-        """Return the force on the crank pin, square to the lever, over the force P on the ram: (dx/dθ)/ρ."""
-        if not self.slides:
-            return None
-        lever = self._lever_at(angle)
-        return self._end / max(self.crank, self.frame) * self._ram.lead(lever.sin, lever.cos) / lever.reach
-
-    def radial(self, angle: CrankAngle) -> Any:
-        """Return D/P = −(force on the pin over P) (e sin φ)/ρ: the part of that force toward the shaft."""
-        if not self.slides:
-            return None
-        lever, frame = self._lever_at(angle), self._shares[1]
-        return -self.pin_force_factor(angle) * (frame * angle.sin / lever.reach)
 
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
@@ -296,36 +316,29 @@ class SlottedLever(Mechanism):
         lever = ("inertia of the lever", "kurbel takes masses on the ram only")
         if not self.slides:
             return ("ram", "no lever given"), lever
-        link = () if self._forked else (("S, N", "the forces of the link on the ram are not computed"),)
+        link = () if math.isinf(self.link) else (("S, N", "the forces of the link on the ram are not computed"),)
         return (*link, lever) if self.pin_diameter is not None else (*link, lever, NO_PIN)
-
-    def block_slope(self, angle: CrankAngle) -> Any:
-        """Return dρ/dφ = −r e sin φ/ρ in m: times ω, the speed at which the block slides along the lever."""
-        _, frame, _ = self._shares
-        return -self.crank * frame * angle.sin / self._lever_at(angle).reach
-
-    def velocity_extremes(self) -> tuple[Extreme, ...]:
-        """Return dx/dφ at 0°, R_l r/(e + r), R 304, and at 180°, −R_l r/|e − r|, R 305; fork head only."""
-        if not self._forked or not self.slides:
-            return ()
-        crank, frame, gap = self._shares
-        return Extreme(self._end * crank / (crank + frame), 0.0), Extreme(-self._end * crank / abs(gap), 180.0)
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Say that the lever turns fully, where it does, and that the pin slides past its end, where it does."""
-        whitworth = "The frame is shorter than the crank: the lever turns fully (Whitworth quick return)."
-        times = (
-            "Without a lever's length the strokes are those of a ram square to the line of the pivots, on a fork head."
-        )
-        return (whitworth,) * self.rotates + (times,) * self.turns + self._slot_notes()
-
-    def _slot_notes(self) -> tuple[str, ...]:
-        farthest = self.frame + self.crank
-        if self.lever is None or self.rotates or self.lever >= farthest:
-            return ()
+        found, farthest = [], self.frame + self.crank
+        if self.rotates:
+            found.append("The frame is shorter than the crank: the lever turns fully (Whitworth quick return).")
+        if self.turns:
+            found.append(
+                "Without a lever's length the strokes are those of a ram square to the line of the pivots, on a fork "
+                "head."
+            )
         # a lever that turns fully may drive its ram by an arm on the other side of the pivot
-        return (
-            f"The pin slides as far as {show(farthest, 'length')} from the lever's pivot, past its end at "
-            f"{show(self.lever, 'length')}: the slot must go on beyond the joint with the ram.",
-        )
+        if self.lever is not None and not self.rotates and self.lever < farthest:
+            found.append(
+                f"The pin slides as far as {show(farthest, 'length')} from the lever's pivot, past its end at "
+                f"{show(self.lever, 'length')}: the slot must go on beyond the joint with the ram."
+            )
+        return tuple(found)
+
+
+def _sum_along(base: float, arm: float, gap: float, angle: CrankAngle) -> Any:
+    """Return base + arm cos φ; where that is a difference, from gap = base − arm, as they were given."""
+    return where(angle.cos >= -0.5, base + arm * angle.cos, gap + arm * angle.vercosine)

@@ -13,8 +13,13 @@ from kurbel.declared.keys import Keys
 from kurbel.mechanisms import Offer, check_lengths, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 
-_TEXT, _CALLED = "Bending moment of N on the piston rod at its stuffing box", "bending moment of N on the piston rod"
-_M_BEND = own_force("M_bend", "M_b", "torque", _TEXT, called=_CALLED)
+_M_BEND = own_force(
+    "M_bend",
+    "M_b",
+    "torque",
+    "Bending moment of N on the piston rod at its stuffing box",
+    called="bending moment of N on the piston rod",
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -32,6 +37,9 @@ class YokeFrame(SliderCrank):
     OFFERS: ClassVar[tuple[Offer, ...]] = (
         *SliderCrank.OFFERS,
         Offer(_M_BEND, lambda drive, angle: drive.bending_arm(angle), ("N",)),
+    )
+    notes: ClassVar[tuple[str, ...]] = (
+        "There is no crosshead guide: the side force N bends the piston rod (R p. 614).",
     )
     KEYS: ClassVar[Keys] = {
         **SliderCrank.KEYS,
@@ -58,8 +66,3 @@ class YokeFrame(SliderCrank):
     def lacks(self) -> tuple[tuple[str, str], ...]:
         """Name the bending of the piston rod, where its arm is not known."""
         return () if self.gland is not None else (("bending of the piston rod", "no gland given"),)
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Say where N goes."""
-        return ("There is no crosshead guide: the side force N bends the piston rod (R p. 614).",)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from kurbel.render.charset import Charset
+from kurbel.render.text import Charset
 
 FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
 LAYOUTS = ("book", "rows")

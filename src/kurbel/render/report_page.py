@@ -1,4 +1,4 @@
-"""A long report as one page of HTML: contents with links, tables, and pictures that are part of the page."""
+"""The long report as one page of HTML: contents with links, tables, and pictures that are part of the page."""
 
 from collections.abc import Iterator
 from html import escape
@@ -6,15 +6,12 @@ from itertools import chain
 
 from kurbel import __version__
 from kurbel.render import Look
-from kurbel.render.document import Table
-from kurbel.render.html import grid, item_list, page, tables
-from kurbel.render.pictures.layout import scene
-from kurbel.render.pictures.style import css
-from kurbel.render.pictures.svg import svg
-from kurbel.render.prose import sentence_text
-from kurbel.render.sheet import Row
-from kurbel.report.document import Document, Grid, Item, Pair, Section
-from kurbel.report.pictures.picture import Picture
+from kurbel.render.html import page
+from kurbel.render.markup import Html, document, listed, written
+from kurbel.render.svg import css, svg
+from kurbel.render.text_tables import TextTable, texts
+from kurbel.report.document import Document, Grid, Item, Pair
+from kurbel.report.picture import Picture
 from kurbel.report.tables import Provenance, Report
 
 _STYLE = (
@@ -31,42 +28,38 @@ _STYLE_OF_PAIRS = (
 )
 
 
-def report_page(document: Document, look: Look, date: str) -> Iterator[str]:
-    """Yield the page. date: what stands as its date."""
-    sections = (text for section in document.sections for text in _section(section, look))
-    body = chain(("<main>\n",), _head(document, look, date), sections, ("</main>\n",))
-    style = _STYLE + _STYLE_OF_PAIRS if len(document.provenance) > 1 else _STYLE
-    yield from page(look.charset.text(document.title), body, f"{style}{css()}\n")
+def report_page(long: Document, look: Look, date: str) -> Iterator[str]:
+    """Yield the page of a long report; date: as it is shown."""
+    style = _STYLE + _STYLE_OF_PAIRS if len(long.provenance) > 1 else _STYLE
+    sections = (
+        f'<section id="{section.id}">\n<h2>{_text(section.title, look)}</h2>\n'
+        f"{''.join(_item(one, look) for one in section.items)}</section>\n"
+        for section in long.sections
+    )
+    yield from page(look.charset.text(long.title), chain(_head(long, look, date), sections), f"{style}{css()}\n")
 
 
-def _head(document: Document, look: Look, date: str) -> Iterator[str]:
-    yield f"<header>\n<h1>{_text(document.title, look)}</h1>\n<p>{_text(date, look)}, kurbel {__version__}</p>\n"
-    yield from (_provenance(one, look) for one in document.provenance)
-    yield "</header>\n"
-    links = "".join(f'<li><a href="#{one.id}">{_text(one.title, look)}</a></li>\n' for one in document.sections)
-    yield f'<nav aria-label="Contents">\n<h2>Contents</h2>\n<ul>\n{links}</ul>\n</nav>\n'
+def _head(long: Document, look: Look, date: str) -> Iterator[str]:
+    yield f"<header>\n<h1>{_text(long.title, look)}</h1>\n<p>{_text(date, look)}, kurbel {__version__}</p>\n"
+    for one in long.provenance:
+        yield from listed("Made from", _made_from(one), look, Html(1))
+    links = "".join(f'<li><a href="#{one.id}">{_text(one.title, look)}</a></li>\n' for one in long.sections)
+    yield f'</header>\n<nav aria-label="Contents">\n<h2>Contents</h2>\n<ul>\n{links}</ul>\n</nav>\n'
 
 
-def _provenance(given: Provenance, look: Look) -> str:
-    said = [f"{one.file}: SHA-256 {one.sha256 or 'not known, the file is gone'}" for one in given.inputs]
-    said += [f"set over it: {one}" for one in given.overrides]
-    said += [f"{name} {version}" for name, version in given.versions.items()]
-    return item_list("Made from", [sentence_text(one, look) for one in said], 2) if said else ""
-
-
-def _section(section: Section, look: Look) -> Iterator[str]:
-    yield f'<section id="{section.id}">\n<h2>{_text(section.title, look)}</h2>\n'
-    yield from (_item(one, look) for one in section.items)
-    yield "</section>\n"
+def _made_from(given: Provenance) -> list[str]:
+    files = [f"{one.file}: SHA-256 {one.sha256 or 'not known, the file is gone'}" for one in given.inputs]
+    set_over = [f"set over it: {one}" for one in given.overrides]
+    return files + set_over + [f"{name} {version}" for name, version in given.versions.items()]
 
 
 def _item(item: Item, look: Look) -> str:
     if isinstance(item, Picture):
         return _figure(item, look)
     if isinstance(item, Report):
-        return "".join(tables(item, look, 3))
+        return "".join(document(item, look, Html(3)))
     if isinstance(item, Grid):
-        return _grid(item, look)
+        return "".join(written(_text_table(item, look), Html()))
     if isinstance(item, Pair):
         sides = "".join(_figure(one, look) if one else "<div></div>\n" for one in item)
         return f'<div class="pair">\n{sides}</div>\n'
@@ -74,19 +67,18 @@ def _item(item: Item, look: Look) -> str:
 
 
 def _figure(picture: Picture, look: Look) -> str:
-    caption = _text(picture.text, look)
-    label = escape(look.charset.text(picture.heading), quote=True)
-    drawn = f'<div class="wide" tabindex="0" role="region" aria-label="{label}">{svg(scene(picture, look))}</div>'
-    return f"<figure>\n{drawn}\n<figcaption>{caption}</figcaption>\n</figure>\n"
+    label = _text(picture.heading, look)
+    drawn = f'<div class="wide" tabindex="0" role="region" aria-label="{label}">{svg(picture, look)}</div>'
+    return f"<figure>\n{drawn}\n<figcaption>{_text(picture.text, look)}</figcaption>\n</figure>\n"
 
 
-def _grid(given: Grid, look: Look) -> str:
+def _text_table(grid: Grid, look: Look) -> TextTable:
     charset = look.charset
     columns = []
-    for k, (head, texts) in enumerate(zip(given.heads, zip(*given.rows))):
-        cells = [*map(charset.unit if k in given.units else charset.text, texts)]
-        columns.append(Row(charset.text(head), "", cells, words=k not in given.numbers))
-    return "".join(grid(Table(charset.text(given.title), columns, 1), given.verdicts))
+    for k, (head, cells) in enumerate(zip(grid.heads, zip(*grid.rows))):
+        shown = [*map(charset.unit if k in grid.units else charset.text, cells)]
+        columns.append(texts(charset.text(head), "", shown, "number" if k in grid.numbers else "name"))
+    return TextTable(charset.text(grid.title), columns, 1, grid.verdicts)
 
 
 def _text(text: str, look: Look) -> str:

@@ -1,12 +1,13 @@
-"""Equal cylinders, told once to people: programs read each of them."""
+"""Equal cylinders, pins and bearings, which tables and pages show once; CSV and JSON list every one."""
 
 import re
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import groupby
 from typing import TypeVar
 
-from kurbel.report.tables import Part, Report
+from kurbel.report.tables import Column, KeyValue, Part, Report, Value
 
+_NUMBERED = re.compile(r"(.*\D)(\d{1,9})")
 Item = TypeVar("Item")
 
 
@@ -15,15 +16,29 @@ def together(names: Sequence[str]) -> str:
 
     >>> together(["cylinder 1", "cylinder 2", "cylinder 3", "cylinder 6"]), together(["HP", "LP"])
     ('cylinders 1–3, 6', 'HP, LP')
+    >>> together(["pin of left 1", "pin of right 1", "pin of left 2", "pin of right 2"])
+    'pin of left 1, 2, right 1, 2'
     """
-    found = [re.fullmatch(r"(.*\D)(\d{1,9})", name) for name in names]
-    stems = {one.group(1) for one in found if one}
-    if len(names) == 1 or len(stems) > 1 or None in found:
-        return ", ".join(names)
-    runs = groupby(enumerate(int(one.group(2)) for one in found if one), lambda pair: pair[1] - pair[0])
+    texts = [_numbered(group) for group in grouped(names, _stem)]
+    head, of, _ = texts[0].rpartition(" of ")
+    shared = head + of if all(text.startswith(head + of) for text in texts) else ""
+    return shared + ", ".join(text.removeprefix(shared) for text in texts)
+
+
+def _stem(name: str) -> str:
+    found = _NUMBERED.fullmatch(name)
+    return found.group(1) if found else name
+
+
+def _numbered(names: Sequence[str]) -> str:
+    """Return names of one stem with their numbers, runs of them from the first to the last."""
+    if len(names) == 1:
+        return names[0]
+    numbers = [int(found.group(2)) for name in names if (found := _NUMBERED.fullmatch(name))]
+    runs = groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
     spans = [[number for _, number in run] for _, run in runs]
     texts = (f"{span[0]}–{span[-1]}" if len(span) > 2 else ", ".join(map(str, span)) for span in spans)
-    return f"{stems.pop().replace('cylinder ', 'cylinders ')}{', '.join(texts)}"
+    return f"{_stem(names[0]).replace('cylinder ', 'cylinders ')}{', '.join(texts)}"
 
 
 def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
@@ -35,25 +50,61 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
 
 
 def told_once(report: Report) -> Report:
-    """Return the report with its equal cylinders as one part; its title names them where no other part is left."""
-    if len(report.parts) < 2 or report.group != "cylinders":
-        return report
-    from kurbel.machine.alike import gathered  # not for a table of factors, which knows no machine
+    """Return the report with its equal parts as one; its title names them if no other part is left.
 
-    groups = gathered(report.parts, _equal)
+    Pins and bearings are equal if their key values are, at whatever crank angles they are loaded.
+    """
+    if len(report.parts) < 2 or report.group not in ("cylinders", "bearings"):
+        return report
+    bearings = report.group == "bearings"
+    groups = grouped(report.parts, _bearing if bearings else _cylinder)
     if len(groups) == len(report.parts):
         return report
-    parts = tuple(_as_one(group) for group in groups)
-    alone = len(parts) == 1 and report.whole is None
-    return report._replace(parts=parts, title=f"{report.title}: {parts[0].name}" if alone else report.title)
+    parts = []
+    for group in groups:
+        warnings = tuple(dict.fromkeys(warning for part in group for warning in part.warnings))
+        parts.append(group[0]._replace(name=together([str(part.name) for part in group]), warnings=warnings))
+    title = f"{report.title}: {parts[0].name}" if len(parts) == 1 and report.whole is None else report.title
+    return report._replace(
+        parts=tuple(parts), title=title, notes=(*report.notes, _SHIFTED) if bearings else report.notes
+    )
 
 
-def _equal(one: Part, other: Part) -> bool:
-    """Return whether two parts say the same but for their warnings, which may be of the whole machine."""
-    told = ("columns", "key_values", "left_out", "place_tables")
-    return all(tuple(getattr(one, name)) == tuple(getattr(other, name)) for name in told)
+_SHIFTED = (
+    "Pins and bearings named together carry equal loads, each at its own crank angles; those of the first are shown."
+)
 
 
-def _as_one(parts: Sequence[Part]) -> Part:
-    warnings = tuple(dict.fromkeys(warning for part in parts for warning in part.warnings))
-    return parts[0]._replace(name=together([str(part.name) for part in parts]), warnings=warnings)
+def _bearing(part: Part) -> Hashable:
+    """Return what equal bearings of one kind have in common, such as those of main bearings."""
+    kind = str(part.name).removesuffix(part.of).rstrip("0123456789")
+    return kind, _figures(part.key_values), tuple(part.left_out)
+
+
+def _cylinder(part: Part) -> Hashable:
+    """Return what equal cylinders have in common, their tables over their own crank angle, too."""
+    tables = [(one.title, one.names, *map(_curve, one.columns)) for one in part.place_tables]
+    return *map(_curve, part.columns), _figures(part.key_values), tuple(part.left_out), *tables, part.nowhere
+
+
+def _curve(column: Column) -> Hashable:
+    return column.id, column.unit, _nine_digits(column.values)
+
+
+def _figures(key_values: Iterable[KeyValue]) -> Hashable:
+    """Return the key values without the angles at which they are, those of one unit relative to the largest."""
+    by_unit: dict[str, list[Value]] = {}
+    for one in key_values:
+        if not one.noise:
+            by_unit.setdefault(one.unit, []).extend(one.value if isinstance(one.value, tuple) else (one.value,))
+    return (
+        tuple(one.id for one in key_values),
+        tuple((unit, _nine_digits(values)) for unit, values in by_unit.items()),
+    )
+
+
+def _nine_digits(values: Sequence[Value]) -> Hashable:
+    """Return the largest of these values, and a hash of all relative to it, both rounded to nine digits."""
+    largest = max((abs(value) for value in values if value is not None), default=0.0) or 1.0
+    relative = tuple(None if value is None else round(value / largest, 9) for value in values)
+    return f"{largest:.9g}", hash(relative)  # of a long table the values themselves would take much memory

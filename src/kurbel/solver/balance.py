@@ -8,7 +8,7 @@ effort M and the moment of momentum H of the masses about the shaft.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from functools import cache, cached_property, partial
 from typing import Any
 
@@ -17,7 +17,6 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray, Flags
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
-from kurbel.machine import Machine
 from kurbel.machine.balance import Locomotive
 from kurbel.numerics.arithmetic import some, sqrt, where
 from kurbel.numerics.enclosing import ClosedCurve
@@ -101,9 +100,9 @@ class MachineBalance(Results):
 
     command = "balance"
 
-    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], count: int | None = None) -> None:
-        self.machine, self.count = machine, count
-        self._cylinders = cylinders
+    def __init__(self, effort: TurningEffort) -> None:
+        machine = self.machine = effort.machine
+        self.count, self._cylinders, self._turning = effort.count, effort.cylinders, effort
         first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
         own = (OwnThrow(number, one, first) for number, one in enumerate(machine.cylinders) if one.masses)
         self.throws = tuple(own)
@@ -218,42 +217,40 @@ class MachineBalance(Results):
 
     # the rolling moment on the frame about the shaft: −(M + dH/dt), H the moment of momentum about the shaft
 
-    @cached_property
+    @property
     def _effort(self) -> TurningEffort | None:
         """The turning effort of the machine, with its losses; None without a speed."""
-        if self.omega is None or not some(self.omega != 0):
-            return None
-        return TurningEffort(self.machine, self._cylinders, self.count)
+        return self._turning if self.omega is not None and some(self.omega != 0) else None
 
     @property
     def rolls(self) -> bool:
         """Whether a rolling moment is known. Raises UsageError where no force acts."""
-        return self._effort is not None
-
-    @cached_property
-    def _swirls(self) -> list[Term]:
-        """−dH/dt in N m of the masses whose moment of momentum changes."""
-        return [Term(-1.0, group, swirl) for group in self._effort.groups if swirls(group[0])] if self._effort else []
+        return self._effort is not None and len(self._effort.pieces.half) > 0
 
     @property
     def rolls_as_it_turns(self) -> bool:
         """Whether the rolling moment is the turning effort of `kurbel flywheel` with the other sign."""
         return not any(map(swirls, self._cylinders))
 
-    def _roll_at(self, phi: Array, within: Array) -> Array | None:
-        """Return the rolling moment in N m at crank angles (k,), on the sides of jumps that hold `within`."""
-        if self._effort is None:
-            return None
-        turned = -self._effort.M_at(phi, within)
-        return turned + self._effort.sum_at(self._swirls, phi, within) if self._swirls else turned
-
     @cached_property
-    def _roll_extremes(self) -> Extremes | None:
+    def _roll(self) -> Array | None:
+        """Samples of the rolling moment −(M + dH/dt) in N m on the pieces of the turning effort."""
         if self._effort is None:
             return None
         effort = self._effort
-        roll = sum((effort.sampled([one]) for one in self._swirls), -effort.M)
-        return effort.pieces.extremes(roll[None]).each(effort.told)[0]
+        return effort.sampled([Term(-1.0, one, swirl) for one in effort.groups if swirls(one[0])]) - effort.M
+
+    def _roll_at(self, phi: Array, within: Array) -> Array | None:
+        """Return the rolling moment in N m at crank angles (k,), on the sides of jumps that hold `within`."""
+        if self._roll is None:
+            return None
+        return self._turning.at(self._turning.pieces, self._roll, phi, within)
+
+    @cached_property
+    def _roll_extremes(self) -> Extremes | None:
+        if self._roll is None:
+            return None
+        return self._turning.pieces.extremes(self._roll[None]).each(self._turning.result)[0]
 
     M_roll_max = passed_on("_roll_extremes", "largest", "Largest rolling moment on the frame in N m.")
     M_roll_min = passed_on("_roll_extremes", "smallest", "Smallest rolling moment on the frame in N m.")

@@ -12,17 +12,17 @@ from there to the first mass, or from the last mass there.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.machine.shaft_line import ShaftLine
-from kurbel.numerics.collocation import Unsettled, periodic
-from kurbel.numerics.pieces import Angles, Pieces
+from kurbel.numerics.pieces import Pieces
+from kurbel.solver.speed import SpeedLaw
 
 _AT_ONCE = 2048
 """Systems of equations that are solved together: what the nearest memory holds."""
@@ -66,11 +66,16 @@ class Chain:
         """Whether anything damps it."""
         return bool(self.segment_damping.any() or self.mass_damping.any() or self.loss.any())
 
+    def each(self, change: Callable[[Array], Array], ground: str = "") -> Chain:
+        """Return the chain whose arrays are changed."""
+        inertias, stiffnesses, damping, against, loss = map(
+            change, (self.inertias, self.stiffnesses, self.segment_damping, self.mass_damping, self.loss)
+        )
+        return Chain(inertias, stiffnesses, damping, against, loss, ground)
+
     def reversed(self) -> Chain:
         """Return the same chain read from its other end."""
-        names = ("inertias", "stiffnesses", "segment_damping", "mass_damping", "loss")
-        turned: dict[str, Any] = {name: vars(self)[name][::-1] for name in names}
-        return replace(self, **turned, ground={"before": "after", "after": "before"}.get(self.ground, ""))
+        return self.each(lambda one: one[::-1], {"before": "after", "after": "before"}.get(self.ground, ""))
 
     def springs(self, frequencies: Array) -> ComplexArray:
         """Return k (1 + iη) + iΩ d of the segments at angular frequencies Ω (…) in rad/s, (segments, …)."""
@@ -265,89 +270,80 @@ _SWING = 200.0
 """Degrees of the fastest natural vibration that a piece may hold at first, …"""
 _MOST_PARTS = 8000
 """… though one is cut into no more parts than these."""
-_MOST_WORK = 3.75e4
-"""Pieces, or _FEWEST, times the cube of the unknowns: what a solution of about a second takes."""
-_FEWEST = 40
-"""Pieces that a cycle is refined to at least."""
-
-
-class Motion(NamedTuple):
-    """The torques in the segments less their means in N m, (segments, nodes, pieces), on pieces of the cycle."""
-
-    pieces: Pieces
-    torques: Array
-
-
-def motion(chain: Chain, omega: float, pieces: Pieces, driving: Array, rise: Rise | None = None) -> Motion:
-    """Return the periodic vibration of a chain without loss factors about uniform rotation at ω_n = omega in rad/s.
-
-    driving: torques on the masses less their means in N m, (n, nodes, pieces), of one machine. Raises Unsettled where
-    no motion is found, or none that is worth its time.
-    """
-    equation = ChainEquation(chain, omega, pieces, driving, rise)
-    parts = np.ceil(2 * pieces.half * equation.order / _SWING).clip(1, _MOST_PARTS).astype(int)
-    if max(parts.sum(), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
-        raise Unsettled
-    row = np.repeat(np.arange(len(parts)), parts)
-    share = (np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[row]
-    found = periodic(
-        equation, pieces.split(Angles(pieces.machine[row], pieces.low[row] + 2 * share * pieces.half[row]))
-    )
-    found.refuse()
-    return Motion(found.pieces, np.tensordot(equation.passing, found.samples, 1))
-
-
-class Rise(NamedTuple):
-    """How the load on one mass rises with the speed: r = (ω/ω_n)² − 1 → the rise in N m and its slope by r."""
-
-    mass: int
-    law: Callable[[Array, Pieces], tuple[Array, Array]]
 
 
 class ChainEquation:
-    """y′ = A y + driving − rise, an equation of `kurbel.numerics.collocation`, of one machine.
+    """y′ = A y + driving − rise: vibrations of chains without loss factors about uniform rotation at ω_n.
 
-    The unknowns are, in N m and of one size: for each segment the torque of its spring less its mean, over the largest
-    natural order, and for each mass J ω_n (ω − ω_n). matrix: A; passing: turns y into torques in the segments.
+    Numbers of the chain are (n,), or (n, machines); order: the largest natural one, omega: ω_n in rad/s, numbers or
+    (machines,); driving: torques on the masses less their means in N m, (n, nodes, pieces). law: how the load on the
+    mass `loaded` rises with the speed. The unknowns are, in N m and of one size: for each segment the torque of its
+    spring less its mean, over `order`, and for each mass J ω_n (ω − ω_n).
     """
 
-    def __init__(self, chain: Chain, omega: float, pieces: Pieces, driving: Array, rise: Rise | None) -> None:
-        self._pieces, self._driving, self._rise = pieces, driving, rise
-        self.order, speeds = float(Modes(chain).omegas[-1]) / omega, 1 / (chain.inertias * omega)
-        segments, twists, self.noise = len(chain.stiffnesses), chain.twists, np.zeros(1)
-        self.passing = np.hstack((np.eye(segments) * self.order, chain.segment_damping[:, None] * twists * speeds))
-        springs = (chain.stiffnesses / (omega * self.order))[:, None] * twists * speeds
-        masses = -twists.T @ self.passing
-        masses[:, segments:] -= np.diag(chain.mass_damping * speeds)
-        self.matrix = np.vstack((np.hstack((np.zeros((segments, segments)), springs)), masses))
-        self.unknowns = len(self.matrix)
-        self._risen = segments + (rise.mass if rise else 0)
-        self._height = float(chain.inertias[rise.mass if rise else 0]) * omega * omega
+    def __init__(
+        self,
+        chain: Chain,
+        order: Any,
+        omega: Any,
+        pieces: Pieces,
+        driving: Array,
+        law: SpeedLaw | None = None,
+        loaded: int = 0,
+    ) -> None:
+        self._source, self._driving, self._law, self.noise = pieces, driving, law, np.zeros(pieces.count)
+        self._order, omega = (np.broadcast_to(one, pieces.count) for one in (order, omega))
+        parts = np.ceil(2 * pieces.half * self._order[pieces.machine] / _SWING).clip(1, _MOST_PARTS)
+        self.pieces = pieces.parted(parts.astype(int))
+
+        def by_machine(numbers: Array) -> Array:
+            return np.broadcast_to(numbers.reshape(len(numbers), -1), (len(numbers), pieces.count))
+
+        self._twists, self._damping, self._against = (
+            chain.twists,
+            by_machine(chain.segment_damping),
+            by_machine(chain.mass_damping),
+        )
+        self._speeds = 1 / (by_machine(chain.inertias) * omega)
+        self._springs = by_machine(chain.stiffnesses) / (omega * self._order)
+        self.unknowns, self.bounded = sum(chain.twists.shape), len(chain.stiffnesses) + loaded
+        self._energy = omega / self._speeds[loaded] if law else np.full(pieces.count, np.inf)
+        unit = np.broadcast_to(np.eye(self.unknowns)[..., None], (self.unknowns, self.unknowns, pieces.count))
+        self._matrix = self._flow(unit, np.arange(pieces.count))[1]
+
+    def _flow(self, y: Array, machine: Indices) -> tuple[Array, Array]:
+        """Return the torques in the segments (segments, k, n), and A y, at y (m, k, n) of these machines (n,)."""
+        segments = len(self._springs)
+        speeds = y[segments:] * self._speeds[:, None, machine]
+        apart = np.tensordot(self._twists, speeds, 1)
+        torques = self._order[machine] * y[:segments] + self._damping[:, None, machine] * apart
+        masses = -np.tensordot(self._twists.T, torques, 1) - self._against[:, None, machine] * speeds
+        return torques, np.concatenate((self._springs[:, None, machine] * apart, masses))
 
     def known(self, pieces: Pieces) -> Array:
         """Return the torques on the masses."""
-        return pieces.carried(self._driving, self._pieces)
+        return pieces.carried(self._driving, self._source)
 
     def rate(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> tuple[Array, Array]:
         """Return y′ and its derivative by y; eased: J ω_n² in N m that the mass under the load has in addition."""
-        rate = np.tensordot(self.matrix, y, 1)
+        rate, slope = (
+            self._flow(y, pieces.machine)[1],
+            self._matrix[:, :, None, pieces.machine].repeat(y.shape[1], axis=2),
+        )
         rate[-len(known) :] += known
-        slope = np.broadcast_to(self.matrix[..., None, None], (*self.matrix.shape, *y.shape[1:]))
-        if self._rise:
+        if self._law:
             # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
-            height, slope = self._height + eased[0], slope.copy()
-            u = y[self._risen] / height
-            more, by_square = self._rise.law(u * (2 + u), pieces)
-            rate[self._risen] -= more
-            slope[self._risen, self._risen] -= by_square * 2 * (1 + u) / height
+            height = self.height(known, pieces, eased)
+            u = y[self.bounded] / height
+            rise, by_square = self._law.rise(u * (2 + u), pieces)
+            rate[self.bounded] -= rise
+            slope[self.bounded, self.bounded] -= by_square * 2 * (1 + u) / height
         return rate, slope
 
-    def floor(self, known: Array, pieces: Pieces, eased: Array) -> Array:
-        """Return the y at which the mass under the load stands still."""
-        floor = np.full((self.unknowns, *known.shape[1:]), -np.inf)
-        floor[self._risen] = -(self._height + eased[0]) if self._rise else -np.inf
-        return floor
+    def height(self, known: Array, pieces: Pieces, eased: Array) -> Array:
+        """Return J ω_n² of the mass under the load: less by so much, it stands still."""
+        return np.asarray(pieces.of(self._energy + eased))
 
-    def also(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> Array:
-        """Return nothing: the torques are sums of the unknowns."""
-        return y[:0]
+    def torques(self, y: Array, pieces: Pieces) -> Array:
+        """Return the torques in the segments less their means in N m, (segments, nodes, pieces)."""
+        return self._flow(y, pieces.machine)[0]

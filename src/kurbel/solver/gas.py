@@ -28,13 +28,13 @@ from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam, after_po
 from kurbel.machine.indicator import STROKES, Card
 from kurbel.machine.piston import Piston
 from kurbel.machine.rectangle import Rectangle
-from kurbel.machine.trace import Trace
 from kurbel.machine.variants import Chambers, count_of, taken
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import total
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
-from kurbel.solver.trace import Setting, TracePressure, spread
+from kurbel.solver.trace import TracePressure, spread
+from kurbel.traces.correct import Setting, Trace
 
 _NO_WIDTH = 1e-10
 """Degrees of crank angle; over less a line cannot be followed, and its segment is a jump."""

@@ -10,7 +10,8 @@ from kurbel.arrays import Array, Indices
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.gas import PistonGas
-from kurbel.solver.trace import COMPRESSION, EXPANSION, TracePressure, exponent
+from kurbel.solver.trace import TracePressure
+from kurbel.traces.correct import COMPRESSION, EXPANSION, exponent
 
 
 class Cycles(NamedTuple):
@@ -58,7 +59,9 @@ class Indicated:
     def _exponent(self, stretch: tuple[float, float]) -> float | None:
         if not self._one:
             return None
-        found = exponent(self._one, stretch)
+        trace, setting = self._one.trace, self._one.setting
+        absolute = self._one.pressures + setting.lift
+        found = exponent(setting, trace.clearance, setting.from_dead_centre(trace), absolute, stretch)
         return found.value if found else None
 
     @property

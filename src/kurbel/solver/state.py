@@ -24,7 +24,7 @@ from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.quantity import by_id
 from kurbel.errors import NoSolutionError
-from kurbel.mechanisms.coupler import PointMotion, point_motion
+from kurbel.mechanisms import PointMotion
 from kurbel.mechanisms.kinds import every_quantity
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.lobatto import rule
@@ -494,10 +494,7 @@ class State:
     @cached_property
     def _point(self) -> PointMotion | None:
         point, mechanism = self.drive.cylinder.point, self.drive.mechanism
-        coupler = mechanism.coupler_at(self.angle) if point else None
-        if point is None or coupler is None:
-            return None
-        return point_motion(mechanism, coupler, self.angle, point.from_crank_pin(mechanism), point.across)
+        return mechanism.point_at(self.angle, point.from_crank_pin(mechanism), point.across) if point else None
 
     @property
     def x_point(self) -> Any:

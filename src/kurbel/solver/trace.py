@@ -1,8 +1,4 @@
-"""A measured trace as the pressure in a chamber: straight over the crank angle between its samples.
-
-First the drift over the cycle is removed, and the level, which the sensor does not give, is set by pegging. At the end:
-the exponents of p V^n = const that compression and expansion follow.
-"""
+"""A measured trace as the pressure in a chamber: straight over the crank angle between its corrected samples."""
 
 import math
 from functools import cached_property
@@ -12,10 +8,9 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
-from kurbel.machine.trace import Pegging, Trace
-from kurbel.mechanisms import Mechanism
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles, Pieces, refined
+from kurbel.traces.correct import Setting, Trace, corrected, noise_of
 
 
 def spread(number: Any, machine: Indices | None) -> Any:
@@ -23,40 +18,10 @@ def spread(number: Any, machine: Indices | None) -> Any:
     return number[machine] if isinstance(number, np.ndarray) and number.ndim and machine is not None else number
 
 
-class Setting(NamedTuple):
-    """Which chamber it is, and what its pressures count from.
-
-    cycle: degrees of crank angle, 360 or 720; ambient: absolute pressure in Pa; absolute: whether the chamber's own
-    figures are; mirrored: the crank end repeats the head end's figures one stroke later. For many machines numbers are
-    arrays (machines,); the annotations are those of one.
-    """
-
-    mechanism: Mechanism
-    cycle: float
-    head_end: bool
-    ambient: float
-    absolute: bool
-    mirrored: bool = False
-
-    @property
-    def base(self) -> float:
-        """What the chamber's figures less this are gauge pressures, in Pa."""
-        return self.ambient if self.absolute else 0.0
-
-    @property
-    def lift(self) -> float:
-        """What the chamber's figures plus this are absolute pressures, in Pa."""
-        return 0.0 if self.absolute else self.ambient
-
-
-_OF_MEDIAN = 1.4826
-"""Standard deviation over the median of the magnitude, of what is normally distributed."""
 _CHORD = 1.0
 """Degrees over which a rise of pressure is measured: between two samples it would be their noise."""
 _DENSE = 600
 """Breaks of a cycle from which on its pieces are short enough for few nodes."""
-_ENOUGH = 72
-"""Samples in a cycle below which differences show its shape instead of the noise."""
 
 
 class Segments(NamedTuple):
@@ -91,10 +56,8 @@ class TracePressure:
     def __init__(self, trace: Trace, setting: Setting) -> None:
         self.trace = trace.over(setting.cycle)
         self.setting = setting
-        inner, outer = setting.mechanism.dead_centres()
-        # what is added to an angle of the trace to make it a crank angle
-        self.shift = (outer if setting.mirrored else inner) - trace.angle_zero
-        self.each = corrected(self.trace, setting, self.shift)
+        self.shift = setting.shift(trace)
+        self.each = corrected(self.trace, setting)
         self.pressures = np.asarray(self.each.mean(axis=0))
         angles, pressures = self.trace.angles + self.shift, self.pressures - setting.base
         wide = np.diff(angles) > 0
@@ -158,17 +121,8 @@ class TracePressure:
 
     @cached_property
     def noise(self) -> float:
-        """Standard deviation in Pa of the noise of the samples; 0 where they do not stand at equal angles.
-
-        From the medians of the second and of the fourth differences, √6 and √70 times as large if noise is all they
-        have; the lesser of both, since of a smooth pressure the fourth ones are less.
-        """
-        if not self.trace.even:
-            return 0.0
-        around = np.append(self._segments.p, self._segments.p[:4])
-        orders = ((2, 6.0), (4, 70.0)) if len(self._segments.p) >= _ENOUGH else ()
-        spreads = [float(np.median(np.abs(np.diff(around, order)))) / math.sqrt(gain) for order, gain in orders]
-        return _OF_MEDIAN * min(spreads, default=0.0)
+        """Standard deviation in Pa of the noise of the samples; 0 where they are not at equal angles."""
+        return noise_of(self._segments.p) if self.trace.even else 0.0
 
     @cached_property
     def weights(self) -> Array:
@@ -231,130 +185,3 @@ class TracePressure:
         angle = CrankAngle.of(degrees)
         by_angle = (mechanism.slope(angle) if derivative == "slope" else mechanism.curvature(angle)) / mechanism.stroke
         return np.asarray(by_angle if self.setting.head_end else -by_angle)
-
-
-# drift and level
-
-_AROUND = 2.5
-"""Degrees on either side of the pegging angle over which a cycle's level is the mean: one sample is noise."""
-LAST = 2.0
-"""Degrees at either end of the cycle through which lines go, as far as there are three samples in them."""
-
-
-def corrected(trace: Trace, setting: Setting, shift: float) -> Array:
-    """Return the pressures (m, n) in Pa of all cycles, without drift, and pegged; as the trace counts them.
-
-    shift: crank angle at the angle 0 of the trace, in degrees.
-    """
-    samples = trace.samples
-    if trace.level:
-        share = (trace.angles - trace.angles[0]) / trace.period
-        samples = samples + drift_of(trace, samples)[:, np.newaxis] * share
-        if trace.completed:
-            samples = np.concatenate((samples[:, :-1], samples[:, :1]), axis=1)
-    return samples if trace.pegging is None else samples + _lift(trace, samples, trace.pegging, setting, shift)
-
-
-def drift_of(trace: Trace, samples: Array) -> Array:
-    """Return by how much Pa each cycle (m,) ends too low to go on as it has begun.
-
-    Where the closing sample is missing, straight lines through the samples at both ends estimate it.
-    """
-    if not trace.completed:
-        return np.asarray(samples[:, 0] - samples[:, -1])
-    angles, end = trace.angles, trace.angles[-1]
-    last = max(3, int(np.searchsorted(-angles[:-1][::-1], LAST - end)))
-    first = max(3, int(np.searchsorted(angles, angles[0] + LAST, side="right")))
-    before = _line_at(angles[-1 - last : -1] - end, samples[:, -1 - last : -1])
-    after = _line_at(angles[:first] - angles[0], samples[:, :first])
-    return np.asarray(after - before)
-
-
-def _line_at(angles: Array, samples: Array) -> Array:
-    """Return the values (m,) at angle 0 of the lines of least squares through samples (m, k) at angles (k,)."""
-    from_mean = angles - angles.mean()
-    slopes = samples @ from_mean / (from_mean @ from_mean)
-    return np.asarray(samples.mean(axis=1) - slopes * angles.mean())
-
-
-def _lift(trace: Trace, samples: Array, pegging: Pegging, setting: Setting, shift: float) -> Array:
-    """Return what is added (m, 1) in Pa to every cycle."""
-    angle, pressure = _known(pegging, setting)
-    away = np.remainder(trace.angles + shift - angle + trace.period / 2, trace.period) - trace.period / 2
-    near = np.abs(away) <= max(_AROUND, float(np.abs(away).min()))
-    return np.asarray(pressure - samples[:, near].mean(axis=1, keepdims=True))
-
-
-def _known(pegging: Pegging, setting: Setting) -> tuple[float, float]:
-    """Return the crank angle in degrees and the pressure in Pa there, as the trace counts it."""
-    inner, outer = setting.mechanism.dead_centres()
-    if pegging.angle is not None and pegging.pressure is not None:
-        return inner + pegging.angle, pegging.pressure
-    begin = (outer if setting.head_end else inner) + (360.0 if setting.cycle == 720 else 0.0)
-    return begin, setting.ambient if setting.absolute else 0.0
-
-
-# exponents
-
-COMPRESSION = -90.0, -40.0
-"""Degrees from the firing dead centre between which inlets are closed and nothing burns yet."""
-EXPANSION = 60.0, 100.0
-"""Degrees from it between which nothing burns any more and outlets are closed still."""
-_FEWEST = 5
-
-
-class Supposed(NamedTuple):
-    """What a trace would be if it were read otherwise: put so many degrees later, raised by Pa."""
-
-    later: float = 0.0
-    raised: float = 0.0
-
-
-class Exponent(NamedTuple):
-    """An exponent and its standard error."""
-
-    value: float
-    error: float
-
-
-AS_GIVEN = Supposed()
-
-
-def exponent(pressure: TracePressure, stretch: tuple[float, float], supposed: Supposed = AS_GIVEN) -> Exponent | None:
-    """Return −d ln p/d ln V by least squares over a stretch of angle, with absolute pressures.
-
-    None without a clearance, with fewer than five samples there, or where the pressure is not above the vacuum.
-    """
-    clearance, setting = pressure.trace.clearance, pressure.setting
-    if clearance is None:
-        return None
-    after = from_dead_centre(pressure) + supposed.later
-    inside = (after >= stretch[0]) & (after <= stretch[1])
-    figures = pressure.pressures[inside] + setting.lift + supposed.raised
-    if len(figures) < _FEWEST or not (figures > 0).all():
-        return None
-    volumes = np.log(stroke_fraction(pressure, after[inside]) + clearance)
-    return _slope(volumes, np.log(figures))
-
-
-def _slope(volumes: Array, pressures: Array) -> Exponent:
-    from_mean = volumes - volumes.mean()
-    square = float(from_mean @ from_mean)
-    slope = float(from_mean @ pressures) / square
-    left = pressures - pressures.mean() - slope * from_mean
-    return Exponent(0.0 - slope, math.sqrt(float(left @ left) / (len(left) - 2) / square))
-
-
-def from_dead_centre(pressure: TracePressure) -> Array:
-    """Return the angles (n,) in degrees of the samples from the chamber's own (firing) dead centre, −½ to ½ cycle."""
-    inner, outer = pressure.setting.mechanism.dead_centres()
-    own, cycle = (inner if pressure.setting.head_end else outer), pressure.setting.cycle
-    return np.asarray(np.remainder(pressure.trace.angles + pressure.shift - own + cycle / 2, cycle) - cycle / 2)
-
-
-def stroke_fraction(pressure: TracePressure, after: Array) -> Array:
-    """Return the fraction (n,) of the stroke from the chamber's smallest volume, so many degrees after it."""
-    mechanism, head = pressure.setting.mechanism, pressure.setting.head_end
-    inner, outer = mechanism.dead_centres()
-    way = mechanism.coordinate(CrankAngle.of(after + (inner if head else outer))) - mechanism.start
-    return np.asarray(way / mechanism.stroke if head else 1 - way / mechanism.stroke)

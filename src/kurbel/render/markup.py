@@ -1,0 +1,245 @@
+r"""Second pass to markup: one walk through a report, in which every text passes the writer that escapes it.
+
+A writer knows Markdown, HTML or LaTeX, and nothing of reports: its methods `text`, `sentence` and `symbol` escape, all
+others take what has been escaped. LaTeX is to be \input into a document that has \usepackage{booktabs, longtable}.
+"""
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from html import escape
+
+from kurbel.render import Look
+from kurbel.render.text import measures
+from kurbel.render.text_tables import (
+    MARK,
+    TextTable,
+    key_value_table,
+    part_name,
+    place_table,
+    sentence_text,
+    sheets,
+)
+from kurbel.report.alike import told_once
+from kurbel.report.tables import Report
+
+_ON_PAPER = 9
+"""Columns of numbers next to that of the angle on a page of A4; more make a table of their own."""
+
+
+# writers: elements as templates for escaped text; across: the most columns of numbers in a table, if any
+
+
+class Markdown:
+    """Markdown: a line for each row; a blank line parts each element from the one before it."""
+
+    across: int | None = None
+    title, paragraph, strong = "## {}\n", "\n{}\n", "**{}**"
+    list_head, item, list_end = "\n### {}\n\n", "- {}\n", ""
+    table_end = ""
+
+    def text(self, plain: str) -> str:
+        """Return a text with everything escaped that Markdown would take for a mark."""
+        return re.sub(r"([\\|*_<>`\[\]])", r"\\\1", plain)
+
+    sentence = symbol = text
+
+    def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
+        """Return title, heads and the line that aligns the columns."""
+        titles = [f"{symbol} ({unit})" if unit else symbol.strip() for symbol, unit in heads]
+        rules = ["---" if one.words else "--:" for one in table.columns]
+        titled = f"\n### {caption}\n" if caption else ""
+        return f"{titled}\n{self.row(table, 0, titles)}{self.row(table, 0, rules)}"
+
+    def row(self, table: TextTable, number: int, cells: Sequence[str]) -> str:
+        """Return a line of cells."""
+        return f"| {' | '.join(cells)} |\n"
+
+
+class Html:
+    """What is in the body of a page of HTML; level: of the heading of the report."""
+
+    across: int | None = _ON_PAPER
+    paragraph, strong = "<p>{}</p>\n", "<b>{}</b>"
+    item, list_end = "<li>{}</li>\n", "</ul>\n"
+    table_end = "</tbody></table></div>\n"
+
+    def __init__(self, level: int = 2) -> None:
+        self.title = f"<h{level}>{{}}</h{level}>\n"
+        self.list_head = f"<h{level + 1}>{{}}</h{level + 1}>\n<ul>\n"
+
+    def text(self, plain: str) -> str:
+        """Return a text with everything escaped that HTML would take for markup."""
+        return escape(plain)
+
+    symbol = text
+
+    def sentence(self, plain: str) -> str:
+        """Return a text in which no unit is parted from its number."""
+        return measures().sub(r'<span class="n">\g<0></span>', escape(plain))
+
+    def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
+        """Return the beginning of a table that a narrow window scrolls."""
+        cells = (
+            f'<th scope="col"{_right(not one.words)}>{symbol}{f"<br><small>{unit}</small>" if unit else ""}</th>'
+            for one, (symbol, unit) in zip(table.columns, heads)
+        )
+        return (
+            f'<div class="wide" tabindex="0" role="region" aria-label="{caption or "values over the crank angle"}">'
+            f"<table>{f'<caption>{caption}</caption>' if caption else ''}\n"
+            f"<thead><tr>{''.join(cells)}</tr></thead>\n<tbody>\n"
+        )
+
+    def row(self, table: TextTable, number: int, cells: Sequence[str]) -> str:
+        """Return a row; lists of numbers and long names may be folded."""
+        shown = []
+        for k, (column, cell) in enumerate(zip(table.columns, cells)):
+            right = _right(not column.words and not (number in table.lists and k == 1))
+            if k >= table.heads:
+                shown.append(f"<td{right}>{cell}</td>")
+            else:
+                shown.append(f'<th scope="row"{right}>{cell.replace(".", ".<wbr>") if column.words else cell}</th>')
+        verdict = f' class="{table.verdicts[number]}"' if table.verdicts else ""
+        return f"<tr{verdict}>{''.join(shown)}</tr>\n"
+
+
+def _right(number: bool) -> str:
+    return ' class="r"' if number else ""
+
+
+_MATH = {
+    "φ": "varphi", "ψ": "psi", "θ": "theta", "ω": "omega", "δ": "delta", "λ": "lambda", "μ": "mu", "η": "eta",
+    "π": "pi", "ρ": "varrho", "α": "alpha", "β": "beta", "κ": "kappa", "σ": "sigma", "τ": "tau", "Δ": "Delta",
+    "ε": "varepsilon", "γ": "gamma", "ν": "nu",
+    "ζ": "zeta", "ξ": "xi", "χ": "chi", "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega", "Θ": "Theta", "∠": "angle",
+    "Σ": "Sigma", "∮": "oint", "√": "surd", "∞": "infty", "·": "cdot", "×": "times", "≤": "le", "≥": "ge",
+    "≈": "approx", "≠": "ne", "→": "to", "±": "pm", "−": "-", "²": "^2", "³": "^3", "°": "^\\circ", "′": "prime",
+    "½": "frac12", "¼": "frac14", "⅔": "frac23", "₀": "_0", "…": "dots",
+    **{power: f"^{{{plain}}}" for power, plain in zip("⁻⁰¹⁴⁵⁶⁷⁸⁹", "-01456789")},
+}  # fmt: skip
+"""Sign -> its command, or what it is in a formula if it begins with -, ^ or _."""
+_SPECIAL = {
+    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
+    "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", "<": r"\textless{}", ">": r"\textgreater{}",
+    "|": r"\textbar{}", '"': r"\textquotedblright{}", "„": r"\quotedblbase{}", "[": "{[}", "*": "{*}",
+}  # fmt: skip
+"""After the end of a row a bracket or a star would belong to it."""
+_DOTS = {"\u0307": "dot", "\u0308": "ddot"}
+_LETTER = re.compile(".[\u0307\u0308]?", re.DOTALL)
+"""A character, or a letter with the dots over it."""
+_INDEXED = re.compile("((?:[A-Za-zΑ-ω][\u0307\u0308]?){1,3})_([\\w,=−+-]+)")
+
+
+class Latex:
+    """LaTeX: tables in the manner of booktabs, which may run over several pages, their heads on each."""
+
+    across: int | None = _ON_PAPER
+    title, paragraph = "% \\usepackage{{booktabs, longtable}}\n\\subsection*{{{}}}\n", "{}\n\n"
+    strong = "\\textbf{{{}}}"
+    list_head, item = "\\paragraph{{{}}}\n\\begin{{itemize}}\n", "\\item {}\n"
+    list_end, table_end = "\\end{itemize}\n\n", "\\bottomrule\n\\end{longtable}}\n\n"
+
+    def text(self, plain: str) -> str:
+        r"""Return a text with everything escaped that LaTeX would take for a command.
+
+        >>> print(Latex().text("50 % of φ_1 ≤ 90°"), Latex().text("-3"))
+        50 \% of $\varphi$\_1 $\le$ 90$^\circ$ $-$3
+        """
+        if re.match("-[0-9]", plain):  # a number has a minus sign, not a hyphen
+            plain = "−" + plain[1:]
+        return "".join(
+            _SPECIAL.get(one) or (f"${_formula(one)}$" if one[1:] or one in _MATH else one)
+            for one in _LETTER.findall(plain)
+        )
+
+    sentence = text
+
+    def symbol(self, plain: str) -> str:
+        r"""Return a symbol, what follows its underscore as its index.
+
+        >>> print(Latex().symbol("P_b"), Latex().symbol("φ_P=0"), Latex().symbol("ΔE"))
+        $P_{\mathrm{b}}$ $\varphi_{\mathrm{P=0}}$ $\Delta$E
+        """
+        found = _INDEXED.fullmatch(plain)
+        if not found:
+            return self.text(plain)
+        name, index = ("".join(map(_formula, _LETTER.findall(part))) for part in found.groups())
+        return f"${name}_{{\\mathrm{{{index}}}}}$"
+
+    def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
+        r"""Return the beginning of a table; by \tabcolsep ten columns of numbers fit the 345 pt of an article."""
+        layouts = {"number": "r", "name": "l", "symbol": "l", "sentence": "p{0.42\\linewidth}"}
+        layout = "".join(layouts[one.kind] for one in table.columns)
+        text = f"{{\\small\\setlength{{\\tabcolsep}}{{3pt}}\\begin{{longtable}}{{@{{}}{layout}@{{}}}}\n"
+        if caption:
+            text += f"\\multicolumn{{{len(heads)}}}{{@{{}}l}}{{{caption}}}\\\\\n"
+        text += "\\toprule\n" + self.row(table, 0, [symbol for symbol, _ in heads])
+        if any(unit for _, unit in heads):
+            text += self.row(table, 0, [unit for _, unit in heads])
+        return text + "\\midrule\n\\endhead\n"
+
+    def row(self, table: TextTable, number: int, cells: Sequence[str]) -> str:
+        """Return a line of cells."""
+        return f"{' & '.join(cells)}\\\\\n"
+
+
+def _formula(one: str) -> str:
+    """Return a character within a formula, or a letter with the dots over it."""
+    found = _MATH.get(one[0]) or {"_": "\\_"}.get(one[0], one[0])
+    base = f"\\{found}" if one[0] in _MATH and found[0] not in "-^_" else found
+    return f"\\{_DOTS[one[1]]}{{{base}}}" if one[1:] else base
+
+
+# the walk
+
+Writer = Markdown | Html | Latex
+
+
+def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
+    """Yield the report piece by piece; equal cylinders appear once."""
+    report = told_once(report)
+    yield out.title.format(out.text(look.charset.text(report.title)))
+    yield from (out.paragraph.format(out.sentence(look.charset.text(text))) for text in report.head)
+    for table in _tables(report, look, out.across):
+        yield from written(table, out)
+    notes = [note for note in (report.mirrored, *report.notes) if note]
+    yield from (out.paragraph.format(out.sentence(sentence_text(note, look))) for note in notes)
+    for part in report.all_parts:
+        name = part_name(report, part, look)
+        of = f": {name}" if name else ""
+        if part.key_values:
+            yield from written(key_value_table(f"Key values{of}", part.key_values, look), out)
+        left_out = [f"{one.what}: {one.why}" for one in part.left_out]
+        yield from listed(f"Left out{of}", left_out, look, out)
+        yield from listed(f"Warnings{of}", part.warnings, look, out)
+
+
+def listed(title: str, sentences: Collection[str], look: Look, out: Writer) -> Iterator[str]:
+    """Yield sentences under a title, nothing where there are none."""
+    if sentences:
+        yield out.list_head.format(out.text(title))
+        yield from (out.item.format(out.sentence(sentence_text(one, look))) for one in sentences)
+        yield out.list_end
+
+
+def _tables(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
+    """Yield the tables over the crank angle and of places, in parts of so many columns, at least one part."""
+    found = [(name, sheet.heads, columns, True) for sheet in sheets(report, look) for name, columns in sheet.bands]
+    for one in report.printed_tables:
+        found.append((look.charset.text(one.title), *place_table(one, look), False))
+    for caption, names, columns, headed in found:
+        most = across or max(len(columns), 1)
+        for start in range(0, max(len(columns), 1), most):
+            yield TextTable(caption, [*names, *columns[start : start + most]], len(names) if headed else 0)
+
+
+def written(table: TextTable, out: Writer) -> Iterator[str]:
+    """Yield a table row by row."""
+    heads = [((out.text if one.words else out.symbol)(one.symbol), out.text(one.unit)) for one in table.columns]
+    yield out.table_head(table, out.text(table.caption), heads)
+    doors = {"number": out.text, "name": out.sentence, "symbol": out.symbol, "sentence": out.sentence}
+    kinds = [doors[one.kind] for one in table.columns]
+    for number, row in enumerate(zip(*(one.cells() for one in table.columns))):
+        texts = zip(kinds, map(str.strip, row))
+        cells = [out.strong.format(out.text(text[:-1])) if text.endswith(MARK) else door(text) for door, text in texts]
+        yield out.row(table, number, cells)
+    yield out.table_end

@@ -1,0 +1,151 @@
+"""Text for a terminal, a pipe or a page: characters that the output can show, widths in cells, lines, and folding."""
+
+import re
+from collections.abc import Iterable, Iterator
+from functools import cache
+from textwrap import wrap
+from typing import NamedTuple
+from unicodedata import combining, east_asian_width, normalize
+
+from kurbel.declared.quantity import GREEK
+
+_ASCII = {
+    **GREEK, "∮": "integral ", "₀": "0",
+    "√": "sqrt", "∞": "inf",
+    "²": "^2", "³": "^3", "¼": "1/4", "⅔": "2/3", "·": "*", "×": "x", "–": "-", "—": "-",
+    "±": "+-", "≤": "<=", "≥": ">=", "≈": "~", "≠": "!=", "→": "->", "…": "...", "°": " deg", "′": "'", "″": '"',
+    "‘": "'", "’": "'", "“": '"', "”": '"', "„": '"', "─": "-", "│": "|", "═": "=", "µ": "u", "‰": "1/1000",
+    "ä": "ae", "ö": "oe", "ü": "ue", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue", "ß": "ss",
+}  # fmt: skip
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_CONTROL = dict.fromkeys((*range(32), *range(127, 160)), "�")
+TURNING = (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
+"""Characters that turn the direction of writing: a name with one could make a line read backward."""
+_TURNING = dict.fromkeys(TURNING, "�")
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+
+
+class Charset(NamedTuple):
+    """What an output of this encoding can show, and what replaces the rest."""
+
+    encoding: str = "utf-8"
+
+    def has(self, text: str) -> bool:
+        """Whether the encoding has all these characters."""
+        try:
+            text.encode(self.encoding)
+        except (UnicodeEncodeError, LookupError):
+            return text.isascii()
+        return True
+
+    def text(self, text: str) -> str:
+        """Return the text for people, without characters that are missing or would turn the writing.
+
+        >>> Charset("ascii").text("Werte für φ ≤ 90°")
+        'Werte fuer phi <= 90 deg'
+        """
+        return self.data(text.translate(_TURNING))
+
+    def data(self, text: str) -> str:
+        """Return the text for programs, without control characters and what the encoding lacks."""
+        text = text.translate(_CONTROL)
+        return text if self.has(text) else "".join(c if self.has(c) else _in_ascii(c) for c in text)
+
+    def symbol(self, symbol: str, ascii_symbol: str) -> str:
+        """Return the textbook symbol, or its ASCII name."""
+        return symbol if self.has(symbol) else ascii_symbol
+
+    def unit(self, unit: str, exponent: int = 0) -> str:
+        """Return a unit as printed, after the power of ten of its row.
+
+        >>> Charset().unit("m/s^2"), Charset().unit("N", 6), Charset("ascii").unit("N", 6)
+        ('m/s²', '10⁶ N', '10^6 N')
+        """
+        printed = {"deg": "°"}.get(unit, unit.replace("^2", "²").replace("^3", "³"))
+        printed = printed if self.has(printed) else unit
+        return f"{self._power(exponent)} {printed}".strip() if exponent else printed
+
+    def counted(self, number: str, exponent: int) -> str:
+        """Return a number with its power of ten: `2.4·10⁶`, or `2.4e6`."""
+        printed = "·" + self._power(exponent)
+        return f"{number}{printed if self.has(printed) else f'e{exponent}'}" if exponent else number
+
+    def below(self, exponent: int) -> str:
+        """Return what replaces a value that is only known to be less than a power of ten.
+
+        >>> Charset().below(-14), Charset("ascii").below(-14)
+        ('< 10⁻¹⁴', '< 1e-14')
+        """
+        printed = "< " + self._power(exponent)
+        return printed if not printed.isascii() else f"< 1e{exponent}"
+
+    def _power(self, exponent: int) -> str:
+        printed = "10" + str(exponent).translate(_SUPERSCRIPT)
+        return printed if self.has(printed) else f"10^{exponent}"
+
+
+def _in_ascii(character: str) -> str:
+    plain = _ASCII.get(character)
+    return plain or normalize("NFKD", character).encode("ascii", "ignore").decode() or "?"
+
+
+def width(text: str) -> int:
+    """Return the number of terminal cells of a text: none for an accent, two for a wide character."""
+    if text.isascii():
+        return len(text)
+    return sum(0 if combining(c) else 2 if east_asian_width(c) in "WF" else 1 for c in text)
+
+
+def left(text: str, cells: int) -> str:
+    """Return the text flush left in so many cells."""
+    return text + " " * (cells - width(text))
+
+
+def right(text: str, cells: int) -> str:
+    """Return the text flush right in so many cells."""
+    return " " * (cells - width(text)) + text
+
+
+class Piece(NamedTuple):
+    """A piece of a line; role, for colours: title, head, rule, name, symbol, unit, cell, mark or text."""
+
+    text: str
+    role: str = "text"
+
+
+Line = tuple[Piece, ...]
+BLANK: Line = ()
+
+
+def line(text: str, role: str = "text") -> Line:
+    """Return a line of one piece."""
+    return (Piece(text, role),)
+
+
+def plain(lines: Iterable[Line]) -> Iterator[str]:
+    """Yield the lines as text, without blanks at their ends."""
+    for pieces in lines:
+        yield "".join(piece.text for piece in pieces).rstrip() + "\n"
+
+
+def folded(text: str, cells: int | None) -> list[str]:
+    """Return a text in lines of so many cells, None for one line; no word is broken, no number parted from its unit."""
+    if cells is None or width(text) <= cells:
+        return [text]
+    kept = measures().sub(lambda found: found[0].replace(" ", _NO_BREAK), text)
+    return [one.replace(_NO_BREAK, " ") for one in wrap(kept, cells, break_long_words=False, break_on_hyphens=False)]
+
+
+@cache
+def measures() -> re.Pattern[str]:
+    """Return the pattern of a number with its unit, which stay in one line.
+
+    >>> measures().findall("within 10 % of 2.35 kN m at 5 points")
+    ['10 %', '2.35 kN m']
+    """
+    from kurbel.declared.unit_systems import SYSTEMS  # `kurbel table` prints no unit and does not load them
+
+    of_kinds = [each for system in SYSTEMS.values() for each in system.values()]
+    units = {unit for each in of_kinds for unit in ([each] if isinstance(each, str) else each)}
+    printed = {"%", "°", *units, *map(Charset().unit, units)} - {""}
+    return re.compile(rf"\S*\d  ?(?:{'|'.join(map(re.escape, sorted(printed, key=len, reverse=True)))})(?!\w)")

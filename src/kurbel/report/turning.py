@@ -1,0 +1,446 @@
+"""The reports of `kurbel flywheel`, `harmonics` and `torsion`: what turns the shaft, and how it twists."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import repeat
+from typing import NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array
+from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
+from kurbel.declared.unit_systems import show
+from kurbel.errors import NoSolutionError, UsageError
+from kurbel.machine import Machine
+from kurbel.numerics.extreme import Extreme
+from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
+from kurbel.report.left_out import flywheel_left_out, left_out, missing
+from kurbel.report.tables import LeftOut, PlaceTable, Report
+from kurbel.report.warnings import of_machine
+from kurbel.solver.case import Case
+from kurbel.solver.flywheel import MachineTurning
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.harmonics import MachineOrders, Orders
+from kurbel.solver.motion import every_dead_centre
+from kurbel.solver.torsion import RUN_UP, Critical, ShaftVibration, stress
+
+# turning effort, excess work, flywheel and speed line
+
+
+@np.errstate(all="ignore")  # what overflows is refused by name
+def flywheel_report(case: Case, frame: Frame) -> Report:
+    """Return the turning effort of the machine over the angle of crank 1.
+
+    Raises UsageError if nothing turns the shaft, NoSolutionError if the machine stalls.
+    """
+    *cylinders, whole = flywheel_subjects(case)
+    having = [one for one in cylinders if any(one.key_values("flywheel"))]
+    if frame.prose:
+        whole = replace(whole, left_out=tuple(flywheel_left_out(case.machine)), warnings=of_machine(case))
+    notes = _flywheel_notes(case.machine, case.flywheel)
+    return report_on(frame, case.machine, "Drehkraftlinie und Schwungrad", having, whole, notes)
+
+
+@dataclass(frozen=True, eq=False)
+class _DeadCentre:
+    """The key value of a single cylinder: the force that its parts before a pump must carry."""
+
+    turning: MachineTurning
+    forces: CylinderForces
+
+    @property
+    def P_dead_centre(self) -> Extreme | None:
+        """Largest force in N in a dead centre, without inertia."""
+        return dead_centre_force(self.forces, self.turning.effort.cycle)
+
+
+def flywheel_subjects(case: Case) -> list[Subject]:
+    """Return every cylinder, and the whole machine last."""
+    turning = case.flywheel
+    cylinders = [Subject(one.drive.name, (_DeadCentre(turning, one),)) for one in case.cylinders]
+    return [*cylinders, Subject("whole machine", tuple(turning.answering), turning.at, source=turning)]
+
+
+def dead_centre_force(forces: CylinderForces, cycle: float) -> Extreme | None:
+    """Return the largest force in N of steam and pump in a dead centre of a cylinder, without inertia (R p. 613).
+
+    At the end of the stroke both oppose the motion, and the parts before the pump must carry their sum. None if the
+    cylinder does not both drive and drive a pump.
+    """
+    driving, driven = forces.work_driving, forces.work_driven
+    both = np.asarray(driving is not None and (driving > 0) & (driven < 0))
+    if not both.any():
+        return None
+    drive, count = forces.drive, forces.drive.count or 1
+    centres = every_dead_centre(drive.mechanism, count, drive.cycle)
+    angles = np.repeat(centres, 2, axis=1)
+    sides = angles + np.tile([-1e-6, 1e-6], centres.shape[1])
+    machine = np.repeat(np.arange(count), angles.shape[1])
+    values = drive.at(angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
+    largest = np.arange(count), np.abs(values).argmax(axis=1)
+    found = np.where(both, values[largest], np.nan), np.mod(angles[largest], cycle)
+    return Extreme(*map(forces.told, found))
+
+
+def _flywheel_notes(machine: Machine, turning: MachineTurning) -> Iterator[str]:
+    effort = turning.effort
+    if turning.crank is not None:
+        over = "over" if any(term.factor > 1 for term in effort.terms) else "with"
+        eta = f", {over} the efficiency {machine.efficiency:g}" if machine.efficiency != 1 else ""
+        yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
+    if turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
+        yield "Such a load holds no speed of its own: the mean of ω over time is taken as the nominal speed."
+    if machine.efficiency != 1 and any(effort.lost(group) for group in effort.groups):
+        yield (
+            "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "
+            "driven pistons, inertia, weight and friction count in full (R p. 613)."
+        )
+    if machine.efficiency != 1 and any(term.factor != 1 for term in effort.inertia_terms) and turning.speed is not None:
+        yield "As in the book the efficiency takes its share of all of T; in ω the moving masses count in full."
+    if turning.rigid:
+        yield (
+            f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "
+            "the driven inertia turns with the flywheel."
+        )
+
+
+# orders of the torque
+
+_HIGHEST_ORDER = 1000
+
+
+@np.errstate(all="ignore")  # what overflows is refused by name
+def harmonics_report(
+    case: Case, frame: Frame, orders: Sequence[float] | None = None, speeds: Sequence[float] | None = None
+) -> Report:
+    """Return the orders of the turning effort; orders: those to show, None for all up to 24.
+
+    speeds: in revolutions per second, at which the orders of the whole machine are shown, too. Raises UsageError if
+    nothing turns the shaft.
+    """
+    machine, found = case.machine, case.harmonics(_orders(case.machine, orders))
+    cylinders = []
+    for one in found.cylinders:
+        cylinder = one.forces.drive.cylinder
+        title = f"Orders of the torque of {cylinder.name}, φ from its own inner dead centre"
+        table = _orders_table(title, one.own, frame.system, one.area)
+        cylinders.append(Subject(cylinder.name, left_out=tuple(left_out(machine, cylinder)), tables=(table,)))
+    title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
+    tables = [_orders_table(title, found.machine, frame.system, major=found.major_orders or ())]
+    if speeds is not None:
+        tables.append(_speeds_of_orders(machine, found, speeds, frame.system))
+    no_masses = "no masses, or no speed given" if found.cylinders else "the effort is given as a torque"
+    apart = {"gas and inertia apart": "" if found.machine.inertia else no_masses}
+    whole = Subject(
+        "whole machine",
+        (found,),
+        left_out=(*flywheel_left_out(machine), *missing(apart)),
+        warnings=of_machine(case) if frame.prose else (),
+        tables=tuple(tables),
+    )
+    return report_on(frame, machine, "Drehkraft nach Ordnungen", cylinders, whole, _orders_notes(found))
+
+
+def harmonics_subjects(case: Case) -> list[Subject]:
+    """Return the whole machine."""
+    return [Subject("whole machine", (case.harmonics(),))]
+
+
+def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None:
+    """Return the requested orders (n,), ascending and each once; None for the usual ones.
+
+    Raises UsageError for one that the cycle does not have.
+    """
+    for order in requested or ():
+        if not 0 < order <= _HIGHEST_ORDER:
+            raise UsageError(
+                f"--orders {order:g}: an order is more than 0 and at most {_HIGHEST_ORDER} periods per turn"
+            )
+        if (order * machine.revolutions) % 1:
+            known = "½, 1, 1½, …" if machine.revolutions == 2 else "1, 2, 3, …"
+            degrees = 360 * machine.revolutions
+            raise UsageError(
+                f"--orders {order:g}: the cycle repeats after {degrees} degrees and has the orders {known}"
+            )
+    return None if requested is None else np.array(sorted(set(requested)), dtype=float)
+
+
+def _orders_table(
+    title: str, orders: Orders, system: str, area: float | None = None, major: Sequence[float] = ()
+) -> PlaceTable:
+    """Return the orders of a torque; area: of the piston, for the tangential pressure; major: those to mark."""
+    rows: list[Row] = []
+    inertia = repeat(None) if orders.inertia is None else orders.inertia.amplitudes.tolist()
+    whole, gas = orders.whole.amplitudes.tolist(), orders.gas.amplitudes.tolist()
+    for order, amplitude, of_gas, of_inertia in zip(orders.whole.orders.tolist(), whole, gas, inertia):
+        values = _of_order(order, amplitude)
+        if of_inertia is not None:
+            values |= {"M_gas": abs(of_gas), "M_inertia": abs(of_inertia)}
+        if area:
+            values["t_order"] = abs(amplitude) / area
+        rows.append((("major" if order in major else "",), values))
+    table = place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)
+    return table._replace(said=_uniform(orders))
+
+
+def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
+    """Return one order: Re(M e^{iνφ}) = a cos νφ + b sin νφ = |M| cos(νφ − ε), ε above −180° up to 180°."""
+    a, b = amplitude.real, -amplitude.imag
+    phase = math.degrees(math.atan2(b, a)) + 0.0 if amplitude else None
+    return {"order": order, "M_cos": a, "M_sin": b, "M_amplitude": abs(amplitude), "M_phase": phase}
+
+
+def _speeds_of_orders(machine: Machine, found: MachineOrders, speeds: Sequence[float], system: str) -> PlaceTable:
+    if not machine.speed:
+        raise UsageError("--speeds: the inertia forces are told from those at the 'speed' of the machine; give it one")
+    rows: list[Row] = []
+    for speed in speeds:
+        at_speed = found.machine.at_speed(speed / machine.speed)
+        for order, amplitude in zip(at_speed.orders.tolist(), at_speed.amplitudes.tolist()):
+            rows.append((("",), {"speed": speed, **_of_order(order, amplitude)}))
+    title = "Orders of the turning effort at other speeds"
+    table = place_table("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, system)
+    return table._replace(said=_uniform(found.machine))
+
+
+def _uniform(found: Orders) -> bool:
+    """Whether every order is zero, at every speed."""
+    return not any(one.amplitudes.any() for one in (found.gas, found.inertia) if one)
+
+
+def _orders_notes(found: MachineOrders) -> Iterator[str]:
+    torques = [(f"The torque of {one.forces.drive.cylinder.name}", one.own) for one in found.cylinders]
+    torques.append(("The turning effort", found.machine))
+    uniform = [what for what, orders in torques if _uniform(orders)]
+    yield from (f"{what} has none of these orders: they are all zero." for what in uniform)
+    if len(uniform) == len(torques):
+        return
+    yield "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
+    if found.machine.inertia is not None:
+        yield "M_b goes with the square of the speed; M_g, of gas, weight and friction, counts the same at every speed."
+
+
+# torsional vibration of the shaft line: natural vibrations, Holzer's table, critical speeds, forced vibration
+
+_HIGHEST_CRITICAL = 12
+"""Order up to which critical speeds are listed unless orders are requested."""
+_MODES = 3
+"""Modes whose critical speeds are listed unless others are requested."""
+_Amplitude = tuple[float | None, float | None]
+"""Largest vibratory torque in N m and stress in Pa of any piece, None if not known."""
+
+
+class Wanted(NamedTuple):
+    """What is requested of torsion: orders, how many modes, whose Holzer table, speeds in revolutions per second."""
+
+    orders: Sequence[float] | None = None
+    modes: int = _MODES
+    mode: int = 1
+    speeds: Sequence[float] | None = None
+
+
+@np.errstate(all="ignore")
+def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Report:  # noqa: B008 (immutable)
+    """Return the torsional vibration of the shaft line; columns over the crank angle only if the frame has some.
+
+    Raises UsageError without a shaft line, NoSolutionError if an undamped resonance has no limit.
+    """
+    found, system = case.torsion_of(_orders(case.machine, wanted.orders)), frame.system
+    critical = found.critical_speeds(wanted.modes, _HIGHEST_CRITICAL if wanted.orders is None else math.inf)
+    _refuse_endless(found)
+    amplitudes = _at_critical(found, critical)
+    tables = [
+        _modes_table(found, system),
+        _holzer_table(found, wanted.mode, system),
+        _critical_table(critical, amplitudes, system),
+        *([_pieces_table(found, system)] if found.pieces else []),
+        *([] if wanted.speeds is None or found.obstacle else [_speeds_table(found, wanted.speeds, system)]),
+    ]
+    warnings = (*_near_speeds(found, critical), *of_machine(case)) if frame.prose else ()
+    lacking = tuple(torsion_left_out(found))
+    whole = Subject("shaft line", (found,), left_out=lacking, warnings=warnings, tables=tuple(tables))
+    pieces = [Subject(one.name, (), one.at) for one in found.pieces] if frame.columns else []
+    notes = _torsion_notes(found, wanted, critical, amplitudes)
+    return report_on(frame, case.machine, "Drehschwingungen", pieces, whole, notes)
+
+
+def torsion_subjects(case: Case) -> list[Subject]:
+    """Return the shaft line; raises NoSolutionError if an undamped resonance has no limit."""
+    _refuse_endless(case.torsion)
+    return [Subject("shaft line", (case.torsion,))]
+
+
+def torsion_warnings(case: Case) -> Iterator[str]:
+    """Yield which of the usual critical speeds are near the working speed; raises as `torsion_subjects` does."""
+    _refuse_endless(case.torsion)
+    yield from _near_speeds(case.torsion, case.torsion.critical_speeds(_MODES, _HIGHEST_CRITICAL))
+
+
+def _refuse_endless(found: ShaftVibration) -> None:
+    if found.vibration is not None and found.vibration.endless.any():
+        raise NoSolutionError(
+            "an order of the torque meets a natural vibration that next to nothing damps: give it 'damping'; or pieces "
+            "of the shaft are too unequal to compute with: look at the units of their stiffnesses"
+        )
+
+
+def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
+    """Return the natural frequencies, with the nodes of each mode."""
+    rows: list[Row] = []
+    for index, omega in enumerate(found.modes.omegas.tolist()):
+        mode = float(found.first + index)
+        values = {"mode": mode, "frequency": omega / (2 * math.pi), "omega_natural": omega}
+        rows.append(((_nodes(found, index),), values))
+    return place_table("modes", "Natural frequencies", ("nodes",), MODES, rows, system)
+
+
+def _nodes(found: ShaftVibration, index: int) -> str:
+    """Return how many nodes a mode has, and where if they are few."""
+    if found.first + index == 0:
+        return "rotation"
+    names = [mass.name for mass in found.line.masses]
+    held = ["at the ground"] if found.chain.ground else []
+    nodes = found.modes.nodes(index)
+    where = held + [f"{names[mass]} + {share:.2f}" if share else names[mass] for mass, share in nodes]
+    count = f"{len(where)} node{'s' if len(where) > 1 else ''}"
+    return f"{count}: {', '.join(where)}" if len(where) <= 2 else count
+
+
+def _holzer_table(found: ShaftVibration, mode: int, system: str) -> PlaceTable:
+    """Return Holzer's table of a mode, from the first mass to the last, each with the piece behind it."""
+    table, chain = found.holzer(mode), found.chain
+    omega = float(found.modes.omegas[mode - found.first])
+    masses: list[Row] = [
+        ((mass.name,), {"inertia": inertia, "theta": theta, "inertia_torque": omega**2 * inertia * theta})
+        for mass, inertia, theta in zip(found.line.masses, chain.inertias.tolist(), table.angles.tolist())
+    ]
+    if chain.ground:
+        masses.insert(0 if chain.ground == "before" else len(masses), (("ground",), {"theta": 0.0}))
+    pieces: list[dict[str, float]] = [
+        {"torque_sum": torque, "stiffness": stiffness, "twist": torque / stiffness}
+        for torque, stiffness in zip(table.torques.tolist(), chain.stiffnesses.tolist())
+    ]
+    rows = [(names, {**mass, **piece}) for (names, mass), piece in zip(masses, [*pieces, {}])]
+    title = f"Holzer's table of mode {mode}, f = {omega / (2 * math.pi):.6g} Hz, ω² = {omega**2:.6g} 1/s²"
+    return place_table("holzer", title, ("mass",), HOLZER, rows, system)
+
+
+def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[_Amplitude]]:
+    """Yield for each speed torque and stress of every piece, nothing at an undamped resonance."""
+    vibration = found.forced(speeds)
+    factors = [stress(found.line, piece) for piece in range(len(found.line.pieces))]
+    for torques, endless in zip(vibration.vibratory.T.tolist(), vibration.endless):
+        yield [
+            (None, None) if endless else (torque, None if factor is None else factor * torque)
+            for torque, factor in zip(torques, factors)
+        ]
+
+
+def _at_critical(found: ShaftVibration, critical: Sequence[Critical]) -> list[_Amplitude]:
+    """Return the largest torque and stress of any piece at critical speeds, nothing at those that are not reached."""
+    reached = _at_speeds(found, [one.speed for one in critical if found.met(one)])
+    amplitudes: list[_Amplitude] = []
+    for one in critical:
+        torques, stresses = zip(*next(reached)) if found.met(one) else ((), ())
+        amplitudes.append((_largest(torques), _largest(stresses)))
+    return amplitudes
+
+
+def _known(values: Mapping[str, float | None]) -> dict[str, float]:
+    return {id: value for id, value in values.items() if value is not None}
+
+
+def _largest(values: Iterable[float | None]) -> float | None:
+    return max((value for value in values if value is not None), default=None)
+
+
+def _critical_table(critical: Sequence[Critical], amplitudes: Sequence[_Amplitude], system: str) -> PlaceTable:
+    rows: list[Row] = []
+    for one, (torque, tension) in zip(critical, amplitudes):
+        values = {
+            "order": one.order,
+            "mode": float(one.mode),
+            "speed": one.speed,
+            "phase_sum": one.phase_sum,
+            "distance": one.distance,
+            "M_vibratory": torque,
+            "tau_vibratory": tension,
+        }
+        rows.append((("near" if one.near else "",), _known(values)))
+    return place_table("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows, system)
+
+
+def _pieces_table(found: ShaftVibration, system: str) -> PlaceTable:
+    """Return torques and stresses in the pieces at the working speed."""
+    rows: list[Row] = [((piece.name,), _known({id: getattr(piece, id) for id in PIECES})) for piece in found.pieces]
+    title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
+    return place_table("pieces", title, ("piece",), PIECES, rows, system)
+
+
+def _speeds_table(found: ShaftVibration, speeds: Sequence[float], system: str) -> PlaceTable:
+    """Return the vibratory torque in every piece over the speed."""
+    rows: list[Row] = []
+    for piece, amplitudes in enumerate(zip(*_at_speeds(found, speeds))):
+        for speed, (torque, tension) in zip(speeds, amplitudes):
+            values = {"speed": speed, "M_vibratory": torque, "tau_vibratory": tension}
+            rows.append(((found.piece_name(piece),), _known(values)))
+    title = "Vibratory torque over the speed, all these orders together"
+    return place_table("speeds", title, ("piece",), SPEEDS, rows, system)
+
+
+def torsion_left_out(found: ShaftVibration) -> Iterator[LeftOut]:
+    """Yield what torsional vibration leaves out."""
+    bare = [found.piece_name(index) for index, piece in enumerate(found.line.pieces) if not piece.sections]
+    if found.obstacle:
+        yield LeftOut("forced vibration, torques and stresses", found.obstacle)
+    elif bare:
+        yield LeftOut(f"stress in {', '.join(bare)}", "no diameter given")
+    if found.machine.cylinders:
+        yield LeftOut("change of the inertia over the turn", "the mean counts; what its change excites is not told")
+
+
+def _near_speeds(found: ShaftVibration, critical: Sequence[Critical]) -> Iterator[str]:
+    """Yield, mode by mode, the critical speeds near the working speed, the strongest first."""
+    for mode in sorted({one.mode for one in critical}):
+        near = sorted((one for one in critical if one.mode == mode and one.near), key=lambda one: -one.share)
+        if near and found.machine.speed is not None:
+            listed = ", ".join(f"{one.order:g} ({100 * (one.distance or 0.0):+.3g} %)" for one in near)
+            plural = "s" if len(near) > 1 else ""
+            yield (
+                f"mode {mode}: critical speed{plural} of order{plural} {listed} within 10 % of the working speed "
+                f"{show(found.machine.speed, 'speed')}"
+            )
+
+
+def _torsion_notes(
+    found: ShaftVibration, wanted: Wanted, critical: Sequence[Critical], amplitudes: Sequence[_Amplitude]
+) -> Iterator[str]:
+    if wanted.orders is None:
+        yield f"Critical speeds of orders up to {_HIGHEST_CRITICAL}; --orders tells others, --modes of more modes."
+    if any(map(found.met, critical)) and any(torque is None for torque, _ in amplitudes):
+        yield (
+            "What the shaft bears at a critical speed holds all orders, when running there; – stands where the machine "
+            f"does not come, beyond {RUN_UP:g} times the working speed, and where next to nothing damps the mode."
+        )
+    if any(piece.ratio != 1 for piece in found.line.pieces):
+        yield "Masses and stiffnesses beyond the gear are referred to the cranks' shaft by u²; torques are true ones."
+    if not found.machine.cylinders and found.machine.effort:
+        yield f"The effort acts on {found.line.masses[0].name}, the first mass."
+    if found.pieces:
+        higher = ""
+        if found.remainder is not None:
+            higher = f" (higher ones add about {show(found.remainder, 'torque', figures=2)} or less)"
+        taker = "what holds it" if found.chain.ground else found.line.masses[found.line.load].name
+        orders = _listed(found.summed)
+        yield f"Forced vibration: {orders} together{higher}, about uniform rotation; the mean torque goes to {taker}."
+
+
+def _listed(orders: Array | None) -> str:
+    """Return orders in words: few of them one by one, many by the first and the last."""
+    if orders is None:
+        return "all orders"
+    names = [f"{order:g}" for order in orders]
+    if len(names) > 4:
+        return f"{len(names)} orders from {names[0]} to {names[-1]}"
+    return f"order{'s' if len(names) > 1 else ''} {', '.join(names)}"

@@ -1,0 +1,1 @@
+"""Measured traces: files read, samples cut into whole cycles, corrected, and checked for what is implausible."""

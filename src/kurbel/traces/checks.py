@@ -1,0 +1,527 @@
+"""What is implausible in a measured trace: one table of checks, each a condition and a sentence with its figures.
+
+A check returns '' where nothing is wrong, or what is seen, what to write, and p_i with and without that correction,
+computed from the samples themselves. The first check that finds something is shown alone: what comes later may look
+wrong only because of what comes before.
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from kurbel.arrays import Array
+from kurbel.crank_angle import CrankAngle
+from kurbel.numerics.lobatto import rule
+from kurbel.traces.correct import (
+    COMPRESSION,
+    EXPANSION,
+    LAST,
+    Exponent,
+    Setting,
+    Trace,
+    drift_of,
+    exponent,
+    extrapolated,
+    joined_in_pairs,
+    noise_of,
+    parabola_peak,
+    volumes_in,
+    without_drift,
+)
+
+_LOW = 0.15
+"""Share of the cycle below the low level: a noisy sample, or a few, are no level."""
+_PARABOLA = 6.0
+"""Degrees on either side of the top sample through which a parabola goes."""
+_ENGINE = 8.0
+"""Peak over low level, absolute, from which on something is compressed, or burns, in a small space."""
+_NARROW = 90.0
+"""Degrees for which the upper half of such a peak lasts at most; what lasts longer is an admission or a delivery."""
+_FEW_SAMPLES = 600
+"""Below, the straight lines between samples are so long that more nodes are needed along each."""
+
+
+_CANCELLED = 1e-13
+"""Share of the terms of a sum below which nothing but rounding is left of it."""
+
+
+class Reading:
+    """A trace in its chamber: what checks judge it by, pressures in Pa, angles in degrees after the dead centre.
+
+    each: pressures (m, n) of every cycle, corrected; after (n,): rising angles from the chamber's own (firing) dead
+    centre; place (n,): the same within ± half a cycle.
+    """
+
+    def __init__(self, trace: Trace, setting: Setting, each: Array) -> None:
+        self.trace, self.setting, self.each = trace, setting, each
+        self.p: Array = each.mean(axis=0)
+        self.place = setting.from_dead_centre(trace)
+        self.after = trace.angles - trace.angles[0] + self.place[0]
+        self.step = trace.period / (len(self.p) - 1)
+        widths = np.append(np.diff(trace.angles), 0.0) + np.append(0.0, np.diff(trace.angles))
+        order = np.argsort(self.p, kind="stable")
+        passed = np.cumsum(widths[order])
+        self.low = float(self.p[order][np.searchsorted(passed, _LOW * passed[-1])])
+        self.top = int(np.argmax(self.p))
+        self.peak = float(self.p[self.top])
+        # a single top sample may be noise; the closing one would count twice
+        self.vertex = parabola_peak(self.place[:-1], self.p[:-1], float(self.place[self.top]), _PARABOLA)
+        self.peak_at = self.vertex.place if self.vertex else float(self.place[self.top])
+        self.half_width = float(widths[self.p > (self.peak + self.low) / 2].sum()) / 2
+        # of a trace that goes down to the vacuum, the ratio as over a good vacuum
+        floor = max(self.low + setting.lift, 0.2 * setting.ambient, 1.0)
+        self.ratio = (self.peak + setting.lift) / floor
+        self.engine = self.half_width <= _NARROW and self.ratio > _ENGINE
+
+    def exponent(self, stretch: tuple[float, float], later: float = 0.0, raised: float = 0.0) -> Exponent | None:
+        """Return the exponent of a stretch if the trace were so many degrees later, and raised by Pa."""
+        absolute = self.p + self.setting.lift + raised
+        return exponent(self.setting, self.trace.clearance, self.place + later, absolute, stretch)
+
+    def p_i(self, after: Array | None = None, pressures: Array | None = None) -> float:
+        """Return ∮ p dz in Pa of other angles, or other pressures, than those of the trace.
+
+        At equal angles the trapezoid rule of p dz/dφ, at others the integral of the straight lines in between.
+        """
+        angles, p = self.after if after is None else after, self.p if pressures is None else pressures
+        along = rule(2 if self.trace.even else 10 if len(p) < _FEW_SAMPLES else 4)
+        share = (1 + along.nodes[:, np.newaxis]) / 2
+        values = (p[:-1] + share * np.diff(p)) * self._slope(angles[:-1] + share * np.diff(angles))
+        terms = along.weights @ values * np.radians(np.diff(angles)) / 2
+        total = float(terms.sum())
+        return total if abs(total) > _CANCELLED * float(np.abs(terms).sum()) else 0.0
+
+    def _slope(self, after: Array) -> Array:
+        """Return dz/dφ of the stroke fraction, so many degrees after the chamber's dead centre."""
+        mechanism, head = self.setting.mechanism, self.setting.head_end
+        inner, outer = mechanism.dead_centres()
+        slope = mechanism.slope(CrankAngle.of(after + (inner if head else outer))) / mechanism.stroke
+        return np.asarray(slope if head else -slope)
+
+    def then(self, corrected: float) -> str:
+        """Return p_i as corrected, in Pa, and as it is."""
+        now, then = in_bar(self.p_i()), in_bar(corrected)
+        return f"p_i is then {then} instead of {now}" if now != then else f"p_i stays {now}"
+
+    def put_later(self, degrees: float) -> tuple[str, str]:
+        """Return the key that puts the dead centre so many degrees later, and what it does to p_i."""
+        zero, period = self.trace.as_written(self.trace.angle_zero + degrees), self.trace.period
+        shown = round((zero + 180) % period - 180, 3)
+        return f"'angle_zero: {shown:g} deg'", self.then(self.p_i(self.after - degrees))
+
+
+def in_bar(pressure: float) -> str:
+    """Write a pressure in Pa for a note."""
+    return f"{pressure / 1e5 + 0.0:.4g} bar"
+
+
+def doubt(trace: Trace, setting: Setting, each: Array) -> str:
+    """Return what is implausible in a trace with the pressures `each` (m, n) of its cycles, or ''."""
+    reading = Reading(trace, setting, each)
+    return next(filter(None, (check(reading) for check in CHECKS)), "")
+
+
+# the samples
+
+_PULSE = 0.02, 0.9
+"""Share of the swing, and of the samples that are within it of one level where only pulses stand out."""
+_FEWEST = 36
+_TURNS_DIFFER = 0.2
+"""Share of the range by which the turns of a two-stroke cycle never differ in pairs."""
+_WANDERED = 10.0
+"""Degrees by which the cycles of one engine never move from the first to the last."""
+_LAPPED = 0.05
+"""Share of a cycle by which each may wander against the one before; beyond, others lie over it."""
+_TWICE = 0.25
+"""Share of samples at the angle of the one before, from which on angles are rounded."""
+_RANGE = 0.06
+"""Share of the pressure where the cycle closes, above the low level, that one cycle and the next may differ by."""
+_LEAST = 0.2
+"""Share of the ambient by which the ends of a cycle differ from one to the next in any gas exchange."""
+_WORTH_IT = 0.01
+"""Share of p_i below which a drift is not worth a word."""
+_SURE_OF_NOISE = 6.0
+"""Standard deviations of the noise that a drift must exceed."""
+
+
+def _column_of_pulses(reading: Reading) -> str:
+    """A signal that is flat but for pulses with upright sides is that of an injector or a mark, no pressure."""
+    p, trace = reading.p, reading.trace
+    swing = float(np.ptp(p))
+    flat = float(np.mean(np.abs(p - np.median(p)) <= _PULSE[0] * swing))
+    upright = np.count_nonzero(np.abs(np.diff(p)) > swing / 2) >= 2
+    if not trace.column or len(p) < _FEWEST or flat < _PULSE[1] or not upright:
+        return ""
+    return (
+        f"column {trace.column} is flat over {flat:.0%} of the cycle, but for a pulse with upright sides: the signal "
+        "of an injector or a mark? name the column of the pressures by 'pressure_column'"
+    )
+
+
+def _turns_in_pairs(reading: Reading) -> str:
+    """Laps that differ in pairs are the turns of a four-stroke cycle, taken for two strokes, or each for a cycle."""
+    each, trace = reading.each, reading.trace
+    if len(each) < 2 or len(each) % 2:
+        return ""
+    odd, even = each[0::2].mean(axis=0), each[1::2].mean(axis=0)
+    if np.abs(odd - even).max() <= _TURNS_DIFFER * max(np.ptp(odd), np.ptp(even)):
+        return ""
+    peaks = f"differ by twos, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
+    if reading.setting.cycle == 360:
+        return (
+            f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; p_i is then "
+            f"{in_bar(2 * reading.p_i())} instead of {in_bar(reading.p_i())}"
+        )
+    joined = joined_in_pairs(trace.samples).mean(axis=0)
+    step = trace.period / (len(joined) - 1)
+    after = reading.after[0] - trace.angles[0] + step * np.arange(len(joined))
+    return (
+        f"its cycles {peaks}: does the angle number the samples of one turn? write 'angle_step: {step:g} deg'; "
+        f"{reading.then(reading.p_i(after, joined))}"
+    )
+
+
+def _wandering_cycles(reading: Reading) -> str:
+    """Cycles of one engine do not wander against each other; those by time and a wrong speed do."""
+    each, trace = reading.each, reading.trace
+    if len(each) < 3:
+        return ""
+    wave = np.exp(-2j * np.pi * trace.angles / trace.period) * np.gradient(trace.angles)
+    phases = np.unwrap(np.angle(each[:, :-1] @ wave[:-1]))
+    wandered = float(phases[0] - phases[-1]) * trace.period / (2 * np.pi)
+    if abs(wandered) <= _WANDERED:
+        return ""
+    off = wandered / (trace.period * (len(each) - 1))
+    change = f"{abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'}"
+    remedy = f" If it is told by time: a 'recorded_speed' about {change} brings both together"
+    first, last = (in_bar(reading.p_i(pressures=one)) for one in (each[0], each[-1]))
+    return (
+        f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last, "
+        f"and p_i goes from {first} to {last}: was the speed another, or not constant?"
+        f"{remedy if abs(off) < _LAPPED else ''}"
+    )
+
+
+def _rounded_angles(reading: Reading) -> str:
+    trace = reading.trace
+    twins = int(np.count_nonzero(np.diff(trace.angles) == 0))
+    if twins < _TWICE * len(trace.angles):
+        return ""
+    zero = trace.as_written(trace.angle_zero) - (-trace.angles[-1] if trace.against else float(trace.angles[0]))
+    moved = f" and 'angle_zero: {zero:g} deg'" if trace.angles[0] else ""
+    key = f"write 'angle_step: {reading.step:g} deg'{moved}" if trace.files else "give each point an angle of its own"
+    even = reading.after[0] + reading.step * np.arange(len(trace.angles))
+    return (
+        f"{twins} samples stand at the angle of the one before: rounded angles? {key}; "
+        f"{reading.then(reading.p_i(even))}"
+    )
+
+
+def _closing_sample(reading: Reading) -> str:
+    """A cycle that comes back to where it began, up to its last sample but one, has no drift."""
+    p, trace = reading.p, reading.trace
+    if trace.completed or len(p) < _FEWEST or trace.angles[-1] - trace.angles[-4] > 3 * LAST:
+        return ""
+    jump = float(p[0] - p[-1])
+    before = abs(float(extrapolated(trace.angles, reading.p[np.newaxis])[0]))
+    if abs(jump) <= max(_LEAST * reading.setting.ambient, _bends(reading), 3 * before):
+        return ""
+    closed = np.append(p[:-1], p[0])
+    angle = trace.as_written(float(trace.angles[0 if trace.against else -1]))
+    return (
+        f"the closing sample at {angle:.10g} deg is {in_bar(p[-1])}, though the cycle begins with {in_bar(p[0])} and "
+        f"comes back to it just before: leave that sample out; {reading.then(reading.p_i(pressures=closed))}"
+    )
+
+
+def _drift(reading: Reading) -> str:
+    p, trace = reading.p, reading.trace
+    jump = float(drift_of(trace, p[np.newaxis])[0])
+    closes = abs(float(p[0]) - reading.low)
+    if abs(jump) <= max(_RANGE * closes, _LEAST * reading.setting.ambient, _bends(reading)):
+        return ""
+    levelled = reading.p_i(pressures=without_drift(trace, p[np.newaxis])[0])
+    if abs(levelled - reading.p_i()) <= _WORTH_IT * abs(reading.p_i()):
+        return ""
+    return (
+        f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write "
+        f"'drift: linear'; {reading.then(levelled)}"
+    )
+
+
+def _bends(reading: Reading) -> float:
+    """Return in Pa what noise, resolution, and the bend of the pressure may do to the jump where the cycle closes."""
+    p = reading.p
+    noise = _SURE_OF_NOISE * (noise_of(p[:-1]) if reading.trace.even else 0.0)
+    if not reading.trace.completed:
+        return noise
+    bends = np.abs(np.concatenate((np.diff(p[-5:-1], 2), np.diff(p[:4], 2))))
+    steps = np.abs(np.diff(p))
+    resolution = 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0
+    return max(noise, resolution, 3.0 * float(bends.max()))
+
+
+# sign and unit
+
+_LEAST_SWING = 1e3
+"""Pa; what varies less is flat."""
+_SMALLEST_PEAK, _USUAL_PEAK, _LARGEST_PEAK = 1e5, 60e5, 300e5
+"""Absolute pressures in Pa at which cylinders peak, where no clearance gives more."""
+_TO_COMPRESSION = 0.25, 8.0
+"""Peak over what the compression from the ambient gives: throttled by three quarters, or supercharged and fired."""
+_AIR = 1.32
+_NEAR_VACUUM = 0.1
+"""Share of the ambient below which an absolute low level is none."""
+_UNITS = {"Pa": 1.0, "mbar": 1e2, "kPa": 1e3, "psi": 6894.757293168, "at": 98066.5, "bar": 1e5, "MPa": 1e6}
+_POWERS = (0.001, 0.01, 0.1, 10.0, 100.0, 1000.0)
+_SAME_UNIT = 0.05
+"""Share by which units differ at most that cannot be told apart, as at and bar."""
+_NO_UNIT = 0.5
+"""What a power of ten that makes no unit of another must fit better, in logarithms."""
+_ROUNDED = 1e-6
+
+
+def _inverted(reading: Reading) -> str:
+    """An inverted trace, as of a charge amplifier with the wrong polarity."""
+    p = reading.p
+    middle = float(np.median(p))
+    if middle - float(p.min()) < _ENGINE * max(float(p.max()) - middle, _LEAST_SWING):
+        return ""
+    return (
+        f"its swing from {in_bar(middle)} goes down to {in_bar(float(p.min()))}: does it stand on its head? write "
+        f"'scale: {-reading.trace.scale:g}'; {reading.then(-reading.p_i())}"
+    )
+
+
+def _unit(reading: Reading) -> str:
+    """Judge the peak by what this clearance can compress to, or else by what cylinders withstand."""
+    trace, setting, ambient = reading.trace, reading.setting, reading.setting.ambient
+    peak, low = reading.peak + setting.lift, reading.low + setting.lift
+    if trace.clearance:
+        compressed = ambient * (1 + 1 / trace.clearance) ** _AIR
+        least, most = _TO_COMPRESSION[0] * compressed, max(_TO_COMPRESSION[1] * compressed, _SMALLEST_PEAK)
+        can = f"compression gives about {in_bar(compressed)}"
+    else:
+        compressed, most = _USUAL_PEAK / 2, _LARGEST_PEAK
+        least = _SMALLEST_PEAK + ambient if setting.cycle == 720 and setting.head_end else 0.0
+        can = "cylinders peak at 1 to 300 bar"
+    flat = least <= peak <= most
+    if flat:
+        # four strokes that hardly compress, or only against a vacuum
+        as_gauge = (reading.peak + ambient) / max(reading.low + ambient, 1.0)
+        against_vacuum = 0 < low < _NEAR_VACUUM * ambient and as_gauge <= _ENGINE
+        if setting.cycle == 360 or not (against_vacuum if setting.absolute else reading.ratio <= _ENGINE):
+            return ""
+        can = f"four strokes compress more than from {in_bar(low)}"
+    factor, unit = _likely_unit(reading, least, 2 * compressed, max(most, ambient), _ENGINE if flat else 0.0)
+    if factor == 1:
+        return ""
+    what = f"{1 / factor:.3g} times too large" if factor < 1 else f"{factor:.3g} times too small"
+    power = math.log10(factor)
+    scaled = f", or write 'scale: {trace.scale * factor:g}'" if abs(power - round(power)) < _ROUNDED else ""
+    return (
+        f"the peak is {in_bar(peak)} absolute, where {can}: pressures {what}? mend 'unit'"
+        f"{f' (unit: {unit} fits)' if unit else ''}{scaled}; {reading.then(factor * reading.p_i())}"
+    )
+
+
+def _likely_unit(reading: Reading, least: float, aimed: float, most: float, ratio: float) -> tuple[float, str]:
+    """Return the factor on the pressures that fits best, and the unit that it makes of theirs, or ''; 1 if none does.
+
+    Judged by how far, in logarithms, the absolute peak is from the one aimed at, and an absolute low level from the
+    ambient. least, most: bounds of the peak in Pa; ratio: that it must be over the low level.
+    """
+    lift, ambient, unit = reading.setting.lift, reading.setting.ambient, reading.trace.unit
+    factors = [(size / unit, name, 0.0) for name, size in _UNITS.items() if abs(size / unit - 1) > _SAME_UNIT]
+    factors += [(factor, "", _NO_UNIT) for factor in _POWERS]
+    fits = []
+    for factor, name, extra in factors:
+        peak, low = reading.peak * factor + lift, reading.low * factor + lift
+        if least <= peak <= most and peak > ratio * max(low, 0.2 * ambient, 0.0):
+            at_ambient = 1.0 if lift else max(low / max(ambient, 1.0), 1e-3)
+            fits.append((abs(math.log(peak / aimed)) + abs(math.log(at_ambient)) + extra, factor, name))
+    return min(fits, default=(0.0, 1.0, ""))[1:]
+
+
+# the place of the peak
+
+_FIRED = -15.0, 45.0
+"""Degrees after the firing dead centre between which a fired four-stroke cycle peaks."""
+_TWO_STROKE = -50.0, 60.0
+"""The same in two strokes, where a compressor delivers before the dead centre, and a steam engine admits."""
+_AIMED = -2.0, 30.0
+"""Where a peak is to be after quarter turns."""
+_USUAL = 8.0
+"""Degrees after the dead centre at which fired engines peak, more or less."""
+_MOTORED_LEAD = 1.5  # deg; heat loss and leakage put a motored peak up to about 1° before the dead centre
+_MOTORED_SEARCH = 10.0, 30.0  # deg before and after the dead centre; what peaks elsewhere is a compressor or pump
+_SURE = 3.0  # standard errors of the place of the peak, and what a crooked peak may be off
+_OFF = 0.1  # deg
+
+
+_MOTORED_SIDES = np.array([10.0, 20.0, 30.0, 45.0, 60.0, 75.0, 90.0])  # deg from the peak; both sides are compared
+_AROUND = 2.5  # deg on either side of such a place over which the pressures are a mean: one sample is noise
+_MOTORED_RATIO = 0.6, 1.1  # of the pressures after and before the peak: what heat loss and leakage take, and noise
+_MOTORED_RISE = 3.0  # least pressure of the peak over that at its feet; what is flat has no peak
+
+
+def _backward(reading: Reading) -> str:
+    judged = reading.engine and (reading.setting.cycle == 720 or reading.trace.clearance is not None)
+    early = -60.0 < reading.peak_at < -_MOTORED_LEAD - reading.step
+    if not judged or not early or reading.p_i() >= 0 or _motored(reading):
+        return ""
+    turned = reading.p_i(-reading.after[::-1], reading.p[::-1])
+    if turned <= 0 or not _is_usual(reading, -reading.peak_at):
+        return ""
+    return (
+        f"the peak stands {-reading.peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
+        f"count against the rotation? write 'angle_sense: against'; {reading.then(turned)}"
+    )
+
+
+def _is_usual(reading: Reading, place: float) -> bool:
+    low, high = _FIRED if reading.setting.cycle == 720 else _TWO_STROKE
+    return low <= place <= high
+
+
+def _peak_elsewhere(reading: Reading) -> str:
+    if not reading.engine or _is_usual(reading, reading.peak_at):
+        return ""
+    cycle, top = reading.setting.cycle, float(reading.place[reading.top])
+    quarters = np.arange(90.0, cycle, 90.0).tolist()
+    moved = {quarter: (reading.peak_at - quarter + cycle / 2) % cycle - cycle / 2 for quarter in quarters}
+    # by quarter turns, or else to where such a peak usually is
+    later = next((quarter for quarter, peak in moved.items() if _AIMED[0] <= peak <= _AIMED[1]), None)
+    if _motored(reading):
+        later = reading.peak_at
+    elif later is None:
+        zero = reading.trace.angle_zero
+        later = round(zero + reading.peak_at - _USUAL) - zero
+    key, effect = reading.put_later(later)
+    where = "firing dead centre" if cycle == 720 else "dead centre"
+    gas_exchange = ", in the gas exchange" if abs(reading.peak_at) > 180 else ""
+    return (
+        f"the peak stands {abs(top):.4g} deg {'after' if reading.peak_at > 0 else 'before'} the {where}"
+        f"{gas_exchange}: write {key}; {effect}"
+    )
+
+
+def _motored_peak(reading: Reading) -> str:
+    peak, after = reading.vertex, reading.peak_at
+    if peak is None or not -_MOTORED_SEARCH[0] <= after <= _MOTORED_SEARCH[1]:
+        return ""
+    sure = _OFF + _SURE * peak.error
+    if -_MOTORED_LEAD - sure <= after <= sure or not _motored(reading):
+        return ""
+    key, effect = reading.put_later(after)
+    return (
+        f"no combustion shows, and the peak stands {abs(after):.2g} deg {'after' if after > 0 else 'before'} "
+        f"the dead centre; that of a motored engine stands at it or just before: check angle_zero; with "
+        f"{key} {effect.replace('is then', 'is')}"
+    )
+
+
+def _motored(reading: Reading) -> bool:
+    """Judge by the shape whether nothing burns: the two sides of the peak are alike.
+
+    The sign of the work does not show it, since a motored trace that is too late does work.
+    """
+    trace, p = reading.trace, reading.p + reading.setting.lift
+    around = trace.angles[reading.top] + np.linspace(-_AROUND, _AROUND, 21)
+    places = np.multiply.outer([-1.0, 1.0], _MOTORED_SIDES)[..., np.newaxis] + around
+    before, after = np.interp(places, trace.angles, p, period=trace.period).mean(axis=-1)
+    alike = (_MOTORED_RATIO[0] * before <= after) & (after <= _MOTORED_RATIO[1] * before)
+    return bool(alike.all() and p[reading.top] > _MOTORED_RISE * max(before[-1], after[-1]))
+
+
+# level, and the exponents of compression and expansion
+
+_NEAR_AMBIENT = 0.7, 1.3
+_BELOW = 0.8
+"""Share of the ambient by which gauge pressures of an engine lie below it at most; what is lower has no level."""
+_SENSIBLE = 1.2, 1.4
+"""Exponents of a compression of air or mixture; less is wet or leaks, more than that of air cannot be."""
+_SLACK = 0.02
+_APART = 0.08
+"""By which the exponents of compression and expansion differ, in engines as they are: the loss angle is worth 0.03."""
+_LATEST = 10.0
+"""Degrees by which a dead centre is found wrong; beyond, other notes speak."""
+
+
+def _level(reading: Reading) -> str:
+    """Judge by the level below which the cycle lies for a while whether gauge and absolute are mixed up."""
+    setting, low = reading.setting, reading.low
+    seen = f"for 15 % of the cycle the pressure lies below {in_bar(low)}"
+    stays = f"p_i stays, P changes by {in_bar(setting.ambient)} times the area"
+    vacuum = 0.0 if setting.absolute else -setting.ambient
+    if setting.absolute and -_BELOW * setting.ambient <= low < _NEAR_VACUUM * setting.ambient:
+        return f"{seen} absolute: these look like gauge pressures; write 'pressures: gauge'; {stays}"
+    if low < vacuum:
+        remedy = "mend 'pegging'" if reading.trace.pegging else "write 'pegging: ambient'"
+        return f"{seen}, the perfect vacuum being at {in_bar(vacuum)}; {remedy}; {stays}"
+    near = _NEAR_AMBIENT[0] < low / max(setting.ambient, 1.0) < _NEAR_AMBIENT[1]
+    if setting.absolute or not near or _is_sensible(reading.exponent(COMPRESSION)):
+        return ""
+    known = "" if reading.trace.clearance else "; a 'compression_ratio' would tell by the compression"
+    return f"{seen} gauge, about the ambient: absolute? Then write 'pressures: absolute'; {stays}{known}"
+
+
+def _is_sensible(found: Exponent | None) -> bool:
+    """Whether there is an exponent, and one that a compression can have."""
+    slack = _SLACK + (2 * found.error if found else 0.0)
+    return found is not None and _SENSIBLE[0] - slack <= found.value <= _SENSIBLE[1] + slack
+
+
+def _exponents(reading: Reading) -> str:
+    """Judge compression and expansion together: a dead centre that is off moves their exponents apart.
+
+    A wrong level moves that of the compression most, and both the same way.
+    """
+    compression, expansion = reading.exponent(COMPRESSION), reading.exponent(EXPANSION)
+    if compression is None or not reading.engine:
+        return ""
+    seen, sensible = f"its compression goes by p V^{compression.value:.3g}", _is_sensible(compression)
+    sure = _APART + 2 * math.hypot(compression.error, expansion.error if expansion else 0.0)
+    if expansion and abs(compression.value - expansion.value) > sure:
+        seen += f" and its expansion by p V^{expansion.value:.3g}"
+    elif sensible:
+        return ""
+    else:
+        seen += ", where air has 1.2 to 1.4"
+    later = _common_exponent(reading)
+    if abs(later) <= _LATEST and _is_sensible(reading.exponent(COMPRESSION, later)):
+        key, effect = reading.put_later(-later)
+        return f"{seen}: a dead centre {abs(later):.2g} deg off does that; write {key}; {effect}"
+    if sensible:
+        return ""
+    swapped = reading.setting.ambient if reading.setting.absolute else -reading.setting.ambient
+    if _is_sensible(reading.exponent(COMPRESSION, raised=swapped)):
+        word = "absolute" if swapped < 0 else "gauge"
+        return f"{seen}: as {word} pressures it would; write 'pressures: {word}'; p_i stays"
+    volumes, absolute = volumes_in(reading.setting, reading.trace.clearance or 0.0, reading.place, COMPRESSION)
+    pressures = reading.p[absolute] + reading.setting.lift
+    raised = -float(np.polyfit(volumes**-_AIR, pressures, 1)[1])  # p = C V^−n − Δp
+    level = f"write 'offset: {in_bar(reading.trace.offset + raised)}' or 'pegging' (p_i stays), or "
+    return f"{seen}: {level if abs(raised) <= 2 * reading.setting.ambient else ''}mend the clearance"
+
+
+def _common_exponent(reading: Reading) -> float:
+    """Return by how many degrees later compression and expansion have one exponent, by secants; nan where not."""
+
+    def apart(later: float) -> float:
+        compression, expansion = reading.exponent(COMPRESSION, later), reading.exponent(EXPANSION, later)
+        return compression.value - expansion.value if compression and expansion else math.nan
+
+    now, later = apart(0.0), 1.0
+    for _ in range(3):
+        later *= now / (now - apart(later))
+    return later
+
+
+CHECKS: tuple[Callable[[Reading], str], ...] = (
+    *(_column_of_pulses, _turns_in_pairs, _wandering_cycles, _rounded_angles, _closing_sample, _drift),
+    *(_inverted, _unit),
+    *(_backward, _peak_elsewhere, _motored_peak),
+    *(_level, _exponents),
+)

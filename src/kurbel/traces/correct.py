@@ -1,0 +1,351 @@
+"""A measured trace, and what corrects it: drift, level, and the dead centre found from a motored trace.
+
+A trace counts crank angles and pressures as its file does. `Setting` is the chamber it was measured in: with it
+angles count from the chamber's own (firing) dead centre, and pressures become absolute. Then the exponents of
+p V^n = const of compression and expansion follow.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array, Flags
+from kurbel.crank_angle import CrankAngle
+from kurbel.errors import refused
+from kurbel.mechanisms import Mechanism
+
+TURNS = {"two-stroke": 1, "four-stroke": 2}
+PERIODS = (360.0, 720.0)
+_EVEN = 1e-3  # of a step: what rounded angles may miss
+_ROUNDING = 1e-9  # of a period
+
+
+@dataclass(frozen=True)
+class KnownLevel:
+    """Where the level of a trace is known: angle in degrees from the (firing) dead centre, pressure in Pa.
+
+    Piezoelectric sensors measure changes of pressure only. None for both: the ambient, at the dead centre where the
+    compression begins.
+    """
+
+    angle: float | None = None
+    pressure: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """A measured trace over one whole cycle, or over many.
+
+    angles (n,) in degrees as the trace counts them, rising over 360 or 720; samples (m, n) in Pa, of m laps one after
+    the other, each over these angles; two samples at one angle are a jump. Laps of 360 deg are cycles of two strokes,
+    or in pairs of four. angle_zero: the angle, as the trace counts, of the firing or inner dead centre, in degrees.
+    Both ends of a cylinder count from the same dead centre, as one encoder on the shaft does; a mirrored trace follows
+    one stroke later. files: where the samples came from, if not from the machine file, in this column; notes: what was
+    tidied up in them; completed: the last sample is the first one again; clearance: smallest volume over that of the
+    stroke, None where it is not known; level: a line over the cycle is taken off so that it closes; against: the file
+    counts its angles against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the
+    figures of the file were multiplied by, and offset: the Pa that were added then.
+    Raises RuleError for samples that are no such cycle.
+    """
+
+    angles: Array
+    samples: Array
+    angle_zero: float = 0.0
+    files: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    completed: bool = False
+    clearance: float | None = None
+    level: bool = False
+    pegging: KnownLevel | None = None
+    against: bool = False
+    unit: float = 1.0
+    scale: float = 1.0
+    offset: float = 0.0
+    column: int = 0
+
+    def __post_init__(self) -> None:
+        if self.angles.ndim != 1 or len(self.angles) < 2 or self.samples.shape[1:] != self.angles.shape:
+            refused("a trace needs as many pressures as angles, two or more")
+        finite = np.isfinite(self.angles).all() and np.isfinite(self.samples).all()
+        if not finite or (np.diff(self.angles) < 0).any() or not self.period:
+            refused("a trace has finite samples at angles that rise over one whole cycle, 360 or 720 deg")
+
+    @cached_property
+    def pressures(self) -> Array:
+        """Mean (n,) in Pa of all laps."""
+        return np.asarray(self.samples.mean(axis=0))
+
+    def as_written(self, angle: float) -> float:
+        """Return an angle as the file counts it."""
+        return 0.0 - angle if self.against else angle
+
+    @property
+    def period(self) -> float:
+        """360 or 720; 0 where the angles cover neither."""
+        span = float(self.angles[-1] - self.angles[0])
+        return next((period for period in PERIODS if abs(span - period) <= _ROUNDING * period), 0.0)
+
+    @property
+    def even(self) -> bool:
+        """Whether the samples are at equal angles."""
+        steps = np.diff(self.angles)
+        step = self.period / len(steps)
+        return bool(np.abs(steps - step).max() <= _EVEN * step)
+
+    @property
+    def cycles(self) -> tuple[str, ...]:
+        """The working cycles that its laps are, or make in pairs."""
+        joins = (self.period, 2 * self.period) if len(self.samples) > 1 else (self.period,)
+        return tuple(cycle for cycle, turns in TURNS.items() if 360.0 * turns in joins)
+
+    def fault_in(self, cycle: str, lift: float) -> str:
+        """Return what does not fit the cycle of the machine, or an empty text."""
+        if cycle in self.cycles:
+            return ""
+        other = next(name for name in TURNS if name != cycle)
+        covers = f"the trace covers {self.period:g} deg, a {cycle} cycle has {360.0 * TURNS[cycle]:g} deg"
+        return f"{covers}; write 'cycle: {other}' at the top"
+
+    def over(self, period: float) -> "Trace":
+        """Return it with laps that are cycles of these degrees; a last turn that has no other is left out."""
+        if self.period == period:
+            return self
+        angles = np.concatenate((self.angles[:-1], self.angles + self.period))
+        return replace(self, angles=angles, samples=joined_in_pairs(self.samples), completed=True)
+
+    def of_cycle(self, number: int, period: float) -> "Trace":
+        """Return one cycle of these degrees alone, counted from 1."""
+        whole = self.over(period)
+        return replace(whole, samples=whole.samples[number - 1 : number])
+
+
+def joined_in_pairs(laps: Array) -> Array:
+    """Return laps (m, n), each with its closing sample, as cycles (m // 2, 2n − 1) of two laps each."""
+    even = laps[: len(laps) // 2 * 2]
+    return np.concatenate((even[0::2, :-1], even[1::2, :-1], even[0::2, :1]), axis=1)
+
+
+class Setting(NamedTuple):
+    """The chamber, and what its pressures count from.
+
+    cycle: degrees of crank angle, 360 or 720; ambient: absolute pressure in Pa; absolute: whether the chamber's own
+    figures are; mirrored: the crank end repeats the head end's figures one stroke later. For many machines numbers are
+    arrays (machines,); the annotations are those of one.
+    """
+
+    mechanism: Mechanism
+    cycle: float
+    head_end: bool
+    ambient: float
+    absolute: bool
+    mirrored: bool = False
+
+    @property
+    def base(self) -> float:
+        """What the chamber's figures less this are gauge pressures, in Pa."""
+        return self.ambient if self.absolute else 0.0
+
+    @property
+    def lift(self) -> float:
+        """What the chamber's figures plus this are absolute pressures, in Pa."""
+        return 0.0 if self.absolute else self.ambient
+
+    def shift(self, trace: Trace) -> float:
+        """Return what is added to an angle of a trace to make it a crank angle, in degrees."""
+        inner, outer = self.mechanism.dead_centres()
+        return float((outer if self.mirrored else inner) - trace.angle_zero)
+
+    def from_dead_centre(self, trace: Trace) -> Array:
+        """Return the angles (n,) in degrees of samples from the chamber's own (firing) dead centre, −½ to ½ cycle."""
+        inner, outer = self.mechanism.dead_centres()
+        after = trace.angles + self.shift(trace) - (inner if self.head_end else outer)
+        return np.asarray(np.remainder(after + self.cycle / 2, self.cycle) - self.cycle / 2)
+
+    def stroke_fraction(self, after: Array) -> Array:
+        """Return the fraction of the stroke from the chamber's smallest volume, so many degrees after it."""
+        inner, outer = self.mechanism.dead_centres()
+        angle = CrankAngle.of(after + (inner if self.head_end else outer))
+        displaced = (self.mechanism.coordinate(angle) - self.mechanism.start) / self.mechanism.stroke
+        return np.asarray(displaced if self.head_end else 1 - displaced)
+
+
+# drift and level
+
+_AROUND = 2.5
+"""Degrees on either side of the pegging angle over which a cycle's level is the mean: one sample is noise."""
+LAST = 2.0
+"""Degrees at either end of the cycle through which lines go, as far as there are three samples in them."""
+
+
+def corrected(trace: Trace, setting: Setting) -> Array:
+    """Return the pressures (m, n) in Pa of all cycles, without drift, and pegged; as the trace counts them."""
+    samples = trace.samples
+    if trace.level:
+        samples = without_drift(trace, samples)
+    return samples if trace.pegging is None else samples + _lift(trace, samples, trace.pegging, setting)
+
+
+def without_drift(trace: Trace, samples: Array) -> Array:
+    """Return samples (m, n) from each of which a line over the cycle is taken off so that it closes."""
+    share = (trace.angles - trace.angles[0]) / trace.period
+    levelled = samples + drift_of(trace, samples)[:, np.newaxis] * share
+    return np.concatenate((levelled[:, :-1], levelled[:, :1]), axis=1) if trace.completed else levelled
+
+
+def drift_of(trace: Trace, samples: Array) -> Array:
+    """Return by how much Pa each cycle (m,) ends too low to go on as it has begun."""
+    return extrapolated(trace.angles, samples) if trace.completed else np.asarray(samples[:, 0] - samples[:, -1])
+
+
+def extrapolated(angles: Array, samples: Array) -> Array:
+    """Return the same in Pa where the closing sample is missing, or not trusted: by lines through both ends."""
+    to_end, from_begin = angles[:-1] - angles[-1], angles[:-1] - angles[0]
+    last, first = max(3, int((to_end > -LAST).sum())), max(3, int((from_begin <= LAST).sum()))
+    before = np.polyfit(to_end[-last:], samples[:, -1 - last : -1].T, 1)[1]
+    after = np.polyfit(from_begin[:first], samples[:, :first].T, 1)[1]
+    return np.asarray(after - before)
+
+
+def _lift(trace: Trace, samples: Array, pegging: KnownLevel, setting: Setting) -> Array:
+    """Return what is added (m, 1) in Pa to every cycle, so that it has the known pressure where that is known."""
+    inner, outer = setting.mechanism.dead_centres()
+    if pegging.angle is not None and pegging.pressure is not None:
+        angle, pressure = inner + pegging.angle, pegging.pressure
+    else:
+        angle = (outer if setting.head_end else inner) + (360.0 if setting.cycle == 720 else 0.0)
+        pressure = setting.ambient if setting.absolute else 0.0
+    turned = trace.angles + setting.shift(trace) - angle
+    away = np.abs(np.remainder(turned + trace.period / 2, trace.period) - trace.period / 2)
+    near = away <= max(_AROUND, float(away.min()))
+    return np.asarray(pressure - samples[:, near].mean(axis=1, keepdims=True))
+
+
+_OF_MEDIAN = 1.4826
+"""Standard deviation over the median of the magnitude, of what is normally distributed."""
+_ENOUGH = 72
+"""Samples in a cycle below which differences show its shape instead of the noise."""
+
+
+def noise_of(pressures: Array) -> float:
+    """Return the standard deviation in Pa of the noise of samples (n,) at equal angles over one cycle.
+
+    From the medians of the second and of the fourth differences, √6 and √70 times as large if noise is all they have;
+    the lesser of both, since of a smooth pressure the fourth ones are less.
+    """
+    around = np.append(pressures, pressures[:4])
+    orders = ((2, 6.0), (4, 70.0)) if len(pressures) >= _ENOUGH else ()
+    spreads = [float(np.median(np.abs(np.diff(around, order)))) / math.sqrt(gain) for order, gain in orders]
+    return _OF_MEDIAN * min(spreads, default=0.0)
+
+
+# exponents
+
+COMPRESSION = -90.0, -40.0
+"""Degrees from the firing dead centre between which inlets are closed and nothing burns yet."""
+EXPANSION = 60.0, 100.0
+"""Degrees from it between which nothing burns any more and outlets are closed still."""
+_FEWEST = 5
+
+
+class Exponent(NamedTuple):
+    """An exponent and its standard error."""
+
+    value: float
+    error: float
+
+
+def volumes_in(setting: Setting, clearance: float, after: Array, stretch: tuple[float, float]) -> tuple[Array, Flags]:
+    """Return the volumes (k,), over that of the stroke, at samples in a stretch of angle, and which they are (n,).
+
+    after (n,): degrees from the dead centre.
+    """
+    inside = (after >= stretch[0]) & (after <= stretch[1])
+    return setting.stroke_fraction(after[inside]) + clearance, inside
+
+
+def exponent(
+    setting: Setting, clearance: float | None, after: Array, absolute: Array, stretch: tuple[float, float]
+) -> Exponent | None:
+    """Return −d ln p/d ln V by least squares over a stretch of angle.
+
+    after (n,): degrees from the dead centre; absolute (n,): pressures in Pa. None without a clearance, with fewer than
+    five samples there, or where the pressure is not above the vacuum.
+    """
+    volumes, inside = volumes_in(setting, clearance or 0.0, after, stretch)
+    if clearance is None or len(volumes) < _FEWEST or not (absolute[inside] > 0).all():
+        return None
+    x, y = (np.log(one) - np.log(one).mean() for one in (volumes, absolute[inside]))
+    slope = float(x @ y / (x @ x))
+    left = y - slope * x
+    return Exponent(0.0 - slope, math.sqrt(float(left @ left / (x @ x)) / (len(x) - 2)))
+
+
+# the dead centre from a motored trace: without combustion the pressure peaks just before it
+
+_HALF = 6.0
+"""Degrees on either side of the peak through which the parabola goes."""
+_SIDES = (20.0, 50.0), (50.0, 80.0)
+"""Degrees from the peak between which both its sides are compared: where something burnt, they are not alike."""
+_LOW = 0.15
+"""Share of the cycle below the level from which pressures are compared."""
+_ALIKE = 0.5, 1.15
+
+
+class Peak(NamedTuple):
+    """The peak of a parabola: its place, the standard error of that, and how many samples it goes through."""
+
+    place: float
+    error: float
+    samples: int
+
+
+def parabola_peak(places: Array, values: Array, top: float, width: float) -> Peak | None:
+    """Return the peak of the parabola of least squares through samples (n,) within `width` of the top one.
+
+    None where they are fewer than five, or have no peak within that width. A single top sample may be noise: each
+    parabola goes on from the peak of the one before.
+    """
+    for _ in range(3):
+        near = np.abs(places - top) <= width
+        along = places[near] - top
+        if len(along) < _FEWEST or len(np.unique(along.round(3))) < 3:
+            return None
+        (bend, slope, _), covariance = np.polyfit(along, values[near], 2, cov=True)
+        if not bend < 0 or abs(slope / (2 * bend)) > width:
+            return None
+        top = top - slope / (2 * bend)
+    by_parameters = np.array([slope / (2 * bend**2), -1 / (2 * bend), 0.0])
+    return Peak(float(top), math.sqrt(max(0.0, by_parameters @ covariance @ by_parameters)), len(along))
+
+
+def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
+    """Return the peak of a motored trace, and by how many degrees it is uncertain; raises RuleError.
+
+    angles (n,) in degrees over one lap; laps (m, n) in Pa, of which the mean is taken, of turns in pairs.
+    """
+    if len(laps) % 2 == 0:
+        angles, laps = np.concatenate((angles[:-1], angles + angles[-1] - angles[0])), joined_in_pairs(laps)
+    pressures, period = laps.mean(axis=0)[:-1], float(angles[-1] - angles[0])
+    top = float(angles[int(np.argmax(pressures))])
+    places = np.remainder(angles[:-1] - top + period / 2, period) - period / 2
+    if np.count_nonzero(np.abs(places) <= _HALF / 2) < _FEWEST:
+        refused(f"has fewer than five samples within {_HALF / 2:g} deg of its peak; measure it finer")
+    whole = parabola_peak(places, pressures, 0.0, _HALF)
+    if whole is None:
+        refused("is no motored trace: it has no peak that a parabola could be laid through")
+    low = float(np.quantile(pressures, _LOW))
+    for near, far in _SIDES:
+        away = np.multiply.outer([-1.0, 1.0], np.linspace(near, far, 301)) + whole.place
+        before, after = np.interp(away, places, pressures, period=period).mean(axis=1) - low
+        if not _ALIKE[0] * before <= after <= _ALIKE[1] * before:
+            times = f"{after / before:.2g} times that" if before > 0 else "not that"
+            rise = f"{near:g} to {far:g} deg after its peak the pressure rises to {times} before"
+            refused(f"is no motored trace: {rise}; name one without combustion")
+    half = parabola_peak(places, pressures, whole.place, _HALF / 2)
+    # of a peak that is no parabola the half of the samples gives another place; where their noise hides it, its
+    # standard error, √8 times that of all, is the bound
+    doubt = math.hypot(whole.error, math.sqrt(8) * whole.error if half is None else whole.place - half.place)
+    return whole._replace(place=top + whole.place), doubt
