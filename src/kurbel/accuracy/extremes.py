@@ -1,9 +1,9 @@
 """Stiff and extreme machines, each with what must come out of it: the table `extremes.tsv`, and how answers are judged.
 
-A line of the table is a case: a name, the text of a machine file, command and key value, or command and column@degrees,
-what is expected, and the units of the last place that a value may miss it by. Expected are `reference`, the value of the
-textbook in mpmath's numbers; a number from a formula, by tests/accuracy; `left out`; or an exit status and words of the
-message.
+A line of the table is a case: a name, the text of a machine file, command and key value, or command and
+column@degrees, what is expected, and by how many units of the last place a value may miss it. Expected are `reference`,
+the value of the textbook in mpmath's numbers; a number, from a formula in tests/accuracy; `left out`; or an exit status
+and words of the message.
 """
 
 import csv
@@ -17,7 +17,7 @@ import numpy as np
 
 from kurbel.accuracy.methods import DIGITS, PRECISE, Number, mp, precise_integrals, roots
 from kurbel.accuracy.textbook import TextbookMotion
-from kurbel.accuracy.trials import STEP, between_corners, speed_line
+from kurbel.accuracy.trials import STEP, by_pieces, speed_line
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 
@@ -120,7 +120,7 @@ def reference(machine: Machine, asked: str) -> Number:
         return speed_line(machine, PRECISE)[int(at) // STEP - 1]
     if command != "motion":
         symbol = {"work": "A_i", "friction_work": "A_f", "dE": "ΔE"}.get(name, "T_max, T_min")
-        found = between_corners(symbol, precise_integrals, 0, machine, PRECISE)
+        found = by_pieces(symbol, precise_integrals, 0, machine, PRECISE)
         return found[("T_max", "T_min").index(name)] if name[0] == "T" else found
     book, omega = TextbookMotion(machine.cylinders[0].mechanism, PRECISE), 2 * mp.pi * mp.mpf(machine.speed or 0.0)
     if name == "stroke":

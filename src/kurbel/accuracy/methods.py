@@ -1,7 +1,7 @@
 """Integrals, extremes and periodic solutions of what is smooth between corners, in floats or in mpmath's numbers.
 
-In floats these are the strong methods that kurbel is compared with; the same searches in 80 digits, with the integrals of
-mpmath, give the references. A function takes angles in radians and, for each, an angle within the piece that it is on.
+In floats these are the strong methods that kurbel is compared with; the same searches in 40 digits, with the sines and
+rules of mpmath, give the references. A function takes angles in radians and, for each, an angle within its piece.
 """
 
 import math
@@ -18,7 +18,7 @@ from kurbel.arrays import Array
 
 mp = mpmath.mp
 DIGITS = 40
-"""Digits of a reference."""
+"""Of a reference."""
 Number = Any
 """A float or an mpf, or an array of either."""
 Function = Callable[[Number, Number], Number]
@@ -40,7 +40,8 @@ class Numbers(NamedTuple):
 
 
 FLOATS = Numbers(np.float64, np.sin, np.cos, np.arcsin, np.sqrt, np.log, math.pi, 1e-15)
-PRECISE = Numbers(*(np.frompyfunc(f, 1, 1) for f in (mp.mpf, mp.sin, mp.cos, mp.asin, mp.sqrt, mp.log)), mp.pi, 1e-30)
+_OF_MPMATH = [np.frompyfunc(one, 1, 1) for one in (mp.mpf, mp.sin, mp.cos, mp.asin, mp.sqrt, mp.log)]
+PRECISE = Numbers._make([*_OF_MPMATH, mp.pi, 1e-30])
 
 
 class NoAnswer(Exception):
@@ -50,7 +51,7 @@ class NoAnswer(Exception):
 def merged(angles: Sequence[Number], numbers: Numbers) -> Array:
     """Return angles in order, without those that differ from the one before by rounding only."""
     found = np.sort(np.array(angles))
-    return found[np.append(True, np.diff(found) > 1e3 * numbers.rounding)]
+    return np.asarray(found[np.append(True, np.diff(found) > 1e3 * numbers.rounding)])
 
 
 def within(edges: Array) -> Array:
@@ -116,9 +117,10 @@ def _weighted(nodes: Array, weights: Array, function: Function, edges: Array) ->
 
 def precise_integrals(function: Function, edges: Array) -> Array:
     """Return integrals by 24 Gauss points of mpmath on each piece, halved until whole and halves agree to 25 digits."""
-    rule = np.array(GaussLegendre(mp).calc_nodes(4, mp.prec)).T
+    nodes, weights = np.array(GaussLegendre(mp).calc_nodes(4, mp.prec)).T
+    rule = partial(_weighted, nodes, weights)
     halved = np.sort([*edges, *within(edges)[:, 0]])
-    wholes, halves = _weighted(*rule, function, edges), _weighted(*rule, function, halved).reshape(-1, 2)
+    wholes, halves = rule(function, edges), rule(function, halved).reshape(-1, 2)
     found = halves.sum(axis=1)
     for piece in np.nonzero(np.abs(found - wholes) > 1e-25 * np.abs(halves).sum())[0]:
         found[piece] = precise_integrals(function, halved[2 * piece : 2 * piece + 3]).sum()
@@ -169,8 +171,8 @@ def _collocation(count: int) -> tuple[Array, Array]:
 def periodic(motor: Motor, edges: Array, count: int, numbers: Numbers) -> tuple[Array, Array]:
     """Return ω in rad/s at the ends of the elements, (n,), and which of them are too long, (n,).
 
-    Collocation with Newton's method over the whole cycle. Corrections are floats: in mpmath's numbers each gains a dozen
-    digits. Raises NoAnswer.
+    Collocation with Newton's method over the whole cycle. Corrections are floats: in mpmath's numbers each gains a
+    dozen digits. Raises NoAnswer.
     """
     nodes, matrix = (numbers.of(one) for one in _collocation(count))
     phi, widths = spread(edges, nodes), np.diff(edges)[:, None]
@@ -201,7 +203,7 @@ def periodic(motor: Motor, edges: Array, count: int, numbers: Numbers) -> tuple[
 
 
 def _arriving(own: Array, passed: Array) -> Array:
-    """Return what arrives at every element (n,) if each sends on own + passed · arriving, and the last one to the first."""
+    """Return what arrives at each element (n,) if each sends on own + passed · arriving, the last one to the first."""
     alpha, beta = 1.0, 0.0
     for part, share in zip(own, passed):
         alpha, beta = share * alpha, share * beta + part

@@ -30,7 +30,7 @@ class Stance(NamedTuple):
 
 
 class Chamber(NamedTuple):
-    """One end of a cylinder with its card: sign 1 or −1, area in m²; lift makes pressures absolute, base gauge, in Pa."""
+    """One end of a cylinder; sign: of its force; area in m²; lift makes pressures absolute, base gauge, in Pa."""
 
     card: Card
     sign: int
@@ -104,7 +104,7 @@ class Forces(NamedTuple):
 
 
 class TextbookCylinder:
-    """Forces of one cylinder, its chambers with cards, if any, cut at the corners into pieces; formula: of the motion."""
+    """Forces of one cylinder, in pieces between the corners of its cards; formula: of the motion."""
 
     def __init__(self, machine: Machine, cylinder: Cylinder, numbers: Numbers = FLOATS, formula: str = "exact") -> None:
         of, self.numbers, self.motion = numbers.of, numbers, TextbookMotion(cylinder.mechanism, numbers, formula)
@@ -135,6 +135,7 @@ class TextbookCylinder:
         for piston in cylinder.pistons:
             absolute = piston.indicator is not None and piston.indicator.absolute
             for end, card in piston.chambers.items():
+                assert isinstance(card, Card)
                 rod = piston.head_end_rod if end == "head_end" else piston.crank_end_rod
                 area = self.numbers.pi / 4 * (self.numbers.of(piston.bore) ** 2 - self.numbers.of(rod) ** 2)
                 lift, base = (0, ambient) if absolute else (ambient, 0)
@@ -154,7 +155,7 @@ class TextbookCylinder:
         return merged(found, numbers)
 
     def _cut(self, edges: Array) -> None:
-        """Take the edges of pieces, and find on each its direction, the lines of its cards and the side of the guide."""
+        """Take the edges of pieces; find on each its direction, the lines of its cards, and the side of the guide."""
         middles = (edges[1:] + edges[:-1]) / 2
         self.edges, self._inside = edges, np.asarray(edges[1:-1] - edges[0], dtype=float)
         since = np.asarray(middles - edges[0], dtype=float)
@@ -257,7 +258,7 @@ class TextbookMachine:
         return total
 
     def inertia(self, phi: Number, at: Number) -> Number:
-        """Return Σ (m x′² + (1 − s) m_r R²) in kg m²: what of a rod is not its reciprocating share s turns with the pin."""
+        """Return Σ (m x′² + (1 − s) m_r R²) in kg m², with the reciprocating share s of the rods."""
         return sum(
             one.mass * one.motion.at(phi - place).slope ** 2 + one.turning_inertia for one, place in self._cylinders
         )

@@ -1,7 +1,7 @@
 """The reports of `kurbel accuracy`: error against run time, and the verdicts on stiff and extreme cases."""
 
 import platform
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from typing import NamedTuple
 
@@ -113,7 +113,7 @@ def accuracy_report(
             rows, lacking = trials.examined(one, degrees, quick)
             parts.append(_part(one, rows, lacking, uncertain, quick))
             beaten += [
-                f"{one.name}, {row.quantity}: {row.method} ({row.points}) is both more exact and faster than kurbel's own"
+                f"{one.name}, {row.quantity}: {row.method} ({row.points}) is more exact and faster than kurbel's own"
                 for row in trials.better(rows)
             ]
     none = "No method listed is both more exact and faster than kurbel's own, beyond noise (20 % of time, 16 u)."
