@@ -16,8 +16,8 @@ import pytest
 from click.testing import CliRunner, Result
 from pages import page_of, page_of_case
 
-from kurbel.cli import kurbel
-from kurbel.cli.report import Progress
+from kurbel.cli import kurbel, pages
+from kurbel.cli.pages import Progress
 from kurbel.machine_file import loads
 from kurbel.machine_file.given import given
 from kurbel.report.keys import every_place, meaning
@@ -26,7 +26,7 @@ from kurbel.report.pictures import pictures
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 
-LARGEST = 600_000
+LARGEST = 500_000
 ATTACK = "<script>alert(1)</script> \x1b[31m & \"'"
 
 
@@ -254,7 +254,6 @@ def test_progress_is_told_to_a_terminal_after_a_second(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Also where the first step itself takes so long, which is told once the second has gone by in its midst."""
-    import threading
 
     late: list[Callable[[], None]] = []
 
@@ -269,7 +268,7 @@ def test_progress_is_told_to_a_terminal_after_a_second(
         def cancel(self) -> None:
             late.clear()
 
-    monkeypatch.setattr(threading, "Timer", AfterASecond)
+    monkeypatch.setattr(pages, "Timer", AfterASecond)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     with Progress("kurbel report") as progress:
         progress("reading and checking")
@@ -291,4 +290,4 @@ def test_equal_cylinders_are_told_once_in_the_input() -> None:
     case = case_of("v8-cross-plane")
     told = checked(case)
     assert sum(one.cylinder for one in told.sections) == 8
-    assert [one.title for one in told.told_once if one.cylinder] == ["left 1–4, right 1–4"]
+    assert [one.title for one in told.shown_once if one.cylinder] == ["left 1–4, right 1–4"]

@@ -4,11 +4,12 @@ The tree is made of dict, list and texts. Numbers stay text: what a text means i
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from kurbel.errors import Fault, Path, RuleError
+from kurbel.quantity import Quantity
 
 Tree = dict[str, Any]
 FAULT_LIMIT = 100
@@ -34,15 +35,18 @@ class _Refused:
 REFUSED = _Refused()
 
 
-@dataclass(frozen=True, eq=False)
-class Birth:
-    """A record that was read: its form, the mapping at a path, the values of its keys, and what was made of them."""
+@dataclass(eq=False)
+class Given:
+    """What was read of a mapping, from which a record is made: its form, the values of its keys, and what became of it.
+
+    values: by key, with others like it and tuples of them in place of records; mapping, path: where it was read.
+    """
 
     form: Any
     mapping: Tree
     path: Path
     values: Tree
-    born: Any
+    made: Any = None
 
 
 class StopReading(Exception):
@@ -52,15 +56,19 @@ class StopReading(Exception):
 class Reading:
     """One pass over a machine file, with the faults found so far.
 
-    folder: what paths in the file are relative to; places: every key of a machine file after the words for its place.
+    folder: what paths in the file are relative to; places: every key of a machine file after the words for its place;
+    key_values: those on which figures may be put, by id.
     """
 
-    def __init__(self, folder: str = "", places: Callable[[], Iterable[tuple[str, str]]] = tuple) -> None:
-        self.folder = folder
+    def __init__(
+        self,
+        folder: str = "",
+        places: Callable[[], Iterable[tuple[str, str]]] = tuple,
+        key_values: Callable[[], Mapping[str, Quantity]] = dict,
+    ) -> None:
+        self.folder, self.key_values = folder, key_values
         self._places = places
         self.faults: list[Fault] = []
-        self.births: list[Birth] | None = None
-        """The records that were made, those inside others first; None where nobody wants to know."""
         self.partly: dict[Path, tuple[Any, ...]] = {}
         """Lists of which some items could not be read, those REFUSED."""
         self.alike: dict[Path, Path] = {}

@@ -5,36 +5,76 @@ crank angle has. `Mechanism` lists what a new one must supply.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache, cached_property, partial
-from typing import Any, ClassVar, NamedTuple
+from functools import cached_property, partial, reduce
+from operator import mul
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Described, Keys
-from kurbel.declared.quantities import Lists
-from kurbel.declared.quantity import Quantity
-from kurbel.errors import Fault, UsageError, refuse
+from kurbel.declared.keys import Described, Rule
+from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import sqrt
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import bracketed_roots
+from kurbel.quantity import Quantity
+
+
+class Loads(Protocol):
+    """What a column that a mechanism adds may use of the cylinder at crank angles (n,), in SI."""
+
+    @property
+    def mechanism(self) -> Any:
+        """The mechanism."""
+
+    @property
+    def posed(self) -> CrankAngle:
+        """The crank angles, with what the connecting rod does there."""
+
+    @property
+    def omega(self) -> Any:
+        """Angular velocity in rad/s; None where no speed is given."""
+
+    @property
+    def P(self) -> Any:
+        """Force along the stroke line."""
+
+    @property
+    def along_rod(self) -> Any:
+        """The part of the rod force along the stroke line: P less friction."""
+
+    @property
+    def N(self) -> Any:
+        """Force on the guide."""
+
+    @property
+    def M_out(self) -> Any:
+        """Moment on what swings."""
 
 
 @dataclass(frozen=True, eq=False)
 class Offer:
     """A column that only some mechanisms have, with its formula.
 
-    factor: takes the mechanism and a crank angle and returns the value in SI over the product of `times`, of the shape
-    of the angle, or None where it is not known. times: what else it is proportional to, as the state of a cylinder
-    names it: `omega` once or twice, or a force such as `along_rod`, `N` or `M_out`.
+    factor: takes the mechanism and a crank angle and returns the value in SI over what it is proportional to, of the
+    shape of the angle, or None where it is not known. It is proportional to ω to the power `omega`, and to what `force`
+    returns. unless: takes the results of the command; where it is true, the column says nothing new there.
     """
 
     quantity: Quantity
     factor: Callable[[Any, CrankAngle], Any]
-    times: tuple[str, ...] = ()
+    omega: int = 0
+    force: Callable[[Loads], Any] | None = None
+    unless: Callable[[Any], bool] | None = None
+
+    def of(self, state: Loads) -> Any:
+        """Return the column of a cylinder at crank angles (n,) in SI; None where it is not known."""
+        given = [state.omega] * self.omega + ([self.force(state)] if self.force else [])
+        factor = self.factor(state.mechanism, state.posed)
+        return None if factor is None or any(one is None for one in given) else reduce(mul, given, 1.0) * factor
 
 
 own_motion = partial(Quantity, commands=("motion",), after="b")
@@ -56,6 +96,10 @@ class KeyOffer:
     quantity: Quantity
     value: Callable[[Any, Any], Any]
     bound: float | None = None
+
+    def of(self, results: Any) -> Any:
+        """Return the key value from the results of its command, which have the mechanism."""
+        return self.value(results.mechanism, results)
 
 
 class Turning(NamedTuple):
@@ -106,8 +150,8 @@ class Sketch:
 class Mechanism(Described):
     """What every mechanism supplies. It serves forces, work and torque through these alone:
 
-    1. `name`, the word in the machine file, `KEYS`, its keys there, and its geometric rules, raised as RuleError at
-       birth; `crank`, the radius that T is referred to;
+    1. `name`, the word in the machine file, fields that are its keys there, and its geometric rules;
+       `crank`, the radius that T is referred to;
     2. `coordinate`, `slope`, `curvature`: q, dq/dφ and d²q/dφ² at a crank angle, pointwise, so that c = q′ω, b = q″ω²
        and torque = P q′. q is a length in m where the output `slides`, an angle in radians where it only swings. It
        rises from `start` at the inner dead centre (0 unless the book counts otherwise) by `stroke`, in the same unit;
@@ -120,7 +164,6 @@ class Mechanism(Described):
     mechanism.
     """
 
-    KEYS: ClassVar[Keys]
     name: ClassVar[str]
     OFFERS: ClassVar[tuple[Offer, ...]] = ()
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = ()
@@ -154,9 +197,10 @@ class Mechanism(Described):
     """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
 
     def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
         own = [one for one in cls.__mro__ if issubclass(one, Mechanism) and one is not Mechanism]
         given = {name for one in own for name in (*vars(one), *getattr(one, "__annotations__", ()))}
-        required = ("name", "KEYS", "crank", "stroke", "dead_centres", "coordinate", "slope", "curvature")
+        required = ("name", "crank", "stroke", "dead_centres", "coordinate", "slope", "curvature")
         missing = [name for name in required if name not in given]
         if missing:
             raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
@@ -276,27 +320,13 @@ class Mechanism(Described):
         """Return closed extremes of `curvature`, where there are any; otherwise they are searched."""
         return ()
 
-    def offered(self, id: str, results: Any) -> Any:
-        """Return a key value that this mechanism offers, from the results of its command; None where it has none."""
-        return next((one.value(self, results) for one in self.KEY_OFFERS if one.quantity.id == id), None)
 
-
-def quantities_of(mechanism: Mechanism) -> Lists:
-    """Return what a machine with this mechanism may have."""
-    return lists_of(mechanism.OFFERS, mechanism.KEY_OFFERS)
-
-
-@cache
-def lists_of(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...]) -> Lists:
-    """Return what machines may have with these columns and key values of mechanisms."""
-    key_values = (offer.quantity._replace(asks=("offered", offer.quantity.id)) for offer in key_offers)
-    return Lists.of(dict.fromkeys(offer.quantity for offer in offers), dict.fromkeys(key_values))
-
-
-def check_lengths(**lengths: float | None) -> None:
-    """Raise RuleError for every length that is not positive and finite; None is one that is not given."""
-    wrong = [name for name, value in lengths.items() if value is not None and not 0 < value < math.inf]
-    refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
+def finite(record: Described, *names: str) -> Iterator[Rule]:
+    """Yield the rule that these lengths are finite; what is not given is None."""
+    for name in names:
+        value = vars(record)[name]
+        if value is not None:
+            yield Rule(name, np.logical_not(np.isfinite(value)), "must be finite")
 
 
 def on_circle(radius: Any, cos: Any, sin: Any, centre: Point = (0.0, 0.0)) -> Point:

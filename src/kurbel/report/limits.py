@@ -10,8 +10,8 @@ from kurbel.declared.forms.figures import MACHINE, Expected, scoped
 from kurbel.declared.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.numerics.extreme import Extreme, number_of
+from kurbel.quantities import every_quantity
 from kurbel.report.alike import grouped, together
 from kurbel.report.commands import subjects_of
 from kurbel.report.frame import Subject, too_large
@@ -78,7 +78,7 @@ def judged(case: Case) -> Iterator[Entry | Unjudged]:
 def _compared_all(
     key: str, name: str, bound: float | Expected, declared: Mapping[str, Quantity], found: Found
 ) -> list[Verdict | Unjudged]:
-    """Compare the values of all that a figure applies to with it, equal ones once."""
+    """Compare the values of all that a figure applies to with it, those equal to nine digits once."""
     quantity, path = declared[scoped(name)[1]], _path(key, name, bound)
     if isinstance(found, KurbelError):
         return [Unjudged(path, type(found)(f"{path_text(path)}: {found}"))]
@@ -87,7 +87,7 @@ def _compared_all(
         return [Unjudged(path, UsageError(f"{path_text(path)}: {text}"))]
     return [
         compared(path, quantity, bound, together([where for where, _ in equal]), equal[0][1])
-        for equal in grouped(found, lambda one: one[1])
+        for equal in grouped(found, lambda one: f"{one[1]:.9g}")
     ]
 
 

@@ -81,6 +81,13 @@ class OneOf(Form):
             return next((form for form in alike if form.suits(value)), alike[0]).read(reading, value, path)
         return refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
 
+    @property
+    def is_number(self) -> bool:
+        return any(form.is_number for form in self.forms)
+
+    def of_numbers(self, numbers: Any) -> Any:
+        return next(form for form in self.forms if form.is_number).of_numbers(numbers)
+
     def numbers(self, texts: Sequence[str]) -> list[float] | None:
         return next((form.numbers(texts) for form in self.forms if form.shape is str and form.suits(texts[0])), None)
 
@@ -89,12 +96,15 @@ class OneOf(Form):
 
 
 class Keyed(Form):
-    """A mapping whose single telling key decides what it becomes: `{constant: …}`, `{trace: …}`; else `otherwise`."""
+    """A mapping whose single telling key decides what it becomes: `{constant: …}`, `{trace: …}`; else `otherwise`.
+
+    texts: what those of the telling keys mean under which no mapping stands.
+    """
 
     shape = dict
 
-    def __init__(self, cases: dict[str, Form], otherwise: Record) -> None:
-        self.cases, self.otherwise = cases, otherwise
+    def __init__(self, cases: dict[str, Form], otherwise: Record, texts: dict[str, str]) -> None:
+        self.cases, self.otherwise, self.texts = cases, otherwise, texts
 
     def expected(self) -> str:
         keys = self.otherwise.expected().removeprefix("a mapping with ")
