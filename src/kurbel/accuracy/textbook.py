@@ -15,7 +15,6 @@ from kurbel.accuracy.methods import FLOATS, Number, Numbers, merged, roots
 from kurbel.arrays import Array, Indices
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.indicator import Card, Line
-from kurbel.machine.masses import Masses
 from kurbel.mechanisms import Mechanism
 
 
@@ -109,7 +108,7 @@ class TextbookCylinder:
     def __init__(self, machine: Machine, cylinder: Cylinder, numbers: Numbers = FLOATS, formula: str = "exact") -> None:
         of, self.numbers, self.motion = numbers.of, numbers, TextbookMotion(cylinder.mechanism, numbers, formula)
         self.turns, self.omega = CYCLES[machine.cycle_of(cylinder)], 2 * numbers.pi * of(machine.speed or 0.0)
-        self._weigh(cylinder.masses or Masses(0.0), machine.lean_of(cylinder))
+        self._weigh(cylinder, machine.lean_of(cylinder))
         friction = cylinder.friction
         self._crosshead = of((friction and cylinder.mechanism.has_rod and friction.crosshead) or 0.0)
         self._rings = of((friction and friction.constant) or 0.0)
@@ -122,10 +121,11 @@ class TextbookCylinder:
             sides, _ = roots(lambda phi, at: self.forces(phi, at).lift, self.edges, numbers)
             self._cut(merged([*self.edges, *sides], numbers))
 
-    def _weigh(self, masses: Masses, lean: float | None) -> None:
-        of, rod = self.numbers.of, masses.connecting_rod
+    def _weigh(self, cylinder: Cylinder, lean: float | None) -> None:
+        of, masses = self.numbers.of, cylinder.masses
+        rod = masses.connecting_rod if masses else None
         mass, share = (of(rod.mass), of(rod.share)) if rod else (of(0.0), of(0.0))
-        self.mass = of(masses.parts) + mass * share
+        self.mass = of(masses.parts if masses else 0.0) + mass * share
         self.turning_inertia = mass * (1 - share) * self.motion.crank**2
         angle = of(lean or 0.0) * self.numbers.pi / 180
         weight = self.mass * of(0.0 if lean is None else "9.80665")

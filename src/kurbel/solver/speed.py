@@ -24,7 +24,9 @@ from kurbel.numerics.arithmetic import every
 from kurbel.numerics.collocation import Standstill, periodic
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Pieces, Sample, refined
+from kurbel.quantity import key_value
 from kurbel.solver.effort import TurningEffort
+from kurbel.solver.figures import Results
 
 _SLOWEST = 0.01
 """Of the nominal speed: a machine under a constant load that falls below it stands still."""
@@ -68,7 +70,7 @@ class SpeedLaw(NamedTuple):
         return mean * np.expm1(half * logarithm), mean * half * np.exp((half - 1) * logarithm)
 
 
-class SpeedLine:
+class SpeedLine(Results):
     """The speed of the crank shaft over the turn, by u = ω/ω_n − 1 on pieces (nodes, pieces) of the cycle.
 
     mean (n,): mean speed over ω_n. failed (n,): which of a batch have none; the only machine raises UsageError, or
@@ -96,25 +98,25 @@ class SpeedLine:
     def _extreme(self, u: Array, degrees: Array) -> Extreme:
         return Extreme(self.result(self.effort.omega * (1 + u)), self.result(np.mod(degrees, self.pieces.cycle)))
 
-    @property
+    @key_value("δ", "ratio")
+    def delta(self) -> Any:
+        """Coefficient of speed fluctuation, (ω_max − ω_min)/ω_m."""
+        return self.result((self._ends[0] - self._ends[2]) / self._mean)
+
+    @key_value("ω_max", "angular_velocity")
     def omega_max(self) -> Extreme:
-        """Largest angular velocity in rad/s."""
+        """Largest angular velocity."""
         return self._extreme(*self._ends[:2])
 
-    @property
+    @key_value("ω_min", "angular_velocity")
     def omega_min(self) -> Extreme:
-        """Smallest angular velocity in rad/s."""
+        """Smallest angular velocity."""
         return self._extreme(*self._ends[2:])
 
-    @property
+    @key_value("ω_m", "angular_velocity")
     def omega_mean(self) -> Any:
-        """Mean angular velocity over time in rad/s."""
+        """Mean angular velocity over time."""
         return self.result(self.effort.omega * self._mean)
-
-    @property
-    def delta(self) -> Any:
-        """δ = (ω_max − ω_min)/ω_mean."""
-        return self.result((self._ends[0] - self._ends[2]) / self._mean)
 
     @property
     def growth(self) -> Any:
@@ -182,14 +184,12 @@ class RigidLine(SpeedLine):
             if effort.count is None:
                 found.refuse()
             failed = failed | found.failed | (law.mean == 0)  # of a batch: its load is nothing on the mean
-            pieces, (u, lag) = refined(
-                found.pieces, self._speeds(found.pieces, found.samples[0], np.zeros(len(failed)))
-            )
+            sample = self._speeds(found.pieces, found.samples[0], np.zeros(len(failed)))
+            pieces, (u, lag) = refined(found.pieces, sample)
         else:
             pieces, u, lag = self._under_constant_load(effort)
-        super().__init__(
-            effort, pieces, u, 1 / (1 + pieces.mean(lag)), failed, -1.0 if law else 1.000001 * _SLOWEST - 1
-        )
+        least_u = -1.0 if law else 1.000001 * _SLOWEST - 1
+        super().__init__(effort, pieces, u, 1 / (1 + pieces.mean(lag)), failed, least_u)
 
     def _speeds(self, source: Pieces, energy: Array, constant: Array) -> Sample:
         """Return what samples u and ω_n/ω − 1, of which the mean over time is made; energy: z less a constant in J."""
@@ -208,19 +208,18 @@ class RigidLine(SpeedLine):
         That mean falls with C and is convex: Newton's method from below, where the machine all but stands still. One
         that turns too fast even there stays there.
         """
-        pieces, source, E = effort.pieces, effort.pieces, effort.true_excess.E
+        pieces, E = effort.pieces, effort.true_excess.E
         while True:
-            excess, energy = pieces.carried(E, source), self._equation.known(pieces)[1]
+            excess, energy = pieces.carried(E, effort.pieces), self._equation.known(pieces)[1]
             least = np.maximum.reduceat(((_SLOWEST**2 - 1) * energy - excess).max(axis=0), pieces.first)
             swing, constant = pieces.largest(excess), least
             for _ in range(100):
-                ratio = np.maximum((excess + pieces.of(constant)) / energy, _SLOWEST**2 - 1)
-                root = np.sqrt(1 + ratio)
-                lag, slope = pieces.mean(-ratio / (root * (1 + root))), pieces.mean(-0.5 / (root**3 * energy))
-                constant, before = np.maximum(constant - lag / slope, least), constant
+                _, lag = self._speeds(effort.pieces, E, constant)(pieces)
+                slope = pieces.mean(-0.5 * (1 + lag) ** 3 / energy)
+                constant, before = np.maximum(constant - pieces.mean(lag) / slope, least), constant
                 if (np.abs(constant - before) <= 1e-15 * swing).all():
                     break
-            fine, (u, lag) = refined(pieces, self._speeds(source, E, constant))
+            fine, (u, lag) = refined(pieces, self._speeds(effort.pieces, E, constant))
             if fine is pieces:
                 return pieces, u, lag
             pieces = fine
