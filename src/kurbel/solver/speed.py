@@ -96,7 +96,7 @@ class SpeedLine(Results):
         return self.effort.result(np.where(self.failed, np.nan, values))
 
     def _extreme(self, u: Array, degrees: Array) -> Extreme:
-        return Extreme(self.result(self.effort.omega * (1 + u)), self.result(np.mod(degrees, self.pieces.cycle)))
+        return Extreme(self.result(self.effort.omega * (1 + u)), self.result(degrees))
 
     @key_value("δ", "ratio")
     def delta(self) -> Any:
