@@ -89,11 +89,10 @@ class ElasticCoupling(SpeedLine):
         u = y[1] / pieces.of(own * effort.omega**2)
         super().__init__(effort, pieces, u, 1 + pieces.mean(u), failed | self._found.failed, -1.0)
 
-    def samples_of(self, column: str) -> tuple[Pieces, Array] | None:
-        """Return the samples of torque in N m, ω in rad/s or α in rad/s² with their pieces; None for another column."""
-        if column == "M_coupling":
-            return self.pieces, self.pieces.of(self.effort.mean) + self._torque
-        return super().samples_of(column)
+    @property
+    def torque(self) -> tuple[Pieces, Array]:
+        """Samples of the torque in the coupling in N m with their pieces."""
+        return self.pieces, self.pieces.of(self.effort.mean) + self._torque
 
     @property
     def alpha(self) -> tuple[Pieces, Array]:
@@ -102,8 +101,7 @@ class ElasticCoupling(SpeedLine):
 
     @cached_property
     def _torque_extremes(self) -> Extremes:
-        torque = self.pieces.of(self.effort.mean) + self._torque
-        return self.pieces.extremes(torque[None]).each(self.result)[0]
+        return self.pieces.extremes(self.torque[1][None]).each(self.result)[0]
 
     @property
     def natural_order(self) -> Any:
