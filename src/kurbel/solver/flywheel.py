@@ -46,7 +46,7 @@ _DOUBLINGS = 30
 class TurningState(AtAngles):
     """The columns of the whole machine.
 
-    shown: makes of samples on pieces what is wanted, values at crank angles φ (n,) in degrees, or the samples themselves.
+    shown: makes of samples on pieces what is wanted, values at crank angles φ (n,) in degrees or the samples.
     """
 
     commands = ("flywheel",)
