@@ -13,6 +13,7 @@ from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.report.commands import subjects_of
+from kurbel.report.frame import too_large
 from kurbel.solver.case import Case
 
 
@@ -109,8 +110,6 @@ def _answer(subject: Any, quantity: Quantity, unasked: bool = False) -> Any:
 
 def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
     """Return the values of a machine alone, in SI, a number, a tuple or None; raises KurbelError."""
-    from kurbel.report.frame import too_large
-
     found = answers_in(Case(machine), answers)
     for one, value in zip(answers, found):
         if value is not None and not np.isfinite(value).all():
