@@ -16,13 +16,13 @@ from kurbel.declared.factors import FACTORS
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Described, Key, Keys, required
 from kurbel.declared.kinds import KINDS, MOST_ITEMS, MOST_POINTS, range_of
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.shaft import STRESSES
 from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.declared.units import kinds, unit_names
 from kurbel.machine import Machine
-from kurbel.mechanisms.kinds import every_quantity
+from kurbel.quantities import every_quantity
+from kurbel.quantity import Quantity, by_id
 
 _WRITTEN = "Written from the declarations by `pytest --rewrite tests/test_documents.py`; do not edit by hand."
 
@@ -79,15 +79,12 @@ def _cell(text: str) -> str:
 
 def _by_command(declared: Iterable[Quantity]) -> Iterator[str]:
     """Yield a table for each command, of the quantities of which it is the first in the order of the commands."""
-    left = {one.id: one for one in declared}
+    given, listed = list(declared), set[str]()
     for command in COMMANDS:
-        own = [one for one in left.values() if command in one.commands]
+        own = by_id(*(one for one in given if command in one.commands and one.id not in listed))
+        listed |= set(own)
         if own:
-            yield f"## kurbel {command}\n\n{_quantities(own)}"
-        for one in own:
-            del left[one.id]
-    if left:
-        yield f"## Asked for by name\n\n{_quantities(left.values())}"
+            yield f"## kurbel {command}\n\n{_quantities(own.values())}"
 
 
 def _others() -> Iterator[str]:

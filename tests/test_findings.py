@@ -14,9 +14,9 @@ from click.testing import CliRunner
 from kurbel import load, loads, solve
 from kurbel.cli import kurbel
 from kurbel.declared.forms.figures import Expected
-from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import by_id
 from kurbel.errors import UsageError
+from kurbel.quantities import every_quantity
 from kurbel.report.check import checked
 from kurbel.report.commands import COMMANDS, report_of
 from kurbel.report.frame import Frame
@@ -58,7 +58,7 @@ def test_what_overflows_is_neither_kept_nor_broken() -> None:
 @pytest.mark.parametrize("name", ["mean_pressure", "T_min", "energy_residual"])
 def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
     for figure, key in ((1.0, "limits"), (Expected(0.0, 1.0), "expect")):
-        found = compared((key, name), by_id(*COMMON.all_key_values)[name], figure, "cylinder 1", value)
+        found = compared((key, name), by_id(*every_quantity().all_key_values)[name], figure, "cylinder 1", value)
         assert isinstance(found, Unjudged)
         assert isinstance(found.error, UsageError)
         assert f"{key}.{name} (cylinder 1): {name} is too large to compute with" in str(found.error)

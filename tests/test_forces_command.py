@@ -14,7 +14,7 @@ from click.testing import CliRunner, Result
 from imported import modules_after
 from kurbel.cli import kurbel
 from kurbel.declared.quantity import by_id
-from kurbel.mechanisms.kinds import every_quantity
+from kurbel.quantities import every_quantity
 from representative import shipped
 
 pytestmark = pytest.mark.usefixtures("solved_once")

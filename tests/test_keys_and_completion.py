@@ -41,7 +41,7 @@ def test_every_key_of_the_shipped_machines_is_listed() -> None:
 
 
 def key_values() -> set[str]:
-    from kurbel.mechanisms.kinds import every_quantity
+    from kurbel.quantities import every_quantity
 
     return {one.id for one in every_quantity().all_key_values}
 

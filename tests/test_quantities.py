@@ -11,61 +11,24 @@ from click.testing import CliRunner
 
 from kurbel import loads
 from kurbel.cli import kurbel
-from kurbel.declared.quantities import COMMON
-from kurbel.declared.quantity import Quantity, ambiguity, by_id, called, placed
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.masses import Masses
 from kurbel.mechanisms import Mechanism
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.quantities import every_quantity
+from kurbel.quantity import Quantity, ambiguity, by_id, called, for_each, key_value, placed
 from kurbel.report.commands import report_of
 from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
-from kurbel.solver.balance import BookBalance, LocomotiveBalance, MachineBalance
-from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
-from kurbel.solver.coupling import ElasticCoupling
-from kurbel.solver.flywheel import MachineTurning
-from kurbel.solver.forces import Brake, CylinderForces
-from kurbel.solver.indicated import Indicated
-from kurbel.solver.motion import Motion
-from kurbel.solver.state import State
-from kurbel.solver.stress import CrankshaftStrength
+from kurbel.solver.figures import Results, part
 from representative import case_of
 from toy_mechanism import HarmonicCam
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
 CONFIGS = Path(__file__).parent.parent / "configs"
-RESULTS = {
-    "motion": (Motion,),
-    "forces": (CylinderForces, Motion, Indicated, Brake),
-    "flywheel": (MachineTurning, ElasticCoupling, Brake),
-    "stress": (CrankshaftStrength,),
-    "balance": (MachineBalance, LocomotiveBalance, BookBalance),
-    "bearings": (Bearing,),
-}
-
-
-@pytest.mark.parametrize("command", RESULTS)
-def test_every_key_value_has_a_definition(command: str) -> None:
-    elsewhere = {"P_dead_centre"}  # of one cylinder, in the report on the whole machine
-    for id, quantity in every_quantity().key_values(command).items():
-        names = {id, *quantity.asks[:1]}
-        assert id in elsewhere or any(hasattr(one, name) for one in RESULTS[command] for name in names), id
-
-
-def test_every_common_column_has_a_definition() -> None:
-    """Of one cylinder an attribute of its state; of the whole machine a formula, whatever of it the machine has."""
-    case = case_of("gas-engine")
-    whole = {"flywheel": case.flywheel, "stress": case.stress, "balance": case.balance}
-    formulas = {name: set(results.at([0.0]).formulas) for name, results in whole.items()}
-    formulas["bearings"] = {id for part in case.bearings.parts for id in part.at([0.0]).formulas}
-    known = {"motion": set(dir(State)), "forces": set(dir(State)), **formulas}
-    for command, defined in known.items():
-        for id, column in COMMON.columns(command).items():
-            assert id == "phi" or (column.asks[0] if column.asks else id) in defined, id
 
 
 def test_every_quantity_stands_in_the_list_of_a_command() -> None:
@@ -75,10 +38,59 @@ def test_every_quantity_stands_in_the_list_of_a_command() -> None:
 
 
 def test_extremes_derive_from_the_column() -> None:
-    found = by_id(*COMMON.all_key_values)
+    found = by_id(*every_quantity().all_key_values)
     assert found["S_max"][:4] == ("S_max", "S_max", "force", "Largest rod force")
     assert found["P_start_min"].symbol == "P_0,min"
     assert found["M_max"].commands == ("flywheel",)
+
+
+def test_rows_are_attributes_that_are_computed_once() -> None:
+    class Pump(Results):
+        """Whatever."""
+
+        command, calls = "forces", 0
+
+        @key_value("V_s", "volume", unless=lambda pump: pump.calls > 1)
+        def swept(self) -> float:
+            """Volume that the piston of an own pump
+            sweeps.
+
+            Not in the sentence.
+            """
+            self.calls += 1
+            return 0.5
+
+    class Plant(Results):
+        """A part brings its rows to its place."""
+
+        command = "flywheel"
+
+        @key_value("n_1", "ratio")
+        def first(self) -> float:
+            """First."""
+            return 1.0
+
+        @part(Pump)
+        def pump(self) -> Pump | None:
+            """A pump."""
+            return Pump() if self.first else None
+
+        @for_each({"left": ("l", "on the left"), "right": ("r", "on the right")}, "n_*", "ν_*", "ratio")
+        def side(self, which: str) -> int:
+            """Number of what is *."""
+            return len(which)
+
+    plant = Plant()
+    assert list(plant.rows.key_values) == ["first", "swept", "n_left", "n_right"]
+    assert [plant["V_s"].value, plant["n_left"].value, plant.side("right")] == [0.5, 4, 5]
+    assert plant["V_s"].quantity.text == "Volume that the piston of an own pump sweeps"
+    assert plant["V_s"].quantity.commands == ("forces", "flywheel")
+    assert plant["ν_r"].quantity.text == "Number of what is on the right"
+    assert plant.swept == plant.pump.swept == 0.5  # type: ignore[attr-defined, union-attr]
+    assert plant.pump is not None
+    assert plant.pump.calls == 1
+    plant.pump.calls = 2
+    assert plant.rows.key_values["swept"].unless(plant)  # type: ignore[misc]
 
 
 def test_what_stands_after_another_keeps_its_order() -> None:

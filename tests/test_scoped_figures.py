@@ -13,7 +13,7 @@ from click.testing import CliRunner
 import kurbel
 from kurbel.cli import kurbel as command
 from kurbel.errors import KurbelError
-from kurbel.mechanisms.kinds import every_quantity
+from kurbel.quantities import every_quantity
 from schemas import whole_schema
 
 CARD = "{constant: {expansion: 2 bar, compression: 0 bar}}"

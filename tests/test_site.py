@@ -16,7 +16,7 @@ import pytest
 from browser import CHROMIUM, dumped, served
 from kurbel.cli import COMMANDS, kurbel
 from kurbel.declared.units import kinds, unit_names
-from kurbel.mechanisms.kinds import every_quantity
+from kurbel.quantities import every_quantity
 from kurbel.report.keys import every_place
 
 ROOT = Path(__file__).parent.parent

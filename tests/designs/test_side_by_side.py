@@ -23,9 +23,9 @@ from kurbel.machine.piston import Piston
 from kurbel.machine.rectangle import Rectangle
 from kurbel.machine.resistance import RamForce
 from kurbel.machine.variants import Lot
-from kurbel.mechanisms import quantities_of
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.yoke_frame import YokeFrame
+from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State
 from random_cylinders import random_cylinder
@@ -61,13 +61,13 @@ def varied(cylinder: Cylinder, random: np.random.Generator) -> Cylinder:
 
 
 def asked_of(machine: Machine) -> list[Answer]:
-    known = quantities_of(machine.cylinders[0].mechanism).key_values("forces").values()
+    known = Case(machine).cylinders[0].lists.key_values("forces").values()
     return [Answer(one, "forces", machine.cylinders[0].name) for one in known if not one.residual]
 
 
 def with_angle(one: Answer) -> list[Answer]:
     """A key value, and the angle of an extreme."""
-    return [one, one._replace(angle=True)] if one.quantity.asks[:1] == ("extremes_of",) else [one]
+    return [one, one._replace(angle=True)] if one.quantity.id.rpartition("_")[2] in ("max", "min", "peak") else [one]
 
 
 def together(machines: list[Machine], asked: list[Answer]) -> list[Values]:

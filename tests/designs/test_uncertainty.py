@@ -17,18 +17,18 @@ from click.testing import CliRunner
 
 import kurbel
 from kurbel.cli import kurbel as command
-from kurbel.declared.quantities import COMMON
 from kurbel.designs import uncertainty
 from kurbel.designs.columns import Answer
 from kurbel.designs.uncertainty import Uncertain, Uncertainty, data_uncertainty
 from kurbel.machine_file import source
+from kurbel.quantities import every_quantity
 from kurbel.traces import read as trace_files
 
 WATERWORKS = Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml"
 
 
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
-    known = COMMON.key_values(command)
+    known = every_quantity().key_values(command)
     asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
     found = Uncertainty(source.read(WATERWORKS), spreads).of(asked)
     return {one.answer.quantity.id: one for one in found}
@@ -178,7 +178,7 @@ def test_what_is_answered_alone_is_sampled_less_and_its_trace_read_once(
             told.append(len(part))
             yield part
 
-    known = COMMON.key_values("forces")
+    known = every_quantity().key_values("forces")
     asked = [Answer(known[id], "forces", "cylinder 1") for id in ("mean_pressure", "n_expansion", "T_max")]
     spreads = {"indicator.head_end.trace.angle_zero": "0.6 deg"}
     found = Uncertainty(source.read(_rig(tmp_path)), spreads).of(asked, counted)

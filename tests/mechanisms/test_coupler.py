@@ -76,7 +76,7 @@ def expected(far: object, crank: str, along: mp.mpf, across: mp.mpf, degrees: fl
 def test_the_rod_and_a_point_of_it(name: str) -> None:
     text, offset = SLIDERS[name]
     s = cylinder(text + POINT).at(ANGLES)
-    found = np.array([s.x_point, s.y_point, s.v_point, s.b_point, -s.psi, -s.psi_dot, -s.psi_ddot]).T
+    found = np.array([s.x_point, s.y_point, s.v_point, s.b_point, -s.psi, -s["psi_dot"], -s["psi_ddot"]]).T
     for row, degrees in zip(found, ANGLES):
         along, across = mp.mpf("0.5"), mp.mpf("0.12")
         assert row == pytest.approx(expected(crosshead_of(offset), "0.3", along, across, degrees), rel=1e-12, abs=1e-12)
@@ -84,7 +84,7 @@ def test_the_rod_and_a_point_of_it(name: str) -> None:
 
 def test_the_coupler_of_the_four_bar_and_a_point_of_it() -> None:
     s = cylinder(FOUR_BAR + "point: {from: rocker_pin, along: 50 mm, across: -80 mm}\n").at(ANGLES)
-    turn = [s.theta_coupler, s.theta_coupler_dot, s.theta_coupler_ddot]
+    turn = [s["theta_coupler"], s["theta_coupler_dot"], s["theta_coupler_ddot"]]
     found = np.array([s.x_point, s.y_point, s.v_point, s.b_point, *turn]).T
     for row, degrees in zip(found, ANGLES):
         along, across = mp.mpf("0.25"), mp.mpf("-0.08")
@@ -105,7 +105,7 @@ def test_without_a_speed_only_its_place_is_told() -> None:
 
 def test_at_rest_it_stands() -> None:
     s = cylinder("speed: 0 rpm\ncrank: 300 mm\nrod: 1300 mm\n" + POINT).at(ANGLES)
-    assert (s.v_point.tolist(), s.b_point.tolist(), s.psi_dot.tolist()) == ([0.0] * 7, [0.0] * 7, [0.0] * 7)
+    assert (s.v_point.tolist(), s.b_point.tolist(), s["psi_dot"].tolist()) == ([0.0] * 7, [0.0] * 7, [0.0] * 7)
 
 
 def test_one_end_of_the_rod_at_a_time() -> None:

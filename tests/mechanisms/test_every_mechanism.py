@@ -236,7 +236,7 @@ def test_forces_and_speeds_are_those_of_the_free_body(machine):
     expected = FREE_BODIES[type(machine)](machine, np.exp(1j * np.radians(degrees)), load_)
     per_angle = {"c_block": 1, "theta_dot": 1, "bx_coupler": 2, "by_coupler": 2}
     for id, values in expected.items():
-        found = getattr(state, id) / (3 * math.pi) ** per_angle.get(id, 0)
+        found = state[id] / (3 * math.pi) ** per_angle.get(id, 0)
         if id == "x":
             found, values = found - found[0], values - values[0]
         if id == "theta":
@@ -249,7 +249,7 @@ def test_the_force_on_the_pin_has_the_parts_t_and_d(machine):
     """|F| = |P| hypot(q′/R, D/P): what pushes the pin is one force, of the block or of the rod."""
     degrees = np.array(ANGLES)
     state = loaded(machine).cylinders[0].at(degrees)
-    offered = [force for id in ("F_pin", "S") if (force := getattr(state, id, None)) is not None]
+    offered = [force for id in ("F_pin", "S") if (force := state[id]) is not None]
     assert len(offered) == (state.D is not None)
     if not offered:
         return

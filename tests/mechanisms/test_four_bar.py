@@ -224,7 +224,7 @@ def test_drag_link_in_a_machine_file():
     assert any("drag link" in note for note in report.notes)
     assert case.cylinders[0].drive.resistance_work == pytest.approx(-900 * math.tau, rel=1e-15)
     # mean of θ̇ over a turn is ω: both shafts make one turn in a second
-    turn = case.cylinders[0].at(np.arange(360.0)).theta_dot
+    turn = case.cylinders[0].at(np.arange(360.0))["theta_dot"]
     assert turn.mean() == pytest.approx(math.tau, rel=1e-12)
 
 

@@ -48,7 +48,7 @@ def test_every_point_is_the_solvers(name: str, id: str) -> None:
         panel = panels_with(drawn(name, id)[0], symbol)[-1 if symbol == "P" else 0]
         for degrees, y in curve_of(panel, symbol).pieces():
             state = results.at(degrees, on_its_side(degrees))
-            assert (y == convert(np.asarray(getattr(state, quantity.id)), quantity.kind, panel.y.unit)).all()
+            assert (y == convert(np.asarray(state[quantity.id]), quantity.kind, panel.y.unit)).all()
 
 
 @pytest.mark.parametrize("name", LINES)

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from kurbel.cli import kurbel
-from kurbel.mechanisms.kinds import every_quantity
+from kurbel.quantities import every_quantity
 from kurbel.render import Look
 from kurbel.render.formats import render
 from kurbel.render.markup import Latex

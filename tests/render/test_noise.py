@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from kurbel.declared.quantities import COMMON
 from kurbel.declared.quantity import by_id
 from kurbel.machine_file import loads
+from kurbel.quantities import every_quantity
 from kurbel.render import Look
 from kurbel.render.formats import render
 from kurbel.report.check import checked
@@ -18,7 +18,7 @@ from kurbel.report.tables import Column, Part, Report
 from kurbel.solver.case import Case
 
 CONFIGS = Path(__file__).parents[2] / "configs"
-KEY_VALUES = by_id(*COMMON.all_key_values)
+KEY_VALUES = by_id(*every_quantity().all_key_values)
 ROUNDING = (0.0, 5e-324, -8.568e-17, 9.99e-15)
 LOOKS = (Look(), Look(layout="rows"), Look(digits=17), Look(comma=True), Look(encoding="ascii"), Look("markdown"))
 

@@ -63,14 +63,10 @@ def words(text: str) -> tuple[str, ...]:
 
 def columns(text: str) -> tuple[str, ...]:
     """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
-    from kurbel.declared.quantities import COLUMNS
+    from kurbel.quantities import every_quantity
+    from kurbel.quantity import ambiguity, called, joined
 
     named = words(text)
-    if all(word in COLUMNS for word in named):
-        return named
-    from kurbel.declared.quantity import ambiguity, called, joined
-    from kurbel.mechanisms.kinds import every_quantity
-
     known = [column for column in every_quantity().all_columns if column.commands]
 
     def only(name: str) -> str:
@@ -157,7 +153,7 @@ def complete_override(ctx: click.Context, param: click.Parameter, incomplete: st
 
 def complete_columns(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
     """Return the columns of the command that may follow those named already."""
-    from kurbel.mechanisms.kinds import every_quantity
+    from kurbel.quantities import every_quantity
 
     named, comma, begun = incomplete.rpartition(",")
     known = [one for one in every_quantity().columns(ctx.info_name or "") if one not in named.split(",")]

@@ -1,15 +1,9 @@
 """The quantities of `kurbel table`: the rows of Zusammenstellung 112."""
 
-from kurbel.declared.quantity import Quantity, by_id
+from kurbel.quantity import PHI, Quantity, by_id
 
-PHI = Quantity(
-    "phi",
-    "φ",
-    "angle",
-    "Crank angle from the inner dead centre, in the sense of rotation",
-    commands=("motion", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
-)
-"""What these are told over, and so is all else."""
+__all__ = ["FACTORS", "PHI"]
+
 FACTORS = by_id(
     Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R"),
     Quantity("velocity_factor", "sin(φ+ψ)/cos ψ", "ratio", "c over v, and T over P"),

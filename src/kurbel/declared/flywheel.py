@@ -9,9 +9,7 @@ _flywheel = partial(Quantity, commands=_FLYWHEEL)
 
 FLYWHEEL_COLUMNS = (
     _flywheel("T_inertia", "T_b", "force", "Share of the inertia forces in T, at uniform rotation (Tolle)"),
-    Quantity(
-        "M", "M", "torque", "Torque on the shaft", commands=("forces", *_FLYWHEEL), extremes=_FLYWHEEL, called="torque"
-    ),
+    Quantity("M", "M", "torque", "Torque on the shaft", commands=_FLYWHEEL, extremes=_FLYWHEEL, called="torque"),
     _flywheel("E", "E", "energy", "Excess of the work of M over that of the resistance since angle 0"),
     _flywheel("omega", "ω", "angular_velocity", "Angular velocity of the shaft"),
     _flywheel(

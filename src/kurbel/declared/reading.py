@@ -4,11 +4,12 @@ The tree is made of dict, list and texts. Numbers stay text: what a text means i
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from kurbel.errors import Fault, Path, RuleError
+from kurbel.quantity import Quantity
 
 Tree = dict[str, Any]
 FAULT_LIMIT = 100
@@ -55,11 +56,17 @@ class StopReading(Exception):
 class Reading:
     """One pass over a machine file, with the faults found so far.
 
-    folder: what paths in the file are relative to; places: every key of a machine file after the words for its place.
+    folder: what paths in the file are relative to; places: every key of a machine file after the words for its place;
+    key_values: those on which figures may be put, by id.
     """
 
-    def __init__(self, folder: str = "", places: Callable[[], Iterable[tuple[str, str]]] = tuple) -> None:
-        self.folder = folder
+    def __init__(
+        self,
+        folder: str = "",
+        places: Callable[[], Iterable[tuple[str, str]]] = tuple,
+        key_values: Callable[[], Mapping[str, Quantity]] = dict,
+    ) -> None:
+        self.folder, self.key_values = folder, key_values
         self._places = places
         self.faults: list[Fault] = []
         self.partly: dict[Path, tuple[Any, ...]] = {}

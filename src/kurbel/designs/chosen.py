@@ -15,8 +15,8 @@ from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.sweep import KEPT, Head, Row
 from kurbel.errors import UnitError, UsageError
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
+from kurbel.quantities import every_quantity
 
 _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "<=": operator.le,

@@ -9,9 +9,9 @@ from kurbel.declared.quantity import Quantity, ambiguity, called, joined
 from kurbel.declared.reading import shown
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
+from kurbel.quantities import every_quantity
 from kurbel.report.commands import subjects_of
 from kurbel.report.frame import too_large
 from kurbel.solver.case import Case

@@ -28,7 +28,6 @@ from kurbel.declared.forms import (
 )
 from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.forms.figures import MACHINE, Expected, scoped
-from kurbel.declared.quantity import Quantity, by_id
 from kurbel.declared.reading import REFUSED, shown
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.errors import Fault, RuleError, refuse
@@ -41,7 +40,6 @@ from kurbel.machine.origin import Origin
 from kurbel.machine.shaft_line import ShaftLine, ShaftPart
 from kurbel.machine.shaft_list import line_of, shaft_faults
 from kurbel.machine.turning import Coupling, Effort, Harmonics, Load
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
@@ -49,10 +47,6 @@ __all__ = ["CYCLES", "Cylinder", "Machine"]
 FORMAT = 1
 """Number of the machine-file format that this version reads."""
 STANDARD_ATMOSPHERE = 101325.0
-
-
-def _key_values() -> dict[str, Quantity]:
-    return by_id(*every_quantity().all_key_values)
 
 
 def _names(cylinders: Sequence[Cylinder]) -> list[str]:
@@ -183,14 +177,14 @@ class Machine(Record):
         also=("shaft_line", "torsion"),
     )
     limits: tuple[tuple[str, float], ...] = field(
-        Limits(_key_values),
+        Limits(),
         "Bounds for key values, checked by `kurbel check`: of each cylinder that has one, else of the machine; "
         "`machine.T_max` of the whole machine, `NAME.T_max` of one cylinder",
         default=(),
         absent="none",
     )
     expect: tuple[tuple[str, Expected], ...] = field(
-        Expectations(_key_values),
+        Expectations(),
         "Figures that key values are to meet, compared by `kurbel check`, with the names of `limits`",
         default=(),
         absent="none",

@@ -1,7 +1,7 @@
 """From a machine file to a `Machine`: text, tree, records; or one error with all faults."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,8 @@ from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.zeroed_units import without_zeros
+from kurbel.quantities import every_quantity
+from kurbel.quantity import Quantity, by_id
 
 if TYPE_CHECKING:
     from kurbel.machine_file.overrides import Override
@@ -46,7 +48,12 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
 
 def reading_of(origin: Origin) -> Reading:
     """Return a pass over a file that has not begun."""
-    return Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"))
+    return Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"), key_values)
+
+
+def key_values() -> Mapping[str, Quantity]:
+    """Return the key values on which a machine file may put limits, by id."""
+    return by_id(*every_quantity().all_key_values)
 
 
 def read_machine(origin: Origin) -> Machine:

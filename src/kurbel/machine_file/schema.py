@@ -4,14 +4,17 @@ A schema cannot know rules between numbers, such as a rod longer than its crank;
 bounds of bare numbers, and which keys exclude each other.
 """
 
+from kurbel.declared.forms import Expectations, Limits
 from kurbel.declared.keys import Schema
-from kurbel.machine_file.reader import ROOT
+from kurbel.machine_file.reader import ROOT, key_values
 
 
 def json_schema() -> Schema:
     """Return the JSON Schema of a whole machine file."""
     definitions: Schema = {}
     root = ROOT.object_schema(definitions)
+    for name, form in (("limits", Limits()), ("expect", Expectations())):
+        root["properties"][name] |= form.schema_of(key_values(), definitions)
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "kurbel machine file",

@@ -7,34 +7,74 @@ crank angle has. `Mechanism` lists what a new one must supply.
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache, cached_property, partial
-from typing import Any, ClassVar, NamedTuple
+from functools import cached_property, partial, reduce
+from operator import mul
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.keys import Described, Rule
-from kurbel.declared.quantities import Lists
-from kurbel.declared.quantity import Quantity
 from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import sqrt
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import bracketed_roots
+from kurbel.quantity import Quantity
+
+
+class Loads(Protocol):
+    """What a column that a mechanism adds may use of the cylinder at crank angles (n,), in SI."""
+
+    @property
+    def mechanism(self) -> Any:
+        """The mechanism."""
+
+    @property
+    def posed(self) -> CrankAngle:
+        """The crank angles, with what the connecting rod does there."""
+
+    @property
+    def omega(self) -> Any:
+        """Angular velocity in rad/s; None where no speed is given."""
+
+    @property
+    def P(self) -> Any:
+        """Force along the stroke line."""
+
+    @property
+    def along_rod(self) -> Any:
+        """The part of the rod force along the stroke line: P less friction."""
+
+    @property
+    def N(self) -> Any:
+        """Force on the guide."""
+
+    @property
+    def M_out(self) -> Any:
+        """Moment on what swings."""
 
 
 @dataclass(frozen=True, eq=False)
 class Offer:
     """A column that only some mechanisms have, with its formula.
 
-    factor: takes the mechanism and a crank angle and returns the value in SI over the product of `times`, of the shape
-    of the angle, or None where it is not known. times: what else it is proportional to, as the state of a cylinder
-    names it: `omega` once or twice, or a force such as `along_rod`, `N` or `M_out`.
+    factor: takes the mechanism and a crank angle and returns the value in SI over what it is proportional to, of the
+    shape of the angle, or None where it is not known. It is proportional to ω to the power `omega`, and to what `force`
+    returns. unless: takes the results of the command; where it is true, the column says nothing new there.
     """
 
     quantity: Quantity
     factor: Callable[[Any, CrankAngle], Any]
-    times: tuple[str, ...] = ()
+    omega: int = 0
+    force: Callable[[Loads], Any] | None = None
+    unless: Callable[[Any], bool] | None = None
+
+    def of(self, state: Loads) -> Any:
+        """Return the column of a cylinder at crank angles (n,) in SI; None where it is not known."""
+        given = [state.omega] * self.omega + ([self.force(state)] if self.force else [])
+        factor = self.factor(state.mechanism, state.posed)
+        return None if factor is None or any(one is None for one in given) else reduce(mul, given, 1.0) * factor
 
 
 own_motion = partial(Quantity, commands=("motion",), after="b")
@@ -56,6 +96,10 @@ class KeyOffer:
     quantity: Quantity
     value: Callable[[Any, Any], Any]
     bound: float | None = None
+
+    def of(self, results: Any) -> Any:
+        """Return the key value from the results of its command, which have the mechanism."""
+        return self.value(results.mechanism, results)
 
 
 class Turning(NamedTuple):
@@ -275,22 +319,6 @@ class Mechanism(Described):
     def acceleration_extremes(self) -> tuple[Extreme, ...]:
         """Return closed extremes of `curvature`, where there are any; otherwise they are searched."""
         return ()
-
-    def offered(self, id: str, results: Any) -> Any:
-        """Return a key value that this mechanism offers, from the results of its command; None where it has none."""
-        return next((one.value(self, results) for one in self.KEY_OFFERS if one.quantity.id == id), None)
-
-
-def quantities_of(mechanism: Mechanism) -> Lists:
-    """Return what a machine with this mechanism may have."""
-    return lists_of(mechanism.OFFERS, mechanism.KEY_OFFERS)
-
-
-@cache
-def lists_of(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...]) -> Lists:
-    """Return what machines may have with these columns and key values of mechanisms."""
-    key_values = (offer.quantity._replace(asks=("offered", offer.quantity.id)) for offer in key_offers)
-    return Lists.of(dict.fromkeys(offer.quantity for offer in offers), dict.fromkeys(key_values))
 
 
 def finite(record: Described, *names: str) -> Iterator[Rule]:

@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.record import Rule, field
 from kurbel.declared.unit_systems import show
 from kurbel.mechanisms import (
@@ -25,6 +24,7 @@ from kurbel.mechanisms import (
 from kurbel.mechanisms.offers import F_COUPLER, SWING_OFFERS, SWING_VALUES
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import Quantity
 
 
 def _coupler(end: str, symbol: str, kind: str, text: str) -> Quantity:
@@ -40,12 +40,12 @@ COUPLER_OFFERS = (
     Offer(
         _coupler("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
         lambda four_bar, angle: four_bar.coupler_at(angle).slope,
-        ("omega",),
+        omega=1,
     ),
     Offer(
         _coupler("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
         lambda four_bar, angle: four_bar.coupler_at(angle).curvature,
-        ("omega", "omega"),
+        omega=2,
     ),
 )
 

@@ -3,31 +3,37 @@
 from typing import Any
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.record import field
 from kurbel.mechanisms import KeyOffer, Offer, own_force, own_motion
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import Quantity
 
 _BOTH, _MEMBER = ("motion", "forces"), "of the swinging member"
 
 
+def _slides(results: Any) -> bool:
+    """Return whether x gives the position of what slides, in forces."""
+    return results.command == "forces" and bool(results.mechanism.slides)
+
+
 def _swing(id: str, symbol: str, kind: str, text: str, called: str = "") -> Quantity:
-    # in forces x gives the position of what slides
     searched = ("motion",) if called else ()
-    return Quantity(id, symbol, kind, f"{text} {_MEMBER}", "", _BOTH, searched, called, unless="slides", after="b")
+    return Quantity(id, symbol, kind, f"{text} {_MEMBER}", "", _BOTH, searched, called, after="b")
 
 
 SWING_OFFERS = (
-    Offer(_swing("theta", "θ", "angle", "Angle"), lambda one, angle: one.swing_at(angle).degrees),
+    Offer(_swing("theta", "θ", "angle", "Angle"), lambda one, angle: one.swing_at(angle).degrees, unless=_slides),
     Offer(
         _swing("theta_dot", "θ̇", "angular_velocity", "Angular velocity", "angular velocity of the swing"),
         lambda one, angle: one.swing_at(angle).slope,
-        ("omega",),
+        omega=1,
+        unless=_slides,
     ),
     Offer(
         _swing("theta_ddot", "θ̈", "angular_acceleration", "Angular acceleration", "angular acceleration"),
         lambda one, angle: one.swing_at(angle).curvature,
-        ("omega", "omega"),
+        omega=2,
+        unless=_slides,
     ),
 )
 """Of a mechanism with `swing_at`, which returns how its swinging member turns."""
@@ -65,7 +71,7 @@ F_COUPLER = Offer(
         after="M_out",
     ),
     lambda one, angle: one.coupler_force_factor(angle),
-    ("M_out",),
+    force=lambda state: state.M_out,
 )
 """Of a mechanism with `coupler_force_factor`, the force in 1/m over the moment on the swinging member."""
 
@@ -90,7 +96,7 @@ BLOCK_OFFERS = (
     Offer(
         own_motion("c_block", "c_b", "velocity", "Speed at which the block on the crank pin slides along its slot"),
         lambda one, angle: one.block_slope(angle),
-        ("omega",),
+        omega=1,
     ),
     Offer(
         own_force(
@@ -101,7 +107,7 @@ BLOCK_OFFERS = (
             called="force of the sliding block on the crank pin",
         ),
         lambda one, angle: one.pin_force_factor(angle),
-        ("along_rod",),
+        force=lambda state: state.along_rod,
     ),
 )
 """Of a mechanism with `block_slope`, the speed of the block over ω in m, and `pin_force_factor`, its force over P."""

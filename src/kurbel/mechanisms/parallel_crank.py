@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.record import Rule, field
 from kurbel.mechanisms import (
     PIN,
@@ -21,6 +20,7 @@ from kurbel.mechanisms import (
     own_motion,
 )
 from kurbel.mechanisms.offers import F_COUPLER, SWING_OFFERS, SWING_VALUES
+from kurbel.quantity import Quantity
 
 _POINT = "of every coupler point"
 COUPLER_OFFERS = (
@@ -35,12 +35,12 @@ COUPLER_OFFERS = (
     Offer(
         own_motion("bx_coupler", "b_Kx", "acceleration", f"Acceleration {_POINT} along the frame"),
         lambda one, angle: -one.crank * angle.cos,
-        ("omega", "omega"),
+        omega=2,
     ),
     Offer(
         own_motion("by_coupler", "b_Ky", "acceleration", f"Acceleration {_POINT} across the frame"),
         lambda one, angle: -one.crank * angle.sin,
-        ("omega", "omega"),
+        omega=2,
     ),
 )
 """How the coupler runs from φ = 0 on: with the speed v = Rω, accelerated by v²/R toward the centre (R ch. 14 A)."""

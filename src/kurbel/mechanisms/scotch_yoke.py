@@ -49,7 +49,7 @@ class ScotchYoke(Mechanism):
     known_across: ClassVar[bool] = True
     OFFERS: ClassVar[tuple[Offer, ...]] = (
         *BLOCK_OFFERS,
-        Offer(_N_PAIR, lambda yoke, angle: yoke.guide_pair_factor(angle), ("along_rod",)),
+        Offer(_N_PAIR, lambda yoke, angle: yoke.guide_pair_factor(angle), force=lambda state: state.along_rod),
     )
     # R p. 615: up to 200 kgf/cm²
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (pin_pressure(bound=200 * 98066.5),)

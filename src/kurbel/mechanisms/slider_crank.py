@@ -30,10 +30,10 @@ def stroke_instead(gives: Callable[[Mapping[str, Any]], dict[str, Any]]) -> Any:
     return alternative("length", "Stroke; or give `crank`", "s", above=0, instead="crank", gives=gives, key="stroke")
 
 
-def _book(id: str, kind: str, text: str, formula: Callable[[Any, Any, Any], Any], *times: str) -> Offer:
+def _book(id: str, kind: str, text: str, formula: Callable[[Any, Any, Any], Any], omega: int = 0) -> Offer:
     """Return what the books have in place of a column, by their formula for R = 1."""
     quantity = on_request(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", after=id)
-    return Offer(quantity, lambda one, angle: one.of_book(angle, formula), times)
+    return Offer(quantity, lambda one, angle: one.of_book(angle, formula), omega)
 
 
 _DISPLACEMENT = "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)"
@@ -41,17 +41,17 @@ _VELOCITY = "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)"
 _ACCELERATION = "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)"
 ROD_OFFERS = (
     _book("x", "length", _DISPLACEMENT, formulas.first_order_displacement),
-    _book("c", "velocity", _VELOCITY, formulas.first_order_velocity, "omega"),
-    _book("b", "acceleration", _ACCELERATION, formulas.first_order_acceleration, "omega", "omega"),
+    _book("c", "velocity", _VELOCITY, formulas.first_order_velocity, omega=1),
+    _book("b", "acceleration", _ACCELERATION, formulas.first_order_acceleration, omega=2),
     Offer(
         on_request("psi_dot", "ψ̇", "angular_velocity", "Angular velocity of the rod, dψ/dt", after="b"),
         lambda one, angle: -one.coupler_at(angle).slope,
-        ("omega",),
+        omega=1,
     ),
     Offer(
         on_request("psi_ddot", "ψ̈", "angular_acceleration", "Angular acceleration of the rod", after="b"),
         lambda one, angle: -one.coupler_at(angle).curvature,
-        ("omega", "omega"),
+        omega=2,
     ),
 )
 

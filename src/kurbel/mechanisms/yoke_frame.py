@@ -42,7 +42,7 @@ class YokeFrame(SliderCrank):
     guided: ClassVar[bool] = False
     OFFERS: ClassVar[tuple[Offer, ...]] = (
         *SliderCrank.OFFERS,
-        Offer(_M_BEND, lambda drive, angle: drive.bending_arm(angle), ("N",)),
+        Offer(_M_BEND, lambda drive, angle: drive.bending_arm(angle), force=lambda state: state.N),
     )
     notes: ClassVar[tuple[str, ...]] = (
         "There is no crosshead guide: the side force N bends the piston rod (R p. 614).",

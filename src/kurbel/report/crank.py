@@ -51,7 +51,7 @@ def forces_report(case: Case, frame: Frame) -> Report:
 
 def forces_subjects(case: Case) -> list[Subject]:
     """Return every cylinder, with its forces and its motion."""
-    return [Subject(one.drive.name, tuple(one.answering), one.at, one.lists, source=one) for one in case.cylinders]
+    return [Subject(one.drive.name, (one,), one.at, one.lists, source=one) for one in case.cylinders]
 
 
 def _with_sentences(case: Case) -> list[Subject]:
@@ -76,7 +76,7 @@ def cycles_report(case: Case, system: str) -> Report:
 
 
 def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
-    cycles, gas = forces.indicated.cycles, forces.drive.own_gas
+    cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
     if cycles:
         declared = {one.id: one.absolute() if gas and gas.absolute else one for one in CYCLE_VALUES}
         columns = zip(*(getattr(cycles, id).tolist() for id in declared))

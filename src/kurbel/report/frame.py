@@ -5,23 +5,22 @@ import sys
 from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import Any
 
 import numpy as np
 
-from kurbel.declared.quantities import COMMON, Lists
-from kurbel.declared.quantity import Quantity, called
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import NoSolutionError, Nowhere, UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, size_of
+from kurbel.quantities import every_quantity
+from kurbel.quantity import Lists, Quantity, called
 from kurbel.report.tables import Column, Input, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
-from kurbel.solver.figures import answered
+from kurbel.solver.figures import Results, answered
 
 _AT_ONCE = 8192
 """Crank angles computed at once, so that a table of any length needs little memory besides its own numbers."""
@@ -44,7 +43,7 @@ class Subject:
     name: str
     results: tuple[Any, ...] = ()
     at: Callable[[Any], Any] | None = None
-    lists: Lists = COMMON
+    lists: Lists = field(default_factory=every_quantity)
     left_out: tuple[LeftOut, ...] = ()
     warnings: tuple[str, ...] = ()
     tables: tuple[PlaceTable, ...] = ()
@@ -53,11 +52,12 @@ class Subject:
 
     def says(self, quantity: Quantity) -> bool:
         """Whether a quantity adds something here: a time ratio does not if both strokes take equally long."""
-        return not (quantity.unless and any(getattr(one, quantity.unless, False) for one in self.results))
+        return not any(_says_nothing(one, quantity) for one in self.results)
 
     def answer(self, quantity: Quantity) -> Any:
         """Return a key value in SI: a number, an Extreme, or a tuple of numbers; None if there is none."""
-        return answered(self.results, quantity)
+        found = (_value(one, quantity) for one in self.results)
+        return next((value for value in found if value is not None), None)
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, Any]]:
         """Yield the key values of a command that it has, in SI."""
@@ -67,9 +67,25 @@ class Subject:
                 yield quantity, value
 
 
+def _value(results: Any, quantity: Quantity) -> Any:
+    """Return a key value of results, in SI; None where they have none."""
+    if not isinstance(results, Results):
+        return answered((results,), quantity)
+    row = results.rows.key_values.get(quantity.id)
+    return None if row is None else row.of(results)
+
+
+def _says_nothing(results: Any, quantity: Quantity) -> bool:
+    """Return whether a quantity says nothing new of results."""
+    if not isinstance(results, Results):
+        return False
+    row = results.rows.key_values.get(quantity.id) or results.rows.columns.get(quantity.id)
+    return bool(row and row.unless and row.unless(results))
+
+
 def column_of(state: Any, quantity: Quantity) -> Any:
     """Return a column (n,) of a state in SI, None if the machine does not have it."""
-    return state.phi if quantity.id == "phi" else getattr(state, quantity.id, None)
+    return state.phi if quantity.id == "phi" else state[quantity.id]
 
 
 @dataclass(frozen=True, eq=False)

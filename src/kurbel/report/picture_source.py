@@ -11,7 +11,7 @@ from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.frame import too_large
 from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Shade, Words
-from kurbel.solver.figures import Results, answered
+from kurbel.solver.figures import Results
 
 PHI = "phi"
 FINENESS = 1 / 2000
@@ -92,12 +92,12 @@ class Source:
 
     def having(self, ids: Iterable[str]) -> tuple[str, ...]:
         """Return those of these columns that there are."""
-        return tuple(id for id in ids if id in self.quantities and getattr(self._start, id, None) is not None)
+        return tuple(id for id in ids if id in self.quantities and self._start[id] is not None)
 
     def values(self, ids: Sequence[str], degrees: Array, within: Array) -> Array:
         """Return columns (k, n) in SI at crank angles (n,); φ is one of them."""
         state = self.results.at(degrees, within)
-        found = [degrees if id == PHI else np.broadcast_to(getattr(state, id), degrees.shape) for id in ids]
+        found = [degrees if id == PHI else np.broadcast_to(state[id], degrees.shape) for id in ids]
         return np.stack([np.asarray(one, dtype=float) for one in found])
 
     def samples(
@@ -128,7 +128,7 @@ class Source:
     def extremes(self, id: str) -> list[tuple[str, Extreme]]:
         """Return the extremes of a column with the ids of these key values; none of a level line."""
         named = [name for name in (f"{id}_max", f"{id}_min") if name in self.key_values]
-        found = [(name, answered(self.results.answering, self.key_values[name])) for name in named]
+        found = [(name, self.results.rows.key_values[name].of(self.results)) for name in named]
         found = [(name, extreme) for name, extreme in found if isinstance(extreme, Extreme)]
         return found if len({extreme.value for _, extreme in found}) == len(found) else []
 

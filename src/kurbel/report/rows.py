@@ -12,9 +12,9 @@ from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import example, unit_factor
 from kurbel.errors import Nowhere, UnitError, UsageError
-from kurbel.mechanisms.kinds import every_quantity
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantities import every_quantity
 from kurbel.report.angles import stepped
 from kurbel.report.frame import Subject
 

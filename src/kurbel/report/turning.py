@@ -23,6 +23,7 @@ from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.harmonics import MachineOrders, Orders
 from kurbel.solver.motion import every_dead_centre
+from kurbel.solver.state import State
 from kurbel.solver.torsion import RUN_UP, Critical, ShaftVibration, stress
 
 # turning effort, excess work, flywheel and speed line
@@ -77,7 +78,7 @@ def dead_centre_force(forces: CylinderForces, cycle: float) -> Extreme | None:
     angles = np.repeat(centres, 2, axis=1)
     sides = angles + np.tile([-1e-6, 1e-6], centres.shape[1])
     machine = np.repeat(np.arange(count), angles.shape[1])
-    values = drive.at(angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
+    values = State.at(drive, angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
     largest = np.arange(count), np.abs(values).argmax(axis=1)
     found = np.where(both, values[largest], np.nan), np.mod(angles[largest], cycle)
     return Extreme(*map(forces.told, found))

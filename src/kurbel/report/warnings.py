@@ -244,7 +244,7 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
         yield f"the energy balance of the cycle does not close (residual {signed:.1e}); trust no figure beyond that"
     for offer in forces.drive.mechanism.KEY_OFFERS:
         quantity, bound = offer.quantity, offer.bound
-        found = forces.offered(quantity.id) if bound else None
+        found = offer.of(forces) if bound else None
         if bound and found and found.value > bound:
             shown, most = show(found.value, quantity.kind), show(bound, quantity.kind)
             yield f"{quantity.text[0].lower()}{quantity.text[1:]}: {shown} is above {most}"

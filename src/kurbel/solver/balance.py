@@ -380,7 +380,7 @@ def swirl(state: State) -> Any:
     """Return dH/dt = m e b in N m, less the couple of an exact rod, which swings against the crank."""
     drive = state.drive
     moment = state.b * (drive.mass * drive.mechanism.offset)
-    return moment - drive.rod.couple(state.rod_angle, state.angle) if drive.rod else moment
+    return moment - state.rod_couple if drive.rod else moment
 
 
 class BookBalance:

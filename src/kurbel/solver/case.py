@@ -3,29 +3,19 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from kurbel.arrays import Array
-from kurbel.declared.quantities import COMMON
-from kurbel.declared.quantity import called
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.mechanisms import quantities_of
-from kurbel.solver.figures import Figure, Results, Shown
+from kurbel.solver.balance import MachineBalance
+from kurbel.solver.bearings import Bearing, ShaftBearings
+from kurbel.solver.effort import TurningEffort
+from kurbel.solver.figures import Figure, Shown, rows_of
+from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.forces import CylinderForces
-
-if TYPE_CHECKING:
-    from kurbel.solver.balance import MachineBalance
-    from kurbel.solver.bearings import ShaftBearings
-    from kurbel.solver.effort import TurningEffort
-    from kurbel.solver.flywheel import MachineTurning
-    from kurbel.solver.harmonics import MachineOrders
-    from kurbel.solver.stress import CrankshaftStrength
-    from kurbel.solver.torsion import ShaftVibration
-
-
-_WHOLE = ("stress", "flywheel", "balance", "torsion")
-"""Commands of the whole machine, by whose names a case has the results."""
+from kurbel.solver.harmonics import MachineOrders
+from kurbel.solver.stress import CrankshaftStrength
+from kurbel.solver.torsion import ShaftVibration
 
 
 class Case(Shown):
@@ -46,17 +36,22 @@ class Case(Shown):
 
         Of several cylinders each has its own: `case.cylinders[0]["P_max"]`. Raises UsageError where there is none.
         """
-        known = quantities_of(self.machine.cylinders[0].mechanism) if self.machine.cylinders else COMMON
-        commands = {word for id in called(name, known.all_key_values) for word in known.commands_of(id)}
-        if "forces" in commands and len(self.cylinders) == 1:
+        of_cylinder = bool(self.cylinders) and self.cylinders[0].rows.named(name)
+        if of_cylinder and len(self.cylinders) == 1:
             return self.cylinders[0][name]
-        whole = next((command for command in _WHOLE if command in commands), "")
-        if "forces" in commands and not whole:
+        if rows_of(CrankshaftStrength).named(name):
+            return self.stress[name]
+        if rows_of(MachineTurning).named(name):
+            return self.flywheel[name]
+        if rows_of(MachineBalance).named(name):
+            return self.balance[name]
+        if rows_of(ShaftVibration).named(name):
+            return self.torsion[name]
+        if of_cylinder:
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
-        if "bearings" in commands:
+        if rows_of(Bearing).named(name):
             raise UsageError(f"each pin and main bearing has its own {name}: ask one of case.bearings.parts")
-        results: Results = getattr(self, whole or "flywheel")
-        return results[name]
+        return self.flywheel[name]
 
     def __repr__(self) -> str:
         return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
@@ -69,36 +64,26 @@ class Case(Shown):
     @cached_property
     def stress(self) -> CrankshaftStrength:
         """Strength of the crankshaft. Raises UsageError where the machine has none that can be examined."""
-        from kurbel.solver.stress import CrankshaftStrength
-
         return CrankshaftStrength(self.machine, self.cylinders)
 
     @cached_property
     def bearings(self) -> ShaftBearings:
         """Loads on pins and main bearings. Raises UsageError where nothing loads them."""
-        from kurbel.solver.bearings import ShaftBearings
-
         return ShaftBearings(self.machine, self.cylinders)
 
     @cached_property
     def balance(self) -> MachineBalance:
         """Free forces and moments of the whole machine. Raises UsageError where no masses move."""
-        from kurbel.solver.balance import MachineBalance
-
         return MachineBalance(self.effort)
 
     @cached_property
     def flywheel(self) -> MachineTurning:
         """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
-        from kurbel.solver.flywheel import MachineTurning
-
         return MachineTurning(self.effort)
 
     @cached_property
     def effort(self) -> TurningEffort:
         """Turning effort and load of the whole machine, which raise errors only when they are computed."""
-        from kurbel.solver.effort import TurningEffort
-
         return TurningEffort(self.machine, self.cylinders, self.count)
 
     def harmonics(self, orders: Array | None = None) -> MachineOrders:
@@ -106,8 +91,6 @@ class Case(Shown):
 
         Raises UsageError where nothing turns the machine, NoSolutionError where losses leave too little.
         """
-        from kurbel.solver.harmonics import MachineOrders
-
         _ = self.effort.excess  # refuses a machine that cannot run
         return MachineOrders(self.effort, orders)
 
@@ -118,6 +101,4 @@ class Case(Shown):
 
     def torsion_of(self, orders: Array | None) -> ShaftVibration:
         """Return the torsional vibration by these orders (k,)."""
-        from kurbel.solver.torsion import ShaftVibration
-
         return ShaftVibration(self.effort, orders)

@@ -52,7 +52,7 @@ def inertia_torque(state: State) -> Any:
     torque = state.slope * state.curvature * (-state.drive.mass * omega * omega)
     if rod is None:
         return torque
-    return torque - rod.couple(state.rod_angle, state.angle) * rod.swing_slope(state.rod_angle, state.angle)
+    return torque - state.rod_couple * state.rod_slope
 
 
 def position(forces: CylinderForces) -> Any:

@@ -1,18 +1,42 @@
-"""Results by name: key values by id or printed symbol, and all columns at once."""
+"""Results by name: the rows of a class of results, its key values by id or printed symbol, and all columns at once.
 
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any, ClassVar, NamedTuple
+A class of results has its key values, and a class of columns its columns, as attributes with rows (`kurbel.quantity`).
+They are printed in the order of their definition; a `Part` brings the rows of another class to its place, `Searched`
+the extremes of the columns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.quantities import COMMON, Lists
-from kurbel.declared.quantity import Quantity, ambiguity, called
+from kurbel.declared import quantities as declared
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI
 from kurbel.errors import UsageError
+from kurbel.mechanisms import KeyOffer, Offer
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import (
+    ITS_OWN,
+    PHI,
+    Computed,
+    ForEach,
+    Lists,
+    Quantity,
+    Row,
+    ambiguity,
+    called,
+    in_order,
+    printed_by,
+    searched,
+)
+
+V = TypeVar("V")
 
 
 class Figure(NamedTuple):
@@ -33,6 +57,41 @@ class Shown:
         return Shown.as_html(self) if Shown.as_html else None
 
 
+# columns
+
+
+class AtAngles:
+    """Columns at crank angles (n,) in degrees: attributes with rows, in SI, each (n,), None for what there is not."""
+
+    commands: ClassVar[tuple[str, ...]] = ()
+    """That print its columns, where a column does not say which."""
+
+    @property
+    def rows(self) -> Mapping[str, Row]:
+        """The rows of its columns, by id."""
+        return column_rows(type(self))
+
+    def __getitem__(self, id: str) -> Any:
+        """Return a column by its id; None for one that there is not."""
+        row = self.rows.get(id)
+        return None if row is None else row.of(self)
+
+
+def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mapping[str, Row]:
+    """Return the rows of a class of columns, and of what mechanisms add to it, in printed order."""
+    if (state, offers) in _COLUMN_ROWS:
+        return _COLUMN_ROWS[state, offers]
+    rows = [Row(PHI, lambda one: one.phi)]
+    for item in _definitions(state):
+        for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
+            rows += printed_by([row], *state.commands) if row.quantity.commands == ITS_OWN else [row]
+    rows += [Row(one.quantity, one.of, one.unless) for one in offers]
+    return _COLUMN_ROWS.setdefault((state, offers), in_order(rows))
+
+
+_COLUMN_ROWS: dict[tuple[type, tuple[Offer, ...]], Mapping[str, Row]] = {}
+
+
 class Columns:
     """Columns at crank angles φ (n,) in degrees: attributes by their ids, in SI, each (n,), computed on first use.
 
@@ -48,16 +107,73 @@ class Columns:
         self.__dict__[id] = self.formulas[id]()
         return self.__dict__[id]
 
+    def __getitem__(self, id: str) -> Any:
+        return getattr(self, id, None)
 
-class Results(Shown):
-    """Key values and columns of a command: attributes named by their ids, or what `Quantity.asks` names."""
 
-    command: ClassVar[str]
+# key values
+
+
+class Rows(NamedTuple):
+    """The rows of a class of results, by id, in the order in which they are printed."""
+
+    columns: Mapping[str, Row]
+    key_values: Mapping[str, Row]
+
+    def named(self, name: str) -> bool:
+        """Return whether an id or printed symbol is that of a key value."""
+        return bool(called(name, (row.quantity for row in self.key_values.values())))
 
     @property
     def lists(self) -> Lists:
-        """The quantities that there may be."""
-        return COMMON
+        """Their quantities."""
+        return Lists(*(tuple(row.quantity for row in rows.values()) for rows in self))
+
+    def changed(self, change: Callable[[Quantity], Quantity]) -> Rows:
+        """Return the rows with other quantities."""
+        found = ({id: row._replace(quantity=change(row.quantity)) for id, row in rows.items()} for rows in self)
+        return Rows(*found)
+
+
+class Part(Computed[V]):
+    """Results that are a part of others; their rows stand in the place of the attribute."""
+
+    def __init__(self, function: Callable[[Any], V], kind: type[Results]) -> None:
+        super().__init__(function, Quantity(function.__name__, "", "", ""))
+        self.kind = kind
+
+
+def part(kind: type[Results]) -> Callable[[Callable[[Any], V]], Part[V]]:
+    """Return what makes a method a part of results, of this class; it may return None where there is no such part."""
+    return lambda function: Part(function, kind)
+
+
+class Searched:
+    """The extremes of the columns of the class in which it stands, as the flag `extremes` of a column says."""
+
+
+class Results(Shown):
+    """Key values of a command, and its columns: attributes named by their ids, in SI, or results by name."""
+
+    command: ClassVar[str] = ""
+    state: ClassVar[type[AtAngles] | None] = None
+    """The class of its columns."""
+
+    def __init_subclass__(cls) -> None:
+        # what the class has through its parts, or as extremes, are attributes as well
+        for id, row in rows_of(cls).key_values.items() if _moved(cls) else ():
+            if not hasattr(cls, id):
+                setattr(cls, id, property(row.of, doc=row.quantity.text))
+
+    @property
+    def rows(self) -> Rows:
+        """The rows that results of this kind may have."""
+        return rows_of(type(self))
+
+    @property
+    def lists(self) -> Lists:
+        """The quantities that results of this kind may have."""
+        return self.rows.lists
 
     @property
     def answering(self) -> Iterable[Any]:
@@ -66,27 +182,23 @@ class Results(Shown):
 
     def __getattr__(self, id: str) -> Any:
         """Return a key value that is no attribute here: an extreme, or one that another of `answering` has."""
-        quantity = None if id.startswith("_") else self._known.get(id)
-        if quantity is None:
-            raise AttributeError(f"no key value is called {id}")
-        return answered(self.answering, quantity)
+        row = None if _moved(type(self)) or id.startswith("_") else rows_of(type(self)).key_values.get(id)
+        if row is None:
+            raise AttributeError(f"{type(self).__name__} has no attribute {id}")
+        return row.of(self)
 
     def __getitem__(self, name: str) -> Figure:
         """Return a key value by its id or printed symbol; raises UsageError where there is none."""
-        quantity = self._known[_only(name, self._known, "key value")]
-        value = answered(self.answering, quantity)
+        row = _only(name, self.rows.key_values, "key value")
+        value = row.of(self)
         if value is None:
-            raise UsageError(f"this machine has no {quantity.id}: {quantity.text}")
-        return _figure(quantity, value)
+            raise UsageError(f"this machine has no {row.quantity.id}: {row.quantity.text}")
+        return _figure(row.quantity, value)
 
     def key_values(self) -> dict[str, Figure]:
         """Return every key value that there is by its id, in the order in which they are printed."""
-        found = {quantity: answered(self.answering, quantity) for quantity in self._known.values()}
-        return {quantity.id: _figure(quantity, value) for quantity, value in found.items() if value is not None}
-
-    @property
-    def _known(self) -> dict[str, Quantity]:
-        return self.lists.key_values(self.command)
+        found = ((row.quantity, row.of(self)) for row in self.rows.key_values.values())
+        return {quantity.id: _figure(quantity, value) for quantity, value in found if value is not None}
 
     def columns(self, degrees: Any, *names: str) -> dict[str, Array]:
         """Return φ and these columns (n,), or all that there are, in SI by id, at crank angles (n,) in degrees.
@@ -94,14 +206,17 @@ class Results(Shown):
         names: ids or printed symbols. Raises UsageError for angles that are no numbers and for what is no column here.
         """
         angles = np.atleast_1d(crank_angles(degrees))
-        state = self.at(angles)
-        known = self.lists.columns(self.command)
-        ids = [_only(name, known, "column") for name in names] if names else list(known)
-        found = {id: getattr(state, id, None) for id in ids if id != "phi"}
-        for id, values in found.items() if names else ():
-            if values is None:
-                raise UsageError(f"this machine has no {id}: {known[id].text}")
-        return {"phi": angles, **{id: np.asarray(one, float) for id, one in found.items() if one is not None}}
+        state, every = self.at(angles), self.rows.columns
+        known = {id: row for id, row in every.items() if self.command in row.quantity.commands}
+        rows = [_only(name, known, "column") for name in names] if names else known.values()
+        found: dict[str, Array] = {"phi": angles}
+        for row in rows:
+            values = angles if row.quantity.id == "phi" else row.of(state)
+            if values is not None:
+                found[row.quantity.id] = np.asarray(values, float)
+            elif names:
+                raise UsageError(f"this machine has no {row.quantity.id}: {row.quantity.text}")
+        return found
 
     def at(self, degrees: Any, within: Array | None = None) -> Any:
         """Return every column at crank angles (n,) in degrees; of the whole machine those of crank 1.
@@ -111,7 +226,7 @@ class Results(Shown):
         angles = crank_angles(degrees)
         return self._columns(angles, angles if within is None else within)
 
-    def _columns(self, phi: Array, within: Array) -> Columns:
+    def _columns(self, phi: Array, within: Array) -> Any:
         """Return the columns at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
         return Columns(phi, {})
 
@@ -122,6 +237,63 @@ class Results(Shown):
 
     def __repr__(self) -> str:
         return f"<kurbel {self.command} of {self._of}: ['id'], key_values(), columns(degrees)>"
+
+
+def _definitions(kind: type) -> Iterator[Any]:
+    """Yield what a class has by definition, its own and inherited, in the order in which each was defined first."""
+    found: dict[str, Any] = {}
+    for one in reversed(kind.__mro__):
+        found |= vars(one)
+    yield from found.values()
+
+
+def _moved(kind: type[Results]) -> bool:
+    """Return whether a class has its rows itself, and not in `kurbel.declared`."""
+    return any(isinstance(item, (Computed, ForEach)) for item in _definitions(kind))
+
+
+def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tuple[KeyOffer, ...] = ()) -> Rows:
+    """Return the rows of a class of results, with the columns and key values that mechanisms add."""
+    if (kind, offers, key_offers) in _ROWS:
+        return _ROWS[kind, offers, key_offers]
+    if not _moved(kind):
+        return _ROWS.setdefault((kind, offers, key_offers), declared_rows(kind.command))
+    columns = column_rows(kind.state, offers) if kind.state else {}
+    quantities = [row.quantity for row in columns.values()] or [one.quantity for one in offers]
+    found: list[Row] = []
+    for item in _definitions(kind):
+        if isinstance(item, Part):
+            inner = rows_of(item.kind, offers, key_offers).key_values.values()
+            found += [row.through(item.value_of) for row in inner]
+        elif isinstance(item, Searched):
+            found += searched(quantities, kind.command)
+        elif isinstance(item, (Computed, ForEach)):
+            found += item.rows
+    found += [Row(one.quantity, one.of) for one in key_offers if kind.command in one.quantity.commands]
+    rows = Rows(columns, in_order(printed_by(found, *filter(None, [kind.command]))))
+    return _ROWS.setdefault((kind, offers, key_offers), rows)
+
+
+_ROWS: dict[tuple[type, tuple[Offer, ...], tuple[KeyOffer, ...]], Rows] = {}
+
+
+def declared_rows(command: str) -> Rows:
+    """Return the rows of a command whose quantities are declared in `kurbel.declared`."""
+
+    def row(quantity: Quantity) -> Row:
+        return Row(
+            quantity,
+            lambda results: answered(results.answering, quantity),
+            (lambda results: any(getattr(one, quantity.unless, False) for one in results.answering))
+            if quantity.unless
+            else None,
+        )
+
+    columns = declared.columns(command)
+    state_rows = {id: Row(one, partial(lambda id, state: state[id], id)) for id, one in columns.items()}
+    first, others = declared.key_values(command)
+    extremes = printed_by(searched(columns.values(), command), command)
+    return Rows(state_rows, in_order((*map(row, first), *extremes, *map(row, others))))
 
 
 def passed_on(part: str, name: str, text: str) -> Any:
@@ -145,12 +317,12 @@ def crank_angles(degrees: Any) -> Array:
     return angles
 
 
-def _only(name: str, known: dict[str, Quantity], what: str) -> str:
-    """Return the one id that a name means; raises UsageError for none and for several."""
-    found = called(name, known.values())
+def _only(name: str, known: Mapping[str, Row], what: str) -> Row:
+    """Return the one row that a name means; raises UsageError for none and for several."""
+    found = called(name, (row.quantity for row in known.values()))
     if not found or ambiguity(name, found):
         raise UsageError(ambiguity(name, found) or f"no {what} '{shown(name)}'{did_you_mean(name, tuple(known))}")
-    return found[0]
+    return known[found[0]]
 
 
 def answered(results: Iterable[Any], quantity: Quantity) -> Any:

@@ -8,71 +8,128 @@ both every 5°, kurbel at the roots.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from functools import cached_property
+from collections.abc import Sequence
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.declared.quantities import Lists
 from kurbel.machine import Cylinder, Machine
-from kurbel.mechanisms import quantities_of
+from kurbel.machine.cylinder import may_lock
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
+from kurbel.quantity import Quantity, for_each, key_value
 from kurbel.solver.cycle import SampledCylinder
 from kurbel.solver.drive import Drive
-from kurbel.solver.figures import Results, crank_angles
+from kurbel.solver.figures import Results, Rows, Searched, column_rows, crank_angles, part, rows_of
 from kurbel.solver.friction import redtenbacher_loss
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
 from kurbel.solver.newton import residual
 from kurbel.solver.state import State
 
+_RUBBING = {
+    "crank_pin": ("Z", "in the crank pin"),
+    "crosshead_pin": ("H", "in the crosshead pin"),
+    "journals": ("J", "in the journals of the throw"),
+}
+"""Key of the coefficient of friction -> index of the symbols, and where it rubs."""
+_ROD_LOADS = {
+    "rod_compression": ("P_G,d", "rod load at the crosshead pin in compression"),
+    "rod_tension": ("P_G,z", "rod load at the crosshead pin in tension"),
+    "piston_rod_compression": ("P_KS,d", "load on the piston rod in compression"),
+    "piston_rod_tension": ("P_KS,z", "load on the piston rod in tension"),
+    "gas_compression": ("P_gas,d", "gas load in compression"),
+    "gas_tension": ("P_gas,z", "gas load in tension"),
+}
+"""Column P_… and the way it loads the rod -> symbol, and what it is called."""
+
+
+class Brake(Results):
+    """What the brake has measured against what the indicator shows; None without a brake or an indicated power.
+
+    A machine that is driven takes more at the shaft than its pistons give to the gas: there the efficiency is the
+    other way round.
+    """
+
+    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
+        self.machine, self.cylinders = machine, cylinders
+
+    @cached_property
+    def indicated(self) -> Any:
+        """Indicated power in W of all cylinders, negative where they are driven; None where one has none."""
+        powers = [forces.power for forces in self.cylinders]
+        known = [power for power in powers if power is not None]
+        return total(*known) if known and len(known) == len(powers) else None
+
+    @cached_property
+    def _swept(self) -> Any:
+        """Volume in m³ that the cylinders' own pistons sweep per second against their pressures; None at rest."""
+        speed, volumes = self.machine.speed, list(map(_swept_rate, self.cylinders))
+        known = [volume for volume in volumes if volume is not None]
+        whole = total(*known) if known and len(known) == len(volumes) else None
+        return None if whole is None or speed is None or every(whole * speed == 0) else whole * speed
+
+    @key_value("p_e", "pressure")
+    def mean_pressure_brake(self) -> Any:
+        """Mean effective pressure: brake work over the swept volume."""
+        power = self.machine.brake_power
+        return None if power is None or self._swept is None else power / self._swept
+
+    @key_value("p_r", "pressure")
+    def mean_pressure_friction(self) -> Any:
+        """Friction mean pressure, p_i less p_e.
+
+        p_e less |p_i| where the machine is driven.
+        """
+        brake, indicated = self.mean_pressure_brake, self.indicated
+        if brake is None or indicated is None:
+            return None
+        return where(indicated < 0, -1.0, 1.0) * (abs(indicated) / self._swept - brake)
+
+    @key_value("η_m", "ratio")
+    def eta_m(self) -> Any:
+        """Mechanical efficiency: brake power over indicated power.
+
+        Indicated over brake power where the machine is driven.
+        """
+        power, indicated = self.machine.brake_power, self.indicated
+        if power is None or indicated is None or every(power == 0) or every(indicated == 0):
+            return None
+        drives = indicated > 0
+        return where(drives, power, -indicated) / where(drives, indicated, power)
+
 
 class CylinderForces(SampledCylinder, Results):
-    """Key values of the forces of one cylinder: attributes named by their ids, in SI.
+    """Key values of the forces of one cylinder, in SI.
 
     A key value that the machine does not have is None. `at(degrees)` gives the columns. count: number of machines; the
     numbers of machine and cylinder, and all key values, are then arrays (machines,).
     """
 
-    command = "forces"
+    command, state = "forces", State
 
     def __init__(self, machine: Machine, cylinder: Cylinder, count: int | None = None) -> None:
         self.drive = Drive(machine, cylinder, count)
-        self.motion = Motion(cylinder.mechanism, machine.speed, count)
 
     @property
-    def answering(self) -> Iterator[Any]:
-        """The objects that have key values, searched in this order; each is made only if those before it lack one."""
-        yield from (self, self.motion)
-        if self.drive.own_gas:
-            yield self.indicated
-            if self.drive.machine.brake_power is not None:
-                yield self.brake
-
-    @cached_property
-    def indicated(self) -> Indicated:
-        """Key values of the traces of the cylinder's own piston."""
-        return Indicated(self.drive.own_gas)
+    def rows(self) -> Rows:
+        """The rows that a machine with this mechanism may have, its pressures counted as in the machine file."""
+        mechanism, cylinder, gas = self.mechanism, self.drive.cylinder, self.drive.own_gas
+        of_ram = not cylinder.pistons and bool(cylinder.ram_force or mechanism.quick_return)
+        return _rows(mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, bool(gas and gas.absolute))
 
     @property
-    def brake(self) -> Brake | None:
-        """Key values of the brake, where this is the only cylinder."""
-        machine = self.drive.machine
-        return Brake(machine, (self,)) if len(machine.cylinders) == 1 else None
-
-    # key values
+    def mechanism(self) -> Mechanism:
+        """The mechanism."""
+        return self.drive.mechanism
 
     @property
-    def lists(self) -> Lists:
-        """The quantities that a machine with this mechanism may have, its pressures counted as in the machine file."""
-        known, cylinder = quantities_of(self.drive.mechanism), self.drive.cylinder
-        if not cylinder.pistons and (cylinder.ram_force or self.drive.mechanism.quick_return):
-            return known.of_ram
-        gas = self.drive.own_gas
-        return known.absolute if gas and gas.absolute else known
+    def omega(self) -> Any:
+        """Angular velocity in rad/s."""
+        return self.drive.omega
 
     @property
     def _of(self) -> str:
@@ -83,40 +140,40 @@ class CylinderForces(SampledCylinder, Results):
 
         At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
         """
-        return self.drive.at(crank_angles(degrees), within)
+        return State.at(self.drive, crank_angles(degrees), within)
 
-    @cached_property
+    @part(Motion)
+    def motion(self) -> Motion:
+        """What the mechanism does."""
+        return Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
+
+    @key_value("A_H", "area")
+    def A_head(self) -> Any:
+        """Piston area at the head end."""
+        pistons = self.drive.cylinder.pistons
+        return pistons[0].head_area if pistons else None
+
+    @key_value("A_C", "area")
+    def A_crank(self) -> Any:
+        """Piston area at the crank end."""
+        pistons = self.drive.cylinder.pistons
+        return pistons[0].crank_area if pistons else None
+
+    @key_value("p_max", "pressure", gauge=True)
     def p_max(self) -> Extreme | None:
-        """Largest pressure in Pa at either end of the cylinder's own piston, counted as in the machine file."""
+        """Largest gauge pressure in the cylinder's own piston."""
         if not self.drive.own_gas:
             return None
         gas = self.drive.own_gas
         highest = largest(*(end.highest for end in (gas.head, gas.crank) if end))
         return Extreme(highest.value + gas.base, highest.degrees)
 
-    def offered(self, id: str) -> Any:
-        """Return a key value that the mechanism offers."""
-        return self.drive.mechanism.offered(id, self)
+    @key_value("m", "mass")
+    def m(self) -> Any:
+        """Reciprocating mass with its share of the connecting rod."""
+        return self.drive.mass if self.drive.cylinder.masses else None
 
-    @property
-    def omega(self) -> Any:
-        """Angular velocity in rad/s."""
-        return self.drive.omega
-
-    @property
-    def slides(self) -> bool:
-        """Whether the output slides, so that x gives its position."""
-        return bool(self.drive.mechanism.slides)
-
-    @cached_property
-    def P_inertia_max(self) -> Extreme | None:
-        """Largest inertia force −m b in N, R 298."""
-        return largest(*self._inertia) if self._inertia else None
-
-    @cached_property
-    def P_inertia_min(self) -> Extreme | None:
-        """Smallest inertia force in N."""
-        return smallest(*self._inertia) if self._inertia else None
+    extremes = Searched()
 
     @property
     def _inertia(self) -> list[Extreme]:
@@ -124,24 +181,102 @@ class CylinderForces(SampledCylinder, Results):
         turns = (self.motion.b_max, self.motion.b_min) if self.drive.has_inertia else ()
         return [Extreme(-self.drive.mass * one.value, one.degrees) for one in turns if one]
 
-    @property
-    def A_head(self) -> Any:
-        """Area in m² of the cylinder's own piston at the head end."""
-        pistons = self.drive.cylinder.pistons
-        return pistons[0].head_area if pistons else None
+    @key_value("P_b,max", "force", after="P_start_min")
+    def P_inertia_max(self) -> Extreme | None:
+        """Largest inertia force toward the shaft."""
+        return largest(*self._inertia) if self._inertia else None
 
-    @property
-    def A_crank(self) -> Any:
-        """Area in m² of the cylinder's own piston at the crank end."""
-        pistons = self.drive.cylinder.pistons
-        return pistons[0].crank_area if pistons else None
+    @key_value("P_b,min", "force", after="P_start_min")
+    def P_inertia_min(self) -> Extreme | None:
+        """Largest inertia force away from the shaft, negative."""
+        return smallest(*self._inertia) if self._inertia else None
 
-    @property
-    def m(self) -> Any:
-        """Reciprocating mass in kg; None where no masses are given."""
-        return self.drive.mass if self.drive.cylinder.masses else None
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
+        found = self._extremes.get(column) if self.drive.has_force else None
+        return found or self.motion.extremes_of(column)
+
+    @cached_property
+    def _extremes(self) -> dict[str, Extremes]:
+        """Those of every column that is declared to have extremes, as far as there is one."""
+        declared = column_rows(State, self.mechanism.OFFERS)
+        return self.extremes_over(id for id, row in declared.items() if "forces" in row.quantity.extremes)
+
+    def refuse_locking(self) -> None:
+        """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
+        if self.drive.count is None and may_lock(self.drive.cylinder):
+            self.extremes_of("N")
+
+    # guide and shoe of the crosshead
+
+    @cached_property
+    def lifted(self) -> tuple[tuple[float, float], ...]:
+        """Stretches of crank angle in degrees on which N presses on the upper guide, R p. 602.
+
+        Empty, too, where there is no guide, no N, or no inclination, so that no guide is the lower one.
+        """
+        down, side = self.drive.down, self.sampled("N") if self.drive.has_force else None
+        if side is None or not down or not (self.mechanism.guided and self.mechanism.has_rod):
+            return ()
+        turns = self.pieces.zeros(side).degrees.tolist() or [0.0]
+        stretches = list(zip(turns, [*turns[1:], turns[0] + self.drive.cycle]))
+        middles = np.array([(start + end) / 2 for start, end in stretches])
+        pressing = self.pieces.at(side, np.zeros(len(middles), dtype=np.intp), middles) * down
+        return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
+
+    @key_value("p_g,max", "pressure", after="T_peak")
+    def p_guide_max(self) -> Extreme | None:
+        """Largest pressure of the crosshead's shoe on its guide."""
+        found = None if self.drive.guide_area is None else self.extremes_of("N")
+        if found is None:
+            return None
+        most = largest(*(Extreme(abs(one.value), one.degrees) for one in found))
+        return Extreme(most.value / self.drive.guide_area, most.degrees)
+
+    @key_value("p_g,m", "pressure", after="T_peak")
+    def p_guide_mean(self) -> Any:
+        """Mean over the way of the shoe's pressure on its guide.
+
+        There and back; None without friction there.
+        """
+        f, lost, area = self.drive.crosshead_friction, self.crosshead_work, self.drive.guide_area
+        if area is None or lost is None or not (self.drive.rubs and some(lost != 0)):
+            return None
+        return lost / (f * area * self.way)
+
+    @key_value("f N c_max", "power", after="T_peak")
+    def wear_max(self) -> Extreme | None:
+        """Largest value of the wear line of the guide.
+
+        f |N| |c|.
+        """
+        found = self.extremes_over(("wear",)) if self.drive.guide_area is not None and self.drive.has_force else {}
+        return found["wear"].largest if found else None
+
+    @key_value("f N c_m", "power", after="T_peak")
+    def wear_mean(self) -> Any:
+        """Mean of the wear line: power lost on the guide."""
+        speed, lost = self.drive.machine.speed, self.crosshead_work
+        if self.drive.guide_area is None or lost is None or speed is None:
+            return None
+        return lost * speed / self.drive.revolutions
 
     # work
+
+    @key_value("φ_P=0", "angle", listed=True)
+    def phi_reversal(self) -> tuple[Any, ...] | None:
+        """Druckwechsel: crank angles at which the piston force turns over.
+
+        P changes sign there, through zero or by a jump. Changes that are noise of a trace count once, at the middle
+        one. For many machines one tuple each.
+        """
+        return self.reversals_of("P") if self.drive.has_force else None
+
+    @property
+    def reversals_in_noise(self) -> int:
+        """How many changes of the sign of P are noise of a trace, and are not listed."""
+        values = self.sampled("P") if self.noise and self.drive.has_force else None
+        return 0 if values is None else len(self.pieces.zeros(values).degrees) - len(self.phi_reversal or ())
 
     @property
     def works_one_way(self) -> bool:
@@ -153,38 +288,57 @@ class CylinderForces(SampledCylinder, Results):
         """Indicated work in J per cycle of each piston that has an indicator, in the order of the machine file."""
         return tuple(gas.work for gas in self.drive.gas) if self.drive.gas else None
 
-    @cached_property
+    @key_value("A_i", "energy")
     def work(self) -> Any:
-        """Indicated work in J per cycle of all pistons on the rod."""
+        """Indicated work of all pistons of the rod per cycle."""
         return None if self.piston_works is None else total(*(w for gas in self.drive.gas for w in gas.works))
 
-    @cached_property
+    @key_value("A_i+", "energy", unless=lambda forces: forces.works_one_way)
     def work_driving(self) -> Any:
-        """Sum in J of the positive indicated works: what the driving pistons give."""
+        """Indicated work of the driving pistons per cycle."""
         return None if self.piston_works is None else total(*(where(work > 0, work, 0.0) for work in self.piston_works))
 
-    @cached_property
+    @key_value("A_i−", "energy", unless=lambda forces: forces.works_one_way)
     def work_driven(self) -> Any:
-        """Sum in J of the negative indicated works: what the driven pistons take."""
+        """Indicated work of the driven pistons per cycle, negative."""
         return None if self.piston_works is None else total(*(where(work < 0, work, 0.0) for work in self.piston_works))
 
-    @cached_property
+    @key_value("A_r", "energy")
+    def resistance_work(self) -> Any:
+        """Work per cycle of what the ram or rocker works against, negative."""
+        return self.drive.resistance_work
+
+    @key_value("N_i", "power")
     def power(self) -> Any:
-        """Indicated power in W; None without a speed or at rest."""
+        """Indicated power."""
         speed = self.drive.machine.speed
         if self.work is None or speed is None or every(speed == 0):
             return None
         return self.work * speed / self.drive.revolutions
 
-    @cached_property
+    @key_value("p_i", "pressure")
     def mean_pressure(self) -> Any:
-        """Mean indicated pressure p_i of the cylinder's own piston in Pa: its work over the volume it sweeps."""
+        """Mean indicated pressure of the cylinder's own piston.
+
+        Its work over the volume that it sweeps.
+        """
         gas = self.drive.own_gas
         return None if gas is None else gas.work / gas.swept_volume
 
-    @cached_property
+    @part(Indicated)
+    def indicated(self) -> Indicated | None:
+        """Key values of the traces of the cylinder's own piston."""
+        return Indicated(self.drive.own_gas) if self.drive.own_gas else None
+
+    @part(Brake)
+    def brake(self) -> Brake | None:
+        """Key values of the brake, where this is the only cylinder."""
+        machine = self.drive.machine
+        return Brake(machine, (self,)) if len(machine.cylinders) == 1 and machine.brake_power is not None else None
+
+    @key_value("dA_i/A_i", "ratio")
     def work_sensitivity(self) -> float | None:
-        """Change of the indicated work of the measured traces if they are put 0.1° later, over that work.
+        """Change of the indicated work of the traces, over that work, if they are put 0.1 deg later.
 
         An indicator's dead centre is seldom known better. None without a trace.
         """
@@ -193,15 +347,39 @@ class CylinderForces(SampledCylinder, Results):
         return math.radians(0.1) * math.fsum(by_angle for _, by_angle in traced) / work if work else None
 
     @cached_property
-    def crosshead_work(self) -> Any:
-        """∮ f |N| |dx| in J per cycle."""
-        if not self.drive.has_force or not self.drive.rubs:
-            return 0.0 if self._has_crosshead else None
-        return self._over_cycle(self.samples.crosshead_power)
+    def work_left(self) -> Any:
+        """Work in J per cycle that reaches the shaft: indicated, less friction and what the output works against."""
+        if not self.drive.has_force:
+            return None
+        work, lost, resisted = (
+            0.0 if one is None else one for one in (self.work, self.friction_work, self.resistance_work)
+        )
+        return total(work, -lost, resisted)
+
+    @key_value("W", "force")
+    def W(self) -> Any:
+        """Mean tangential force over the cycle: the resistance.
+
+        What is left of the indicated work over the path of the pin.
+        """
+        if self.work_left is None:
+            return None
+        way = 2 * math.pi * self.drive.mechanism.crank * self.drive.revolutions
+        return self.work_left / way
+
+    # friction
 
     def _over_cycle(self, values: Array) -> Any:
         """Return ∮ value dφ of samples (nodes, pieces): a number, or one of every machine."""
         return self.told(self.pieces.integral(values))
+
+    @cached_property
+    def crosshead_work(self) -> Any:
+        """∮ f |N| |dx| in J per cycle."""
+        if not self.drive.has_force or not self.drive.rubs:
+            return 0.0 if self._has_crosshead else None
+        state = self.samples
+        return self._over_cycle(state.crosshead_drag * (state.slope * state.direction))
 
     @property
     def _has_crosshead(self) -> bool:
@@ -230,71 +408,24 @@ class CylinderForces(SampledCylinder, Results):
         rubbing = self.samples.rubbing if given else None
         if rubbing is None:
             return dict.fromkeys(given, 0.0)
-        moments = {"crank_pin": rubbing.crank_pin, "crosshead_pin": rubbing.crosshead_pin, "journals": rubbing.journals}
-        shape = self.pieces.degrees.shape
-        return {name: self._over_cycle(np.broadcast_to(moments[name], shape)) for name in given}
-
-    def pin_work_of(self, name: str) -> float | None:
-        """Return the work of friction in J per cycle of `crank_pin`, `crosshead_pin` or `journals`; None without it."""
-        return self._pin_works.get(name)
-
-    def pin_loss_of(self, name: str) -> Any:
-        """Return the same over the work of the driving pistons."""
-        return self._of_driving(self.pin_work_of(name))
+        state, shape = self.samples, self.pieces.degrees.shape
+        losses = (state.crank_pin_loss, state.crosshead_pin_loss, rubbing.journals)
+        moments = (np.broadcast_to(one, shape) for one in losses)
+        return {name: self._over_cycle(moment) for name, moment in zip(_RUBBING, moments) if name in given}
 
     @property
     def way(self) -> Any:
         """Path in m of what slides, there and back, per cycle."""
         return 2 * self.drive.mechanism.stroke * self.drive.revolutions
 
-    @cached_property
+    @key_value("A_f", "energy")
     def friction_work(self) -> Any:
-        """Work of all friction in J per cycle."""
+        """Work lost by friction per cycle."""
         if not self.drive.has_force:
             return None
         every = (self.crosshead_work, self.ring_work, self.constant_work, *self._pin_works.values())
         given = [work for work in every if work is not None]
         return total(*given) if given else None
-
-    @cached_property
-    def resistance_work(self) -> Any:
-        """Work in J per cycle of what the ram, or a swinging output, works against; negative."""
-        return self.drive.resistance_work
-
-    @cached_property
-    def work_left(self) -> Any:
-        """Work in J per cycle that reaches the shaft: indicated, less friction and what the output works against."""
-        if not self.drive.has_force:
-            return None
-        work, lost, resisted = (
-            0.0 if one is None else one for one in (self.work, self.friction_work, self.resistance_work)
-        )
-        return total(work, -lost, resisted)
-
-    @cached_property
-    def W(self) -> Any:
-        """Mean tangential force in N over the cycle: what is left of the indicated work over the way of the pin."""
-        if self.work_left is None:
-            return None
-        way = 2 * math.pi * self.drive.mechanism.crank * self.drive.revolutions
-        return self.work_left / way
-
-    @cached_property
-    def loss_crosshead(self) -> Any:
-        """Work lost at the crosshead over that of the driving pistons."""
-        return self._of_driving(self.crosshead_work)
-
-    @cached_property
-    def loss_crosshead_redtenbacher(self) -> Any:
-        """½ λ f, D 7."""
-        if not self._has_crosshead:
-            return None
-        return redtenbacher_loss(self.drive.mechanism.lam, self.drive.crosshead_friction)
-
-    @cached_property
-    def loss_rings(self) -> Any:
-        """Work lost at the rings over that of the driving pistons."""
-        return self._of_driving(self.ring_work)
 
     def _of_driving(self, lost: Any) -> Any:
         """Return lost work in J over the work of the driving pistons; nan for those of many machines without any."""
@@ -303,23 +434,57 @@ class CylinderForces(SampledCylinder, Results):
             return None
         return lost / where(driving == 0, math.nan, driving)
 
-    @cached_property
-    def residual(self) -> float | None:
-        """What Newton's law leaves open of the forces, over the largest; of one machine."""
-        return residual(self)
+    @key_value("e_K", "ratio")
+    def loss_crosshead(self) -> Any:
+        """Work lost at the crosshead over that of the driving pistons."""
+        return self._of_driving(self.crosshead_work)
 
-    @cached_property
+    @key_value("½ λ f", "ratio", plain="lam f/2")
+    def loss_crosshead_redtenbacher(self) -> Any:
+        """Redtenbacher's mean over the rod angle of the same loss (D 7)."""
+        if not self._has_crosshead:
+            return None
+        return redtenbacher_loss(self.drive.mechanism.lam, self.drive.crosshead_friction)
+
+    @key_value("e_R", "ratio")
+    def loss_rings(self) -> Any:
+        """Work lost at the piston rings over that of the driving pistons."""
+        return self._of_driving(self.ring_work)
+
+    @for_each(_RUBBING, "work_*", "A_f,*", "energy")
+    def pin_work_of(self, name: str) -> Any:
+        """Work lost * per cycle.
+
+        Of `crank_pin`, `crosshead_pin` or `journals`; None without its friction.
+        """
+        return self._pin_works.get(name)
+
+    @for_each(_RUBBING, "loss_*", "e_*", "ratio")
+    def pin_loss_of(self, name: str) -> Any:
+        """Work lost * over that of the driving pistons."""
+        return self._of_driving(self.pin_work_of(name))
+
+    @key_value("ΔA/A", "ratio", residual=True)
     def energy_residual(self) -> Any:
-        """(∮ T R dφ − indicated work + other work) over ∮ |T| R dφ: quadrature of the torque against closed work.
+        """Energy in minus energy out by an independent quadrature.
 
-        With a measured trace at equal angles the quadrature follows the straight lines between the samples, the
-        indicated work the trapezoid rule: the residual then shows what the spacing of the samples leaves open.
+        (∮ T R dφ − indicated work + other work) over ∮ |T| R dφ: quadrature of the torque against closed work. With a
+        measured trace at equal angles the quadrature follows the straight lines between the samples, the indicated work
+        the trapezoid rule: the residual then shows what the spacing of the samples leaves open.
         """
         if self.work_left is None:
             return None
         torque = self.samples.M
         turnover, missed = self._over_cycle(np.abs(torque)), self._over_cycle(torque) - self.work_left
         return where(turnover > 0, missed / where(turnover > 0, turnover, 1.0), 0.0)
+
+    @key_value("r_F", "ratio", residual=True)
+    def residual(self) -> float | None:
+        """What Newton's law leaves open of the forces, over the largest.
+
+        Of one machine.
+        """
+        return residual(self)
 
     # rod load
 
@@ -333,21 +498,31 @@ class CylinderForces(SampledCylinder, Results):
     def _rod_loads(self) -> dict[str, Extremes]:
         return self.extremes_over(("P_gas", "P_rod", "P_piston_rod")) if self.drive.has_force else {}
 
-    def compression_max(self, column: str) -> Extreme | None:
-        """Return the largest force in N toward the shaft; 0, where it comes nearest, if none."""
-        found = self._rod_loads.get(column)
-        return found and _at_least_zero(found.largest.value, found.largest.degrees)
+    @for_each(
+        _ROD_LOADS,
+        "*_max",
+        "*",
+        "force",
+        group=lambda load: load.rpartition("_")[0],
+        unless=lambda forces: forces.no_compressor,
+    )
+    def rod_load_max(self, which: str) -> Extreme | None:
+        """Largest *.
 
-    def tension_max(self, column: str) -> Extreme | None:
-        """Return the size of the largest force in N away from the shaft; 0, where it comes nearest, if none."""
-        found = self._rod_loads.get(column)
-        return found and _at_least_zero(-found.smallest.value, found.smallest.degrees)
+        In tension its size; 0, where it comes nearest, if it is never loaded so.
+        """
+        column, _, way = which.rpartition("_")
+        found = self._rod_loads.get(f"P_{column}")
+        if found is None:
+            return None
+        value, degrees = found.largest if way == "compression" else (-found.smallest.value, found.smallest.degrees)
+        return Extreme(where(value > 0, value, 0.0), degrees)
 
-    @cached_property
+    @key_value("φ_G=0", "angle", listed=True, unless=lambda forces: forces.no_compressor)
     def phi_rod_reversal(self) -> tuple[Any, ...] | None:
-        """Crank angles in degrees at which the rod load changes sign; changes within the noise of a trace count once.
+        """Crank angles at which the rod load at the crosshead pin reverses.
 
-        For many machines one tuple each.
+        Changes within the noise of a trace count once. For many machines one tuple each.
         """
         return self.reversals_of("P_rod") if self.drive.has_force else None
 
@@ -370,19 +545,19 @@ class CylinderForces(SampledCylinder, Results):
         pressed, pulled = (_stretches(machine[way], (end - start)[way], len(each)) for way in (presses, ~presses))
         return np.where(pulled[0] < pressed[0], pulled, pressed)
 
-    @property
+    @key_value("Δφ_G", "angle", wanted_large=True, unless=lambda forces: forces.no_compressor)
     def reversal_angle(self) -> Any:
-        """Degrees of crank angle per cycle of the reversed load; 0 where it does not reverse."""
+        """Crank angle per cycle of a reversed rod load: pressed or pulled, whichever is less; a bound is the least."""
         return None if self._reversed is None else self.told(self._reversed[0])
 
-    @property
+    @key_value("Δφ_G,1", "angle", wanted_large=True, unless=lambda forces: forces.no_compressor)
     def reversal_longest(self) -> Any:
-        """The longest of its stretches in degrees."""
+        """The longest stretch of it; a bound is the least."""
         return None if self._reversed is None else self.told(self._reversed[1])
 
-    @property
+    @key_value("P_G,min/max", "ratio", wanted_large=True, unless=lambda forces: forces.no_compressor)
     def reversal_ratio(self) -> Any:
-        """Smaller peak of the rod load over the larger one; 0 where it does not reverse."""
+        """Smaller over larger peak of the rod load, pressed and pulled; a bound is the least."""
         angle, peaks = self.reversal_angle, self._rod_loads.get("P_rod")
         if angle is None or peaks is None or not some(angle > 0):
             return angle
@@ -390,87 +565,12 @@ class CylinderForces(SampledCylinder, Results):
         ratio = where(pressed < pulled, pressed, pulled) / where(pressed < pulled, pulled, pressed)
         return where(angle > 0, ratio, 0.0)
 
-    # the shoe of the crosshead
 
-    @property
-    def p_guide_max(self) -> Extreme | None:
-        """Largest pressure of the crosshead's shoe on its guide in Pa."""
-        found = None if self.drive.guide_area is None else self.extremes_of("N")
-        if found is None:
-            return None
-        most = largest(*(Extreme(abs(one.value), one.degrees) for one in found))
-        return Extreme(most.value / self.drive.guide_area, most.degrees)
-
-    @property
-    def p_guide_mean(self) -> Any:
-        """Mean pressure in Pa of the shoe on its guide over the way there and back; None without friction there."""
-        f, lost, area = self.drive.crosshead_friction, self.crosshead_work, self.drive.guide_area
-        if area is None or lost is None or not (self.drive.rubs and some(lost != 0)):
-            return None
-        return lost / (f * area * self.way)
-
-    @property
-    def wear_max(self) -> Extreme | None:
-        """Largest value of the wear line f |N| |c| in W."""
-        found = self.extremes_over(("wear",)) if self.drive.guide_area is not None and self.drive.has_force else {}
-        return found["wear"].largest if found else None
-
-    @property
-    def wear_mean(self) -> Any:
-        """Mean of the wear line over time in W."""
-        speed, lost = self.drive.machine.speed, self.crosshead_work
-        if self.drive.guide_area is None or lost is None or speed is None:
-            return None
-        return lost * speed / self.drive.revolutions
-
-
-class Brake:
-    """What the brake has measured against what the indicator shows; None without a brake or an indicated power.
-
-    A machine that is driven takes more at the shaft than its pistons give to the gas: there the efficiency is the
-    other way round.
-    """
-
-    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
-        self.machine, self.cylinders = machine, cylinders
-
-    @cached_property
-    def indicated(self) -> Any:
-        """Indicated power in W of all cylinders, negative where they are driven; None where one has none."""
-        powers = [forces.power for forces in self.cylinders]
-        known = [power for power in powers if power is not None]
-        return total(*known) if known and len(known) == len(powers) else None
-
-    @cached_property
-    def _swept(self) -> Any:
-        """Volume in m³ that the cylinders' own pistons sweep per second against their pressures; None at rest."""
-        speed, volumes = self.machine.speed, list(map(_swept_rate, self.cylinders))
-        known = [volume for volume in volumes if volume is not None]
-        whole = total(*known) if known and len(known) == len(volumes) else None
-        return None if whole is None or speed is None or every(whole * speed == 0) else whole * speed
-
-    @property
-    def mean_pressure_brake(self) -> Any:
-        """p_e in Pa: brake power over the volume swept in a second."""
-        power = self.machine.brake_power
-        return None if power is None or self._swept is None else power / self._swept
-
-    @property
-    def mean_pressure_friction(self) -> Any:
-        """p_r in Pa: |p_i| less p_e, or p_e less |p_i| where the machine is driven."""
-        brake, indicated = self.mean_pressure_brake, self.indicated
-        if brake is None or indicated is None:
-            return None
-        return where(indicated < 0, -1.0, 1.0) * (abs(indicated) / self._swept - brake)
-
-    @property
-    def eta_m(self) -> Any:
-        """Brake over indicated power, or indicated over brake power where the machine is driven."""
-        power, indicated = self.machine.brake_power, self.indicated
-        if power is None or indicated is None or every(power == 0) or every(indicated == 0):
-            return None
-        drives = indicated > 0
-        return where(drives, power, -indicated) / where(drives, indicated, power)
+@cache
+def _rows(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: bool, absolute: bool) -> Rows:
+    """Return the rows of cylinders with these quantities of mechanisms: of a ram without piston, or absolute."""
+    known = rows_of(CylinderForces, offers, key_offers)
+    return known.changed(Quantity.of_ram if of_ram else Quantity.absolute) if of_ram or absolute else known
 
 
 def _swept_rate(forces: CylinderForces) -> float | None:
@@ -484,7 +584,3 @@ def _stretches(whose: Indices, degrees: Array, count: int) -> Array:
     longest = np.zeros(count)
     np.maximum.at(longest, whose, degrees)
     return np.stack((np.bincount(whose, degrees, count), longest))
-
-
-def _at_least_zero(value: Any, degrees: Any) -> Extreme:
-    return Extreme(where(value > 0, value, 0.0), degrees)

@@ -9,6 +9,8 @@ import numpy as np
 from kurbel.arrays import Array, Indices
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import key_value
+from kurbel.solver.figures import Results
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.trace import TracePressure
 from kurbel.traces.correct import COMPRESSION, EXPANSION, exponent
@@ -24,15 +26,15 @@ class Cycles(NamedTuple):
     p_rise_max: Array
 
 
-class Indicated:
-    """The key values of the traces of a cylinder's own piston, by their ids in SI; None where it has none."""
+class Indicated(Results):
+    """The key values of the traces of a cylinder's own piston, in SI; None where it has none."""
 
-    def __init__(self, gas: PistonGas | None) -> None:
+    def __init__(self, gas: PistonGas) -> None:
         self.gas = gas
 
     @cached_property
     def _traces(self) -> tuple[TracePressure, ...]:
-        ends = (self.gas.head, self.gas.crank) if self.gas else ()
+        ends = (self.gas.head, self.gas.crank)
         return tuple(end for end in ends if isinstance(end, TracePressure))
 
     @property
@@ -40,21 +42,39 @@ class Indicated:
         """The only trace of the piston."""
         return self._traces[0] if len(self._traces) == 1 else None
 
-    @property
+    def _share(self, pressure: TracePressure) -> float:
+        """Return the share of a chamber in the swept volume."""
+        area = self.gas.piston.head_area if pressure.setting.head_end else self.gas.piston.crank_area
+        return float(area * pressure.setting.mechanism.stroke / self.gas.swept_volume)
+
+    @key_value("p_i,g", "pressure")
+    def mean_pressure_gross(self) -> float | None:
+        """Share of p_i of compression and expansion."""
+        if self.mean_pressure_exchange is None:
+            return None
+        return float(self.gas.work / self.gas.swept_volume) - self.mean_pressure_exchange
+
+    @key_value("p_i,w", "pressure")
+    def mean_pressure_exchange(self) -> float | None:
+        """Share of p_i of exhaust and intake: the pumping loop.
+
+        None in two strokes.
+        """
+        weighed = ((one, one.exchange_weights) for one in self._traces)
+        each = [self._share(one) * weights * one.pressures for one, weights in weighed if weights is not None]
+        if not each:
+            return None
+        parts = np.concatenate(each).tolist()
+        return float(unless_cancelled(math.fsum(parts), math.fsum(map(abs, parts))))
+
+    @key_value("V_c", "volume")
     def V_clearance(self) -> Any:
-        """Clearance of the head-end chamber in m³; None where it is not known, or nan among others."""
-        volume = self.gas.clearance_volumes[0] if self.gas and self.gas.head else 0.0
+        """Clearance of the head-end chamber.
+
+        None where it is not known, or nan among others.
+        """
+        volume = self.gas.clearance_volumes[0] if self.gas.head else 0.0
         return where(volume == 0, math.nan, volume) if some(volume != 0) else None
-
-    @property
-    def n_compression(self) -> float | None:
-        """Exponent of the compression."""
-        return self._exponent(COMPRESSION)
-
-    @property
-    def n_expansion(self) -> float | None:
-        """Exponent of the expansion."""
-        return self._exponent(EXPANSION)
 
     def _exponent(self, stretch: tuple[float, float]) -> float | None:
         if not self._one:
@@ -64,33 +84,23 @@ class Indicated:
         found = exponent(setting, trace.clearance, setting.from_dead_centre(trace), absolute, stretch)
         return found.value if found else None
 
-    @property
+    @key_value("n_c", "ratio")
+    def n_compression(self) -> float | None:
+        """Exponent of p V^n over the compression, 90 to 40 deg before its end."""
+        return self._exponent(COMPRESSION)
+
+    @key_value("n_d", "ratio")
+    def n_expansion(self) -> float | None:
+        """Exponent of p V^n over the expansion, 60 to 100 deg after its start."""
+        return self._exponent(EXPANSION)
+
+    @key_value("dp/dφ_max", "pressure_rise")
     def p_rise_max(self) -> Extreme | None:
-        """Largest rise of pressure in Pa per degree, of the mean of the cycles."""
+        """Largest rise of pressure over 1 deg of angle.
+
+        Of the mean of the cycles.
+        """
         return max((one.steepest for one in self._traces), default=None)
-
-    @cached_property
-    def mean_pressure_exchange(self) -> float | None:
-        """Share of p_i in Pa of exhaust and intake; None in two strokes."""
-        weighed = ((one, one.exchange_weights) for one in self._traces)
-        each = [self._share(one) * weights * one.pressures for one, weights in weighed if weights is not None]
-        if not each:
-            return None
-        parts = np.concatenate(each).tolist()
-        return float(unless_cancelled(math.fsum(parts), math.fsum(map(abs, parts))))
-
-    @property
-    def mean_pressure_gross(self) -> float | None:
-        """Share of p_i in Pa of compression and expansion."""
-        if self.gas is None or self.mean_pressure_exchange is None:
-            return None
-        return float(self.gas.work / self.gas.swept_volume) - self.mean_pressure_exchange
-
-    def _share(self, pressure: TracePressure) -> float:
-        """Return the share of a chamber in the swept volume."""
-        assert self.gas is not None
-        area = self.gas.piston.head_area if pressure.setting.head_end else self.gas.piston.crank_area
-        return float(area * pressure.setting.mechanism.stroke / self.gas.swept_volume)
 
     # the measured cycles
 
@@ -98,7 +108,7 @@ class Indicated:
     def cycles(self) -> Cycles | None:
         """The measured cycles, where there are several; an end with one cycle is the same in all."""
         counts = {len(one.each) for one in self._traces} - {1}
-        if self.gas is None or len(counts) != 1:
+        if len(counts) != 1:
             return None
         count = counts.pop()
         ends = [_of_cycles(one, count) for one in self._traces]
@@ -115,45 +125,48 @@ class Indicated:
             np.max([end.p_rise_max for end in ends], axis=0),
         )
 
-    @property
+    @key_value("Z", "ratio")
     def cycles_measured(self) -> int | None:
-        """Number of measured cycles."""
+        """Number of measured cycles, of whose mean the forces are."""
         return len(self.cycles.p_max) if self.cycles else None
 
-    @property
+    @key_value("s_p_i", "pressure")
     def mean_pressure_std(self) -> float | None:
-        """Standard deviation of p_i in Pa over the cycles, of a sample: with m − 1."""
+        """Standard deviation of p_i over the cycles.
+
+        Of a sample: with m − 1.
+        """
         return float(self.cycles.mean_pressure.std(ddof=1)) if self.cycles else None
 
-    @property
+    @key_value("COV", "ratio")
     def mean_pressure_cov(self) -> float | None:
-        """Coefficient of variation of p_i."""
+        """Coefficient of variation of p_i: standard deviation over mean."""
         if self.cycles is None or self.mean_pressure_std is None:
             return None
         mean = abs(float(self.cycles.mean_pressure.mean()))
         return self.mean_pressure_std / mean if mean else None
 
-    @property
+    @key_value("p_max,m", "pressure", gauge=True)
     def p_max_mean(self) -> float | None:
-        """Mean of the largest pressures of the cycles in Pa."""
+        """Mean of the largest gauge pressures of the cycles."""
         return float(self.cycles.p_max.mean()) if self.cycles else None
 
-    @property
+    @key_value("s_p_max", "pressure")
     def p_max_std(self) -> float | None:
-        """Their standard deviation in Pa."""
+        """Standard deviation of the largest pressures of the cycles."""
         return float(self.cycles.p_max.std(ddof=1)) if self.cycles else None
 
-    @property
+    @key_value("p_max,Z", "pressure", gauge=True)
     def p_max_most(self) -> Extreme | None:
-        """Largest pressure of any cycle in Pa."""
+        """Largest gauge pressure of any cycle."""
         if self.cycles is None:
             return None
         top = int(np.argmax(self.cycles.p_max))
         return Extreme(float(self.cycles.p_max[top]), float(self.cycles.phi_p_max[top]))
 
-    @property
+    @key_value("Z_min", "ratio")
     def cycle_worst(self) -> int | None:
-        """Number of the cycle with the smallest p_i, from 1."""
+        """Number of the cycle with the smallest p_i, counted from 1."""
         return int(np.argmin(self.cycles.mean_pressure)) + 1 if self.cycles else None
 
 

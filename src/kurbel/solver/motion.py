@@ -15,72 +15,89 @@ from kurbel.mechanisms import Mechanism, Offer
 from kurbel.numerics.arithmetic import every, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
 from kurbel.numerics.pieces import Angles, Pieces, refined
+from kurbel.quantity import key_value
+from kurbel.solver.figures import Results, Rows, Searched, rows_of
 
 
-class Motion:
-    """What the mechanism does at a speed of rotation. Attributes are named by the ids of the key values, in SI.
+class Motion(Results):
+    """What the mechanism does at a speed of rotation: key values in SI.
 
     speed: revolutions per second, or None: then velocities and accelerations are None. So is all that the mechanism
-    does not have, as a stroke where nothing slides. What it offers itself is `offered(id)`. count: of how many machines
-    the numbers are, (machines,); None for one.
+    does not have, as a stroke where nothing slides. count: of how many machines the numbers are, (machines,); None for
+    one.
     """
+
+    command = "motion"
 
     def __init__(self, mechanism: Mechanism, speed: Any, count: int | None = None) -> None:
         self.mechanism, self.speed, self._count = mechanism, speed, count
+
+    @property
+    def rows(self) -> Rows:
+        """The rows that the motion of this mechanism may have."""
+        return rows_of(Motion, self.mechanism.OFFERS, self.mechanism.KEY_OFFERS)
+
+    @property
+    def equal_strokes(self) -> bool:
+        """Whether the strokes take equal times, so that nothing need be said of each."""
+        return every(abs(self.time_ratio - 1) <= 1e-12)
 
     @cached_property
     def omega(self) -> float | None:
         """Angular velocity in rad/s."""
         return None if self.speed is None else 2 * math.pi * self.speed
 
-    @cached_property
+    @key_value("s", "length")
     def stroke(self) -> Any:
-        """s in m."""
+        """Stroke."""
         return self.mechanism.stroke if self.mechanism.slides else None
 
-    @cached_property
+    @key_value("φ_i", "angle")
     def phi_idc(self) -> Any:
-        """Inner dead centre in degrees, from 0 to 360; None where there is none."""
+        """Crank angle of the inner dead centre."""
         return _within_turn(self.mechanism.dead_centres()[0]) if self.mechanism.has_dead_centres else None
 
-    @cached_property
+    @key_value("φ_o", "angle")
     def phi_odc(self) -> Any:
-        """Outer dead centre in degrees, from 0 to 360; None where there is none."""
+        """Crank angle of the outer dead centre."""
         return _within_turn(self.mechanism.dead_centres()[1]) if self.mechanism.has_dead_centres else None
 
-    @cached_property
+    @key_value("φ_w", "angle", unless=lambda motion: motion.equal_strokes)
     def phi_work(self) -> Any:
-        """Crank rotation in degrees of the outstroke, or of the working stroke."""
+        """Crank rotation of the outstroke (working stroke)."""
         return self.mechanism.phi_work
 
-    @cached_property
+    @key_value("φ_r", "angle", unless=lambda motion: motion.equal_strokes)
     def phi_return(self) -> Any:
-        """Crank rotation in degrees of the return stroke."""
+        """Crank rotation of the return stroke."""
         return self.mechanism.phi_return
 
-    @cached_property
+    @key_value("t_w/t_r", "ratio", unless=lambda motion: motion.equal_strokes)
     def time_ratio(self) -> Any:
         """Time of the outstroke (working stroke) over that of the return stroke."""
         return self.mechanism.time_ratio
 
-    @cached_property
+    @key_value("v", "velocity")
     def v(self) -> Any:
-        """Crank-pin speed Rω in m/s."""
+        """Crank-pin speed."""
         return None if self.omega is None else self.mechanism.crank * self.omega
 
-    @cached_property
+    @key_value("c_m", "velocity")
     def c_m(self) -> Any:
-        """Mean piston speed 2 s n in m/s, R 290."""
+        """Mean piston speed 2 s n (R 290)."""
         return None if self.speed is None or self.stroke is None else 2 * self.stroke * self.speed
 
-    @property
+    @key_value("c_a,m", "velocity", unless=lambda motion: motion.equal_strokes)
     def c_work_m(self) -> Any:
-        """Mean speed in m/s of the outstroke, or of the working stroke: s n · 360°/φ_w (R p. 615)."""
+        """Mean speed of the outstroke (of work, R p. 615).
+
+        s n · 360°/φ_w.
+        """
         return None if self.c_m is None else self.c_m * (180.0 / self.phi_work)
 
-    @property
+    @key_value("c_r,m", "velocity", unless=lambda motion: motion.equal_strokes)
     def c_return_m(self) -> Any:
-        """Mean speed in m/s of the return stroke, positive."""
+        """Mean speed of the return stroke (R p. 615)."""
         return None if self.c_m is None else self.c_m * (180.0 / self.phi_return)
 
     @cached_property
@@ -141,58 +158,44 @@ class Motion:
         number = next((n for n, one in enumerate(self._offers) if one.quantity.id == column), None)
         if number is None or self.omega is None:
             return None
-        found = self._times_omega(self._searched[2 + number], len(self._offers[number].times))
+        found = self._times_omega(self._searched[2 + number], self._offers[number].omega)
         return None if every(found.largest.value - found.smallest.value <= 1e-14 * abs(found.largest.value)) else found
 
-    def offered(self, id: str) -> Any:
-        """Return a key value that the mechanism offers."""
-        return self.mechanism.offered(id, self)
-
-    @property
-    def equal_strokes(self) -> bool:
-        """Whether the strokes take equal times, so that nothing need be said of each."""
-        return every(abs(self.time_ratio - 1) <= 1e-12)
-
-    @property
-    def has_no_c_min(self) -> bool:
-        """Whether the return stroke is as fast as the outstroke, or its speed is printed as `c_return_max`."""
-        return self.equal_strokes or self.mechanism.quick_return
-
-    @cached_property
+    @key_value("c_max", "velocity")
     def c_max(self) -> Extreme | None:
-        """Largest velocity on the outstroke, of a piston toward the shaft, in m/s."""
+        """Largest velocity on the outstroke."""
         return self._velocity.largest if self._moves else None
 
-    @cached_property
+    @key_value("c_min", "velocity", unless=lambda motion: motion.equal_strokes or motion.mechanism.quick_return)
     def c_min(self) -> Extreme | None:
-        """Largest velocity on the return stroke in m/s, negative."""
+        """Largest velocity on the return stroke, negative."""
         return self._velocity.smallest if self._moves else None
 
-    @cached_property
+    @key_value("c_a,max", "velocity")
     def c_work_max(self) -> Extreme | None:
-        """Largest speed of the working stroke in m/s, R 304."""
+        """Largest speed of the working stroke (R 304)."""
         return self.c_max if self.mechanism.quick_return else None
 
-    @cached_property
+    @key_value("c_r,max", "velocity")
     def c_return_max(self) -> Extreme | None:
-        """Largest speed of the return stroke in m/s, R 305, positive."""
+        """Largest speed of the return stroke (R 305)."""
         if not self.mechanism.quick_return or self.c_min is None:
             return None
         return Extreme(-self.c_min.value, self.c_min.degrees)
 
-    @cached_property
+    @key_value("b_max", "acceleration")
     def b_max(self) -> Extreme | None:
-        """Largest acceleration in m/s²."""
+        """Largest acceleration."""
         return self._acceleration.largest if self._moves else None
 
-    @cached_property
+    @key_value("b_min", "acceleration")
     def b_min(self) -> Extreme | None:
-        """Smallest acceleration in m/s²."""
+        """Smallest acceleration: the largest deceleration, negative."""
         return self._acceleration.smallest if self._moves else None
 
-    @cached_property
+    @key_value("φ_b=0", "angle", listed=True)
     def phi_b_zero(self) -> tuple[Any, ...] | None:
-        """Crank angles in degrees at which the acceleration is zero."""
+        """Crank angles at which the acceleration passes zero."""
         if not self.mechanism.slides:
             return None
         closed = self.mechanism.velocity_extremes()
@@ -203,6 +206,8 @@ class Motion:
         if self._count is None:
             return tuple(found.degrees.tolist())
         return tuple(tuple(one.tolist()) for one in found.of_each(self._count))
+
+    of_the_mechanism = Searched()
 
 
 def every_dead_centre(mechanism: Mechanism, count: int, cycle: float) -> Array:

@@ -34,7 +34,7 @@ from kurbel.solver.effort import Term, TurningEffort, inertia_torque, moves
 from kurbel.solver.figures import Columns, Results
 from kurbel.solver.harmonics import HIGHEST, MachineOrders, Spectrum, every_order
 from kurbel.solver.speed import SpeedLaw
-from kurbel.solver.state import reduced_inertia
+from kurbel.solver.state import State, reduced_inertia
 
 NEAR = 0.1
 """A critical speed so near the working speed, relatively, is worth a note."""
@@ -204,7 +204,7 @@ class Vibration:
 
 def _mean_inertia(drive: Drive) -> float:
     """Return the mean over the turn of the reduced moment of inertia of a cylinder in kg m², whatever forces act."""
-    pieces, inertia = refined(drive.pieces, lambda some: reduced_inertia(drive.on(some))[None])
+    pieces, inertia = refined(drive.pieces, lambda some: reduced_inertia(State.on(drive, some))[None])
     return float(pieces.mean(inertia[0])[0])
 
 

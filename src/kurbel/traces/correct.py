@@ -153,6 +153,12 @@ class Setting(NamedTuple):
         """What the chamber's figures plus this are absolute pressures, in Pa."""
         return 0.0 if self.absolute else self.ambient
 
+    @property
+    def own_dead_centre(self) -> float:
+        """Crank angle in degrees at which the chamber is smallest."""
+        inner, outer = self.mechanism.dead_centres()
+        return inner if self.head_end else outer
+
     def shift(self, trace: Trace) -> float:
         """Return what is added to an angle of a trace to make it a crank angle, in degrees."""
         inner, outer = self.mechanism.dead_centres()
@@ -160,14 +166,12 @@ class Setting(NamedTuple):
 
     def from_dead_centre(self, trace: Trace) -> Array:
         """Return the angles (n,) in degrees of samples from the chamber's own (firing) dead centre, −½ to ½ cycle."""
-        inner, outer = self.mechanism.dead_centres()
-        after = trace.angles + self.shift(trace) - (inner if self.head_end else outer)
+        after = trace.angles + self.shift(trace) - self.own_dead_centre
         return np.asarray(np.remainder(after + self.cycle / 2, self.cycle) - self.cycle / 2)
 
     def stroke_fraction(self, after: Array) -> Array:
         """Return the fraction of the stroke from the chamber's smallest volume, so many degrees after it."""
-        inner, outer = self.mechanism.dead_centres()
-        angle = CrankAngle.of(after + (inner if self.head_end else outer))
+        angle = CrankAngle.of(after + self.own_dead_centre)
         displaced = (self.mechanism.coordinate(angle) - self.mechanism.start) / self.mechanism.stroke
         return np.asarray(displaced if self.head_end else 1 - displaced)
 

@@ -3,21 +3,18 @@
 import re
 from abc import abstractmethod
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from kurbel.declared.forms.scalars import Number, Physical
 from kurbel.declared.keys import Form, Schema
 from kurbel.declared.numerals import NUMBER, familiar
-from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import REFUSED, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
 from kurbel.near_words import did_you_mean
-
-Known = Callable[[], dict[str, "Quantity"]]
-"""Returns the key values by id; asked only where a machine names some."""
+from kurbel.quantity import Quantity, ambiguity, called
 
 
 class Bound(float):
@@ -68,9 +65,6 @@ class _Figures(Form):
     what: str
     """What is put on a key value, for messages."""
 
-    def __init__(self, known: Known) -> None:
-        self.known = known
-
     @abstractmethod
     def figure(self, size: Number | Physical) -> Form:
         """Return the form of a figure for a quantity of which values have this form."""
@@ -83,7 +77,10 @@ class _Figures(Form):
         return self.figure(Number() if quantity.kind == "ratio" else Physical(quantity.kind))
 
     def schema(self, definitions: Schema) -> Schema:
-        known = self.known()
+        return {"type": "object"}  # what reads machine files knows the key values: see `schema_of`
+
+    def schema_of(self, known: Mapping[str, Quantity], definitions: Schema) -> Schema:
+        """Return the schema of a mapping from these key values, by id."""
         # a symbol of several, or of one and the id of another, names none
         named = Counter(name for one in known.values() for name in {one.id, one.symbol, one.ascii_symbol})
         properties = {
@@ -111,7 +108,7 @@ class _Figures(Form):
         """Read every figure by the form of its quantity."""
         if not isinstance(value, dict):  # an empty one, as --set limits={} writes it, takes off those of the file
             refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
-        known = self.known()
+        known = reading.key_values()
         found: dict[str, Any] = {}
         for name, figure in value.items():
             id, wrong = self._meant(name, known)
@@ -124,7 +121,7 @@ class _Figures(Form):
                 found[id] = read if read is REFUSED else self.named(read, figure, name)
         return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
 
-    def _meant(self, name: str, known: dict[str, Quantity]) -> tuple[str, str]:
+    def _meant(self, name: str, known: Mapping[str, Quantity]) -> tuple[str, str]:
         """Return the id that a name stands for, with whose it is before it, and what is wrong with it."""
         found = called(name, known.values())
         scope, own = scoped(name)

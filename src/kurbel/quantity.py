@@ -1,0 +1,401 @@
+"""A quantity: one printed figure or column, said once, as an attribute of the class that computes it.
+
+    @key_value("A_H", "area")
+    def A_head(self) -> Values | None:
+        'Piston area at the head end.'
+
+The name of the method is the id of the quantity, the first paragraph of its docstring the sentence that users read. The
+attribute is computed on first use. The rows of a class are printed in the order in which they are defined
+(`kurbel.solver.figures`); `kurbel.quantities` lists those of all classes.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
+from typing import Any, Generic, NamedTuple, TypeVar, overload
+
+V = TypeVar("V")
+
+NOISE_POWER = -14
+"""A residual below this power of ten is rounding, another on every processor."""
+
+
+GREEK = {
+    "φ": "phi", "ψ": "psi", "θ": "theta", "Θ": "Theta", "ω": "omega", "δ": "delta", "Δ": "d", "λ": "lambda", "μ": "mu",
+    "ν": "nu", "η": "eta", "π": "pi", "ρ": "rho", "ε": "eps", "γ": "gamma", "α": "alpha", "β": "beta", "κ": "kappa",
+    "σ": "sigma", "τ": "tau", "Σ": "sum ", "½": "1/2", "−": "-", "\u0307": "_dot", "\u0308": "_ddot",
+}  # fmt: skip
+"""Sign of a symbol -> what stands for it where the output has no Greek letters."""
+_PLAIN = str.maketrans(GREEK)
+_EXTREME_TEXTS = {"largest": "Largest", "smallest": "Smallest", "peak": "Largest magnitude of"}
+"""Part of the extremes of a column -> the first words of its sentence."""
+
+
+class Quantity(NamedTuple):
+    """One printed quantity; the order in which quantities are declared is that in which they are printed.
+
+    `id` stands in JSON and CSV, `symbol` over the printed table (`plain` where the output has no Greek letters, if it
+    is more than what stands for each of them), `kind` decides the unit (see `units`), and `text` says in one sentence
+    what it is. `commands` print it, if the machine has it. Its value is the attribute of its id in the results of the
+    command, or what `asks` names: a method of the results, its argument, and which part of what it returns.
+    `extremes`: of a column, the commands that print its largest and smallest value as key values `<id>_max` and
+    `<id>_min`; `called` names it in their sentences.
+    `unless`: an attribute of the results; where it is true, the quantity adds nothing and is printed only on request.
+    `after`: the id after which it is printed, if not where it is declared. A `residual` would be zero without rounding:
+    tables do not show rounding. A quantity that is `listed`, a list of values, cannot have a bound.
+    `group`: quantities of one kind and one group are shown in one unit; '' for that of its column.
+    `peak`: a column with extremes that has, besides, its largest magnitude as key value `<id>_peak`.
+    `on_request`: the commands that print it only where it is requested by name.
+    `wanted_large`: a bound on it is one from below, as on every smallest value.
+    `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
+    """
+
+    id: str
+    symbol: str
+    kind: str
+    text: str
+    plain: str = ""
+    commands: tuple[str, ...] = ()
+    extremes: tuple[str, ...] = ()
+    called: str = ""
+    unless: str = ""
+    after: str = ""
+    asks: tuple[str, ...] = ()
+    residual: bool = False
+    listed: bool = False
+    peak: bool = False
+    on_request: tuple[str, ...] = ()
+    wanted_large: bool = False
+    gauge: bool = False
+    mark: str = ""
+    group: str = ""
+
+    @property
+    def bounded_below(self) -> bool:
+        """Whether a bound on it is one from below."""
+        return self.wanted_large or self.id.endswith("_min")
+
+    @property
+    def ascii_symbol(self) -> str:
+        """The symbol for an output that cannot show Greek letters."""
+        return self.plain or self.symbol.translate(_PLAIN)
+
+    @property
+    def family(self) -> str:
+        """What its largest, smallest and mean value have in common: their column, or their id but for its end.
+
+        >>> force = Quantity("F_pin", "F_z", "force", "Force on the pin", called="force")
+        >>> force.extreme("smallest", "min", ("forces",)).family, Quantity("wear_mean", "f N c_m", "power", "").family
+        ('F_pin', 'wear')
+        """
+        if self.group:
+            return self.group
+        name = self.asks[1] if len(self.asks) > 1 else self.id
+        stem, _, end = name.rpartition("_")
+        return stem if end in ("max", "min", "peak", "mean") else name
+
+    def is_noise(self, value: float) -> bool:
+        """Whether this value is a residual of rounding alone."""
+        return self.residual and abs(value) < 10.0**NOISE_POWER
+
+    def absolute(self) -> Quantity:
+        """Return the quantity of a machine whose pressures are absolute."""
+        text = self.text.replace("Gauge", "Absolute").replace("gauge", "absolute")
+        return self._replace(text=text, mark="abs") if self.gauge else self
+
+    def of_ram(self) -> Quantity:
+        """Return the quantity of a machine that drives a ram and has no piston."""
+        text = self.text.replace("piston force", "force along the stroke line").replace("piston speed", "ram speed")
+        return self._replace(text=text)
+
+    def marked(self, unit: str) -> str:
+        """Return the unit as it is shown."""
+        return f"{unit} {self.mark}".rstrip()
+
+    def extreme(self, word: str, end: str, commands: tuple[str, ...]) -> Quantity:
+        """Return the key value that is the largest (`max`), smallest (`min`), or largest magnitude of this column.
+
+        >>> force = Quantity("F_pin", "F_z", "force", "Force on the pin", called="force")
+        >>> force.extreme("largest", "max", ("forces",))[:4]
+        ('F_pin_max', 'F_z,max', 'force', 'Largest force')
+        """
+        comma = "," if "_" in self.symbol else "_"
+        return Quantity(
+            f"{self.id}_{end}",
+            f"{self.symbol}{comma}{end}",
+            self.kind,
+            f"{_EXTREME_TEXTS[word]} {self.called}",
+            self.plain and f"{self.plain}{comma}{end}",
+            commands,
+        )
+
+
+def placed(declared: Iterable[Quantity]) -> tuple[Quantity, ...]:
+    """Return the quantities in order; several with one place to stand `after` keep theirs among them."""
+    given = tuple(declared)
+    ordered = [one for one in given if not one.after]
+    for one in given:
+        if one.after:
+            place = [other.id for other in ordered].index(one.after) + 1
+            while place < len(ordered) and ordered[place].after == one.after:
+                place += 1
+            ordered.insert(place, one)
+    return tuple(ordered)
+
+
+def by_id(*quantities: Quantity) -> dict[str, Quantity]:
+    """Return the quantities by their ids."""
+    return {quantity.id: quantity for quantity in quantities}
+
+
+def called(name: str, quantities: Iterable[Quantity]) -> tuple[str, ...]:
+    """Return the ids of the quantities that a name may mean: their id, or else a symbol as it is printed.
+
+    >>> called("A_H", [Quantity("A_head", "A_H", "area", "Piston area at the head end")])
+    ('A_head',)
+    """
+    given = tuple(quantities)
+    if any(name == one.id for one in given):
+        return (name,)
+    return tuple(dict.fromkeys(one.id for one in given if name in (one.symbol, one.ascii_symbol)))
+
+
+def ambiguity(name: str, found: tuple[str, ...]) -> str:
+    """Return what is to be said of a symbol that several quantities have; '' where it is one."""
+    return f"'{name}' is the symbol of {' and of '.join(found)}; write which" if len(found) > 1 else ""
+
+
+def joined(words: Iterable[str], quantities: Iterable[Quantity]) -> Iterator[str]:
+    """Yield names that were split at their commas as they were before: `σ_w` and `A` are one where `σ_w,A` is known.
+
+    Words that are ids, as `p_max` and `m`, are those, whatever symbol they might be together.
+
+    >>> list(joined(["T", "F_z", "max"], [Quantity("F_pin", "F_z,max", "force", "Force on the pin")]))
+    ['T', 'F_z,max']
+    """
+    rest, known = list(words), tuple(quantities)
+    ids = {one.id for one in known}
+    while rest:
+        parts = (rest[:count] for count in range(min(len(rest), 4), 1, -1))
+        names = (",".join(part) for part in parts if not ids.issuperset(part))
+        name = next((name for name in names if called(name, known)), rest[0])
+        del rest[: name.count(",") + 1]
+        yield name
+
+
+PHI = Quantity(
+    "phi",
+    "φ",
+    "angle",
+    "Crank angle from the inner dead centre, in the sense of rotation",
+    commands=("motion", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
+)
+"""Over it all other columns are printed."""
+
+
+class Lists(NamedTuple):
+    """Columns and key values, each in the order in which they are printed."""
+
+    all_columns: tuple[Quantity, ...]
+    all_key_values: tuple[Quantity, ...]
+
+    def columns(self, command: str) -> dict[str, Quantity]:
+        """Return the columns of a command, by id."""
+        return by_id(*(one for one in self.all_columns if command in one.commands))
+
+    def key_values(self, command: str) -> dict[str, Quantity]:
+        """Return the key values of a command, by id."""
+        return by_id(*(one for one in self.all_key_values if command in one.commands))
+
+    def commands_of(self, id: str) -> tuple[str, ...]:
+        """Return the commands that have a key value, the one whose own it is first."""
+        return tuple(dict.fromkeys(word for one in self.all_key_values if one.id == id for word in one.commands))
+
+
+Condition = Callable[[Any], bool]
+"""Takes the results of a command; see `Row`."""
+
+
+class Row(NamedTuple):
+    """A quantity with what computes it.
+
+    of: takes the results of a command, or for a column the state at crank angles, and returns the value in SI, None
+    where there is none. unless: takes the results, and is true where the quantity says nothing new.
+    """
+
+    quantity: Quantity
+    of: Callable[[Any], Any]
+    unless: Condition | None = None
+
+    def through(self, part: Callable[[Any], Any]) -> Row:
+        """Return the same quantity for results of which these are a part, None where they have no such part."""
+
+        def of_part(function: Callable[[Any], Any], results: Any) -> Any:
+            found = part(results)
+            return None if found is None else function(found)
+
+        unless = None if self.unless is None else partial(of_part, self.unless)
+        return Row(self.quantity, partial(of_part, self.of), unless)
+
+
+class Computed(Generic[V]):
+    """An attribute that is computed once for each object, and the row of the quantity that it is."""
+
+    def __init__(self, function: Callable[[Any], V], quantity: Quantity, unless: Condition | None = None) -> None:
+        self.function, self.name, self.__doc__ = function, function.__name__, function.__doc__
+        self.rows: tuple[Row, ...] = (Row(quantity, self.value_of, unless),)
+
+    def value_of(self, one: Any) -> V:
+        """Return the value of an object."""
+        known = vars(one)
+        if self.name not in known:
+            known[self.name] = self.function(one)
+        return known[self.name]  # type: ignore[no-any-return]
+
+    @overload
+    def __get__(self, one: None, owner: type) -> Computed[V]: ...
+    @overload
+    def __get__(self, one: object, owner: type) -> V: ...
+    def __get__(self, one: object | None, owner: type) -> V | Computed[V]:
+        return self if one is None else self.value_of(one)
+
+
+class ForEach(Generic[V]):
+    """A method that computes a quantity for each of several parts, with a row for each."""
+
+    def __init__(self, function: Callable[[Any, str], V], rows: tuple[Row, ...]) -> None:
+        self.function, self.rows, self.__doc__ = function, rows, function.__doc__
+
+    @overload
+    def __get__(self, one: None, owner: type) -> ForEach[V]: ...
+    @overload
+    def __get__(self, one: object, owner: type) -> Callable[[str], V]: ...
+    def __get__(self, one: object | None, owner: type) -> Callable[[str], V] | ForEach[V]:
+        return self if one is None else partial(self.function, one)
+
+
+ITS_OWN = ("those of its class",)
+"""Commands of a quantity that does not say which."""
+
+
+def key_value(
+    symbol: str,
+    kind: str,
+    *,
+    plain: str = "",
+    group: str = "",
+    after: str = "",
+    unless: Condition | None = None,
+    listed: bool = False,
+    residual: bool = False,
+    wanted_large: bool = False,
+    gauge: bool = False,
+    commands: tuple[str, ...] = ITS_OWN,
+    on_request: tuple[str, ...] = (),
+    extremes: tuple[str, ...] = (),
+    called: str = "",
+    peak: bool = False,
+) -> Callable[[Callable[[Any], V]], Computed[V]]:
+    """Return what makes a method a key value or column of its class; the words are those of `Quantity` and `Row`."""
+
+    def made(function: Callable[[Any], V]) -> Computed[V]:
+        quantity = Quantity(
+            function.__name__,
+            symbol,
+            kind,
+            _sentence(function),
+            plain,
+            commands,
+            extremes,
+            called,
+            after=after,
+            residual=residual,
+            listed=listed,
+            peak=peak,
+            on_request=on_request,
+            wanted_large=wanted_large,
+            gauge=gauge,
+            group=group,
+        )
+        return Computed(function, quantity, unless)
+
+    return made
+
+
+column = key_value
+
+
+Parts = Mapping[str, tuple[str, str]]
+"""Parts of which each has the same quantity: the index of the symbol of each, and what it is called in a sentence."""
+
+
+def for_each(
+    parts: Parts,
+    id: str,
+    symbol: str,
+    kind: str,
+    *,
+    group: Callable[[str], str] = lambda part: "",
+    after: str = "",
+    unless: Condition | None = None,
+) -> Callable[[Callable[[Any, str], V]], ForEach[V]]:
+    """Return what makes a method of a part a key value, or a column, of each of these parts.
+
+    `*` in the id, the symbol and the sentence stands for the part. group: returns the group of the quantity of a part.
+    """
+
+    def made(function: Callable[[Any, str], V]) -> ForEach[V]:
+        text = _sentence(function)
+
+        def row(part: str, index: str, called: str) -> Row:
+            texts = (id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called))
+            quantity = Quantity(*texts, commands=ITS_OWN, after=after, group=group(part))
+            return Row(quantity, lambda one: function(one, part), unless)
+
+        return ForEach(function, tuple(row(part, *words) for part, words in parts.items()))
+
+    return made
+
+
+def _sentence(function: Callable[..., Any]) -> str:
+    """Return the first paragraph of a docstring, without the dot at its end."""
+    return " ".join(inspect.cleandoc(function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
+
+
+def in_order(rows: Iterable[Row]) -> dict[str, Row]:
+    """Return rows by id in the order in which they are printed, the first of those with one id."""
+    found: dict[str, Row] = {}
+    for row in rows:
+        found.setdefault(row.quantity.id, row)
+    return {quantity.id: found[quantity.id] for quantity in placed(row.quantity for row in found.values())}
+
+
+def printed_by(rows: Iterable[Row], *commands: str) -> Iterator[Row]:
+    """Yield the rows with these commands, too, among those that print them."""
+    for row in rows:
+        own = () if row.quantity.commands == ITS_OWN else row.quantity.commands
+        yield row._replace(quantity=row.quantity._replace(commands=tuple(dict.fromkeys((*own, *commands)))))
+
+
+_ENDS: tuple[tuple[str, str, Callable[[Any], Any]], ...] = (
+    ("largest", "max", lambda extremes: extremes.largest),
+    ("smallest", "min", lambda extremes: extremes.smallest),
+    ("peak", "peak", lambda extremes: extremes.peak),
+)
+
+
+def searched(columns: Iterable[Quantity], command: str) -> Iterator[Row]:
+    """Yield the key values that are extremes of columns in a command, whose results have `extremes_of(id)`."""
+
+    def row(one: Quantity, word: str, end: str, part: Callable[[Any], Any]) -> Row:
+        def of(results: Any) -> Any:
+            found = results.extremes_of(one.id)
+            return None if found is None else part(found)
+
+        return Row(one.extreme(word, end, ()), of)
+
+    for one in columns:
+        if command in one.extremes:
+            yield from (row(one, *end) for end in _ENDS if end[0] != "peak" or one.peak)
