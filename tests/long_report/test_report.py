@@ -26,7 +26,7 @@ from kurbel.report.pictures import pictures
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 
-LARGEST = 600_000
+LARGEST = 500_000
 ATTACK = "<script>alert(1)</script> \x1b[31m & \"'"
 
 

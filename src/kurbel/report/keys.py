@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from kurbel.declared.forms import Record
+from kurbel.declared.forms import Keyed, Listing, Record
 from kurbel.declared.keys import Form, Key, required
 from kurbel.declared.reading import shown
 from kurbel.errors import UsageError
@@ -28,7 +28,9 @@ class ListedKey(NamedTuple):
     def full(self) -> list[tuple[str, str]]:
         """All about the key, each after its head."""
         key, example = self.key, self.key.example or self.key.form.example()
-        below = dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in _below(key.form, self.path))
+        item = key.form.item if isinstance(key.form, Listing) else None
+        inner = _of_record(item, self.path) if isinstance(item, Record) else _below(key.form, self.path)
+        below = dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in inner)
         found = {
             "beside": self.beside,
             "meaning": key.text.replace("`", ""),
@@ -106,6 +108,11 @@ def _below(form: Form, path: str) -> Iterator[ListedKey]:
     """Yield the keys below a key of this form."""
     if isinstance(form, Record):
         yield from () if form.inline_too else _of_record(form, path)
-    elif not form.inline():
+        return
+    if isinstance(form, Keyed):
+        for name, case in form.cases.items():
+            if not isinstance(case, Record):
+                yield ListedKey(f"{path}.{name}", Key(case, form.texts.get(name, "")), False)
+    if not form.inline():
         for name, inner in form.parts():
             yield from _below(inner, f"{path}.{name}" if name else path)
