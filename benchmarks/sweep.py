@@ -20,16 +20,15 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from kurbel.designs.answers import AT_ONCE, answers_of
+from kurbel.designs.answers import AT_ONCE, Answer, answered_alone, answers_of, asked_answers
 from kurbel.designs.binding import Binder
-from kurbel.designs.columns import Answer, answered_alone, asked_answers
 from kurbel.designs.sweep import Spec, Sweep
 from kurbel.designs.workers import rows_of
-from kurbel.machine.variants import Lot
+from kurbel.machine.batch import Lot
 from kurbel.machine_file import source
 from kurbel.machine_file.reader import read_machine
 from kurbel.render import Look
-from kurbel.render.sweep_rows import Titles, csv_rows
+from kurbel.render.sweep_rows import Titles, lines_of
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = "waterworks"
@@ -103,7 +102,7 @@ def main() -> None:
     begin = time.process_time()
     sweep = Sweep(Spec(source.read(CONFIGS / f"{WATERWORKS}.yaml"), vary=vary, sample=rows))
     titles = Titles(tuple((one.id, one.unit) for one in sweep.heads), sweep.texts)
-    size = sum(map(len, csv_rows(titles, rows_of(sweep, range(rows)), Look("csv"))))
+    size = sum(map(len, map(lines_of(titles, Look("csv")).of, rows_of(sweep, range(rows)))))
     told(f"{rows} rows with {len(sweep.heads)} columns as csv", time.process_time() - begin, rows)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(f"{size / 1e6:.1f} MB written, {memory:.0f} MB of memory at most")

@@ -15,7 +15,7 @@ from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Piston
 from kurbel.report.alike import grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
@@ -261,7 +261,8 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
 def _reversal_warnings(forces: CylinderForces) -> Iterator[str]:
     if forces.no_compressor:
         return
-    angle, ratio = forces.reversal_longest, forces.reversal_ratio
+    loads = forces.rod_loads
+    angle, ratio = (loads.reversal_longest, loads.reversal_ratio) if loads else (None, None)
     if angle is None or ratio is None:
         return
     if not angle:

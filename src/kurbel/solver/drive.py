@@ -12,8 +12,8 @@ from kurbel.arrays import Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
-from kurbel.machine.resistance import RamForce
-from kurbel.machine.variants import taken
+from kurbel.machine.batch import taken
+from kurbel.machine.parts import RamForce
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.gas import PistonGas
@@ -168,6 +168,11 @@ class Drive:
         turns = CYCLES[self.machine.cycle_of_piston(self.cylinder, number)]
         piston, ambient = self.cylinder.pistons[number], self.machine.ambient
         return PistonGas(piston, self.mechanism, 360.0 * turns, ambient, self.revolutions // turns, self.count)
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation in N of the noise that traces bring into the gas force."""
+        return math.hypot(*(gas.noise for gas in self.gas))
 
     @property
     def own_gas(self) -> PistonGas | None:

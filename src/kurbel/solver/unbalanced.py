@@ -25,7 +25,7 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.crank_angle import CrankAngle, unit_vector
-from kurbel.machine.variants import taken, values_of
+from kurbel.machine.batch import taken, values_of
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import some, unless_cancelled
 from kurbel.numerics.pieces import Angles, Pieces, refined
