@@ -16,7 +16,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared import quantities as declared
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI
+from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.errors import UsageError
 from kurbel.mechanisms import KeyOffer, Offer
 from kurbel.near_words import did_you_mean
@@ -47,6 +47,19 @@ class Figure(NamedTuple):
     unit: str
     degrees: float | None
     quantity: Quantity
+
+    def __str__(self) -> str:
+        """Return it as people read it, with four digits in metric units.
+
+        >>> str(Figure(10000.0, "N", 90.0, Quantity("T_max", "T_max", "force", "Largest tangential force")))
+        '10.00 kN at 90.00°'
+        """
+        values = self.value if isinstance(self.value, tuple) else (self.value,)
+        kind = self.quantity.kind
+        unit = shown_unit(kind, "metric", max(map(abs, values), default=0.0))
+        numbers = ", ".join(f"{convert(one, kind, unit):#.4g}".rstrip(".") for one in values)
+        where = "" if self.degrees is None else f" at {self.degrees:.2f}°"
+        return f"{numbers} {self.quantity.marked(unit)}".rstrip() + where
 
 
 class Shown:
@@ -297,9 +310,8 @@ def declared_rows(command: str) -> Rows:
 
     columns = declared.columns(command)
     state_rows = {id: Row(one, partial(lambda id, state: state[id], id)) for id, one in columns.items()}
-    first, others = declared.key_values(command)
     extremes = printed_by(searched(columns.values(), command), command)
-    return Rows(state_rows, in_order((*map(row, first), *extremes, *map(row, others))))
+    return Rows(state_rows, in_order((*extremes, *map(row, declared.key_values(command)))))
 
 
 def passed_on(part: str, name: str, text: str) -> Any:
