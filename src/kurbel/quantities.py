@@ -28,6 +28,7 @@ def every_quantity() -> Lists:
     """Return what machines may have, whatever their mechanism; what several commands print is there for each."""
     offers = dict.fromkeys(offer for one in KINDS for offer in one.OFFERS)
     key_offers = dict.fromkeys(offer for one in KINDS for offer in one.KEY_OFFERS)
-    every = [*(rows_of(one, (*offers,), (*key_offers,)).lists for one in RESULTS), declared_rows("harmonics").lists]
+    of_cylinder = rows_of(CylinderForces, (*offers,), (*key_offers,)).lists
+    every = [of_cylinder, *(rows_of(one).lists for one in RESULTS[1:]), declared_rows("harmonics").lists]
     columns = (quantity for one in every for quantity in one.all_columns)
     return Lists((*columns,), tuple(quantity for one in every for quantity in one.all_key_values))

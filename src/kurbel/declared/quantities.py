@@ -2,7 +2,6 @@
 
 from functools import partial
 
-from kurbel.declared.balance import BALANCE_COLUMNS, BALANCE_VALUES
 from kurbel.declared.bearings import BEARING_COLUMNS, BEARING_VALUES
 from kurbel.declared.flywheel import EFFORT_VALUES, FLYWHEEL_COLUMNS, FLYWHEEL_VALUES
 from kurbel.declared.shaft import STRENGTH_COLUMNS, STRENGTH_VALUES
@@ -19,7 +18,6 @@ _COLUMNS = (
     *FLYWHEEL_COLUMNS,
     *STRENGTH_COLUMNS,
     *BEARING_COLUMNS,
-    *BALANCE_COLUMNS,
     *TORSION_COLUMNS,
 )
 _FIRST = (
@@ -33,7 +31,6 @@ _OTHERS = (
     *FLYWHEEL_VALUES,
     *STRENGTH_VALUES,
     *BEARING_VALUES,
-    *BALANCE_VALUES,
     *HARMONIC_VALUES,
     *TORSION_VALUES,
 )

@@ -7,15 +7,16 @@ from dataclasses import replace
 import numpy as np
 
 from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import show
+from kurbel.numerics.enclosing import ClosedCurve
+from kurbel.quantity import Quantity
 from kurbel.report.frame import Frame, Subject
 from kurbel.report.pin_notes import pin_notes
 from kurbel.report.shown import place_table, shown_column
 from kurbel.report.tables import Column, LeftOut, PlaceTable, Report
-from kurbel.solver.balance import BookBalance, MachineBalance
+from kurbel.solver.balance import MachineBalance
 from kurbel.solver.case import Case
-from kurbel.solver.unbalanced import Circles, Free, power
+from kurbel.solver.unbalanced import Free
 from kurbel.solver.weights import Weight
 
 _Entry = tuple[Quantity, "list[float | None]"]
@@ -39,10 +40,10 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
 
 def subjects(case: Case, compare: bool = False) -> Iterable[Subject]:
     """Yield the whole machine; compare: with what the acceleration of first order gives, beside the true figures."""
-    balance = case.balance
+    balance = MachineBalance(case.machine, case.cylinders, compare=True) if compare else case.balance
     yield Subject(
         "whole machine",
-        (*balance.answering, *((BookBalance(balance),) if compare else ())),
+        (balance,),
         balance.at,
         left_out=lambda: _left_out(balance, compare),
         warnings=lambda: pin_notes(case.machine),
@@ -78,7 +79,7 @@ def _notes(balance: MachineBalance) -> Iterable[str]:
         yield _higher(balance.free, balance.omega * balance.omega)
     if balance.counterweights or balance.machine.balance_shafts:
         yield "Counterweights and shafts of the file count in all that is free; the best weights stand in their place."
-    if balance.rolls:
+    if balance.effort is not None:
         yield "M_roll is −M of kurbel flywheel, less what turns the masses themselves about the shaft."
 
 
@@ -131,13 +132,13 @@ def _circles(balance: MachineBalance, square: float, compare: bool) -> Iterator[
         yield ORDERS[f"{name}_share"], _shares(vector, balance.free.orders)
 
 
-def _pair(vector: Circles, order: int) -> tuple[complex, complex]:
+def _pair(vector: ClosedCurve, order: int) -> tuple[complex, complex]:
     """Return the circles of an order, with their directions at φ = 0; 0 of one that there is not."""
-    return complex(vector.of(order)), complex(vector.of(-order))
+    return complex(vector.of(order)[0]), complex(vector.of(-order)[0])
 
 
-def _shares(vector: Circles, orders: Iterable[int]) -> list[float | None]:
-    whole = power(vector)
+def _shares(vector: ClosedCurve, orders: Iterable[int]) -> list[float | None]:
+    whole = float((np.abs(vector.waves) ** 2).sum())
     squares = (sum(abs(circle) ** 2 for circle in _pair(vector, order)) for order in orders)
     return [one / whole if whole else None for one in squares]
 
