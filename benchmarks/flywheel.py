@@ -158,8 +158,8 @@ def timed(solve: Callable[[float], np.ndarray], inertia: float) -> tuple[np.ndar
 
 def two_cylinders(slip: float) -> float:
     """Seconds for everything that kurbel flywheel answers for a two-cylinder engine with this slip."""
-    from kurbel.report.flywheel import flywheel_report
     from kurbel.report.frame import Frame
+    from kurbel.report.turning import flywheel_report
 
     card = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
     both = tuple(

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import kurbel
-from kurbel.report.forces import subjects
+from kurbel.report.crank import forces_subjects
 from kurbel.report.frame import Subject
 
 CONFIGS = Path(__file__).parent.parent / "configs"
@@ -24,7 +24,7 @@ ANGLES = np.arange(361.0)
 
 def everything(machine: kurbel.Machine) -> None:
     """All columns and key values of all cylinders."""
-    for subject in subjects(kurbel.solve(machine)):
+    for subject in forces_subjects(kurbel.solve(machine)):
         columns_only(subject)
         list(subject.key_values("forces"))
 

@@ -18,10 +18,10 @@ from kurbel.declared.quantity import by_id
 from kurbel.errors import UsageError
 from kurbel.quantities import every_quantity
 from kurbel.report.check import checked
-from kurbel.report.commands import report_of
-from kurbel.report.compared import Unjudged, compared
+from kurbel.report.commands import COMMANDS, report_of
 from kurbel.report.frame import Frame
-from kurbel.report.whole import COMMANDS
+from kurbel.report.limits import Unjudged, compared
+from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few, shipped
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -67,10 +67,8 @@ def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
 @pytest.mark.parametrize("path", shipped("marine-diesel", "gas-engine"))
 def test_check_shows_the_warnings_of_every_command(path: Path) -> None:
     case = case_of(path.stem)
-    shown = {
-        one.text for section in checked(case.machine).sections for one in section.entries if one.severity == "warning"
-    }
-    frames = [Frame(command.word, (0.0,), None, "metric") for command in COMMANDS]
+    shown = {one.text for section in checked(case).sections for one in section.entries if one.severity == "warning"}
+    frames = [Frame(word, (0.0,), None, "metric") for word in COMMANDS]
     for frame in frames:
         with suppress(UsageError):
             parts = report_of(case, frame).all_parts
@@ -317,7 +315,7 @@ def test_warnings_are_the_same_in_every_command(path: Path) -> None:
             parts = json.loads(result.stdout)
             warnings = [one["warnings"] for one in parts.get("cylinders", [])] + [parts.get("machine_warnings", [])]
             found[command] = {unnamed(text, path) for texts in warnings for text in texts}
-    entries = [entry for section in checked(load(path)).sections for entry in section.entries]
+    entries = [entry for section in checked(Case(load(path))).sections for entry in section.entries]
     found["check"] = {entry.text for entry in entries if entry.what == "note" and entry.severity == "warning"}
     assert len(found) > 1
     assert all(one == found["check"] for one in found.values()), found
@@ -369,7 +367,7 @@ def test_a_rod_whose_area_is_not_taken_off_is_told(command: str) -> None:
     assert told not in run(text + "crank_end_rod: 60 mm\n", command)[1]
     single = ENGINE + f"indicator: {{head_end: {{{PRESSURE}}}}}\n" + SHAFT
     assert told not in run(single, command)[1]
-    assert len(checked(loads(text)).errors) == 0
+    assert len(checked(Case(loads(text))).errors) == 0
 
 
 # firing

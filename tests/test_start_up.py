@@ -20,7 +20,6 @@ NEEDLESS = (
     (["--help"], ("cli.table", "cli.output_options", "render", "report", "declared")),
     (["example"], ("report.check", "machine", "mechanisms", "quantities")),
     (["table"], ("mechanisms", "quantities", "declared.units", "declared.keys", "machine", "solver")),
-    (["forces", WATERWORKS, "-f", "csv"], ("report.notes", "report.guide")),
 )
 
 

@@ -15,7 +15,7 @@ from indicated import Engine, absolute, columns_file, cycles, indicated
 from kurbel.cli import kurbel
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
-from kurbel.report.notes import Note, machine_notes
+from kurbel.report.warnings import Note, machine_notes
 from kurbel.solver.case import Case
 from representative import few
 
@@ -39,7 +39,7 @@ def machine_text(file: Path, keys: str = "", pressures: str = "absolute", cycle:
 
 
 def noted(machine: Machine) -> tuple[Note, ...]:
-    return machine_notes(machine, lambda: Case(machine))
+    return machine_notes(Case(machine))
 
 
 def notes_of(text: str) -> list[str]:

@@ -12,7 +12,7 @@ from kurbel.accuracy.leaving_out import evaluated, savings
 from kurbel.accuracy.timing import Patience
 from kurbel.machine_file import loads
 from kurbel.report.accuracy import everything
-from kurbel.report.forces import forces_report
+from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 

@@ -20,8 +20,9 @@ from kurbel.cli import kurbel as command
 from kurbel.designs import uncertainty
 from kurbel.designs.columns import Answer
 from kurbel.designs.uncertainty import Uncertain, Uncertainty, data_uncertainty
-from kurbel.machine_file import columns, source
+from kurbel.machine_file import source
 from kurbel.quantities import every_quantity
+from kurbel.traces import read as trace_files
 
 WATERWORKS = Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml"
 
@@ -167,7 +168,7 @@ def test_what_is_answered_alone_is_sampled_less_and_its_trace_read_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(uncertainty, "SLOW_SAMPLE", 25)
-    columns._table.cache_clear()  # of other tests, which may have read the same
+    trace_files._numbers.cache_clear()  # of other tests, which may have read the same
     read, loadtxt = list[Any](), np.loadtxt
     monkeypatch.setattr(np, "loadtxt", lambda *args, **more: (read.append(args), loadtxt(*args, **more))[1])
     told = list[int]()

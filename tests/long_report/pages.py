@@ -6,9 +6,8 @@ from functools import cache
 
 from kurbel.machine_file.given import given
 from kurbel.render import Look
-from kurbel.render.html import report_page
-from kurbel.report.side_by_side import side_by_side
-from kurbel.report.whole import whole_report
+from kurbel.render.report_page import report_page
+from kurbel.report.whole import side_by_side, whole_report
 from kurbel.solver.case import Case
 from representative import case_of
 

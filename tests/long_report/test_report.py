@@ -289,7 +289,6 @@ def test_equal_cylinders_are_told_once_in_the_input() -> None:
     from kurbel.report.check import checked
 
     case = case_of("v8-cross-plane")
-    names = "left 1, right 1, left 2, right 2, left 3, right 3, left 4, right 4"
-    told = checked(case.machine)
+    told = checked(case)
     assert sum(one.cylinder for one in told.sections) == 8
-    assert [one.title for one in told.told_once if one.cylinder] == [names]
+    assert [one.title for one in told.told_once if one.cylinder] == ["left 1–4, right 1–4"]

@@ -15,7 +15,8 @@ from kurbel.declared.forms import points
 from kurbel.declared.kinds import KINDS
 from kurbel.declared.unit_systems import SI
 from kurbel.errors import KurbelError, MachineFileError
-from kurbel.machine_file import columns, events, load, loads
+from kurbel.machine_file import events, load, loads
+from kurbel.traces import read
 from representative import law_of_each
 from schemas import whole_schema
 
@@ -129,9 +130,9 @@ def test_nothing_that_was_built_gets_one() -> None:
 def test_an_overflow_that_no_bound_keeps_off_is_an_error_without_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     import numpy as np
 
-    from kurbel.report import notes
+    from kurbel.report import warnings
 
-    monkeypatch.setattr(notes, "_speed_notes", lambda *_: [str(np.array([1e300]) * 1e300)])
+    monkeypatch.setattr(warnings, "_speed_warnings", lambda *_: [str(np.array([1e300]) * 1e300)])
     result = run("check", ENGINE)
     assert result.exit_code == 2
     assert "lead beyond what can be computed with (overflow" in result.stderr
@@ -183,10 +184,10 @@ def test_no_text_of_a_file_is_quoted_that_is_no_trace(tmp_path: Path, delimiter:
 def test_rows_beyond_the_limit_are_not_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "p.csv").write_text("".join(f"{angle / 10},1\n" for angle in range(3601)))
     (tmp_path / "m.yaml").write_text(ENGINE + TRACE.format(file="p.csv", zero="0 deg", more=""))
-    monkeypatch.setattr(columns, "MOST_NUMBERS", 100)
+    monkeypatch.setattr(read, "MOST_NUMBERS", 100)
     taken: dict[str, Any] = {}
-    loadtxt = columns.np.loadtxt
-    monkeypatch.setattr(columns.np, "loadtxt", lambda *given, **more: (taken.update(more), loadtxt(*given, **more))[1])
+    loadtxt = read.np.loadtxt
+    monkeypatch.setattr(read.np, "loadtxt", lambda *given, **more: (taken.update(more), loadtxt(*given, **more))[1])
     with pytest.raises(KurbelError, match="has more than 100 numbers; thin them out"):
         load(tmp_path / "m.yaml")
     assert taken["max_rows"] <= 51

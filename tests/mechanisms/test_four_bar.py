@@ -16,8 +16,8 @@ from kurbel.errors import RuleError
 from kurbel.machine_file import loads
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.report.crank import motion_report
 from kurbel.report.frame import Frame
-from kurbel.report.motion import motion_report
 from kurbel.solver.case import Case
 
 LINKAGES = {

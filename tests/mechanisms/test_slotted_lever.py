@@ -15,8 +15,8 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.errors import KurbelError, RuleError
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slotted_lever import SlottedLever
+from kurbel.report.crank import motion_report
 from kurbel.report.frame import Frame
-from kurbel.report.motion import motion_report
 from kurbel.solver.case import Case
 from representative import law_of_each
 

@@ -49,7 +49,7 @@ def test_every_point_is_the_solvers(name: str, id: str) -> None:
         curve = next(one for one in panel.curves if one.name.symbol == symbol)
         for piece in curve.pieces:
             state = results.at(piece.degrees, piece.within)
-            expected = convert(np.asarray(getattr(state, quantity.id)), quantity.kind, panel.y.unit)
+            expected = convert(np.asarray(state[quantity.id]), quantity.kind, panel.y.unit)
             assert (piece.y == expected).all()
             assert (piece.x == piece.degrees).all()
 

@@ -13,8 +13,9 @@ from kurbel.quantities import every_quantity
 from kurbel.render import Look
 from kurbel.render.formats import render
 from kurbel.report.check import checked
-from kurbel.report.shown import shown_key_values
+from kurbel.report.frame import shown_key_values
 from kurbel.report.tables import Column, Part, Report
+from kurbel.solver.case import Case
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 KEY_VALUES = by_id(*every_quantity().all_key_values)
@@ -50,7 +51,7 @@ def test_json_keeps_every_digit(residual: float) -> None:
 
 def test_a_limit_is_not_compared_with_rounding_in_sight() -> None:
     limited = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8") + "limits: {energy_residual: 0.001}\n"
-    (entry,) = next(s for s in checked(loads(limited)).sections if s.title == "Limits").entries
+    (entry,) = next(s for s in checked(Case(loads(limited))).sections if s.title == "Limits").entries
     assert entry.text.startswith("< 1e-14 ≤ 0.001  kept")
 
 

@@ -24,7 +24,7 @@ from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.report.flywheel import dead_centre_force
+from kurbel.report.turning import dead_centre_force
 from kurbel.solver.case import Case
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.flywheel import MachineTurning

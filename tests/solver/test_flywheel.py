@@ -17,7 +17,7 @@ from kurbel.declared.units import parse_quantity
 from kurbel.errors import MachineFileError
 from kurbel.machine_file import load, loads
 from kurbel.report.check import checked
-from kurbel.report.flywheel import dead_centre_force
+from kurbel.report.turning import dead_centre_force
 from kurbel.solver.case import Case
 from representative import few
 
@@ -213,8 +213,8 @@ def test_a_resonance_is_told() -> None:
 
 def test_limits_reach_the_flywheel() -> None:
     text = ENGINE + "flywheel: {inertia: 50000 kg m2}\nlimits: {delta: 1/50, dE: 30 kJ}\n"
-    assert not checked(loads(text)).broken
-    assert checked(loads(text.replace("1/50", "1/200"))).broken
+    assert not checked(Case(loads(text))).broken
+    assert checked(Case(loads(text.replace("1/50", "1/200")))).broken
 
 
 @pytest.mark.parametrize("name", ["waterworks-two-cranks", "four-cylinder-generator", "punch"])
@@ -271,7 +271,7 @@ TWO = (CONFIGS / "waterworks-two-cranks.yaml").read_text(encoding="utf-8")
 
 
 def entries(text: str, title: str) -> list[tuple[str, str]]:
-    sections = {section.title: section.entries for section in checked(loads(text)).sections}
+    sections = {section.title: section.entries for section in checked(Case(loads(text))).sections}
     return [(entry.what, entry.text) for entry in sections[title]]
 
 
@@ -288,8 +288,8 @@ def test_a_limit_on_T_is_for_every_cylinder_or_for_the_whole_machine() -> None:
 def test_a_limit_on_the_flywheel_needed_is_kept_though_it_is_not_printed() -> None:
     text = ENGINE + "flywheel: {fluctuation: 0.01}\n"
     assert "J_needed" not in values(text)
-    assert not checked(loads(text + "limits: {J_needed: 1000 t m2}\n")).broken
-    (error,) = checked(loads(ENGINE + "limits: {delta: 0.1}\n")).errors
+    assert not checked(Case(loads(text + "limits: {J_needed: 1000 t m2}\n"))).broken
+    (error,) = checked(Case(loads(ENGINE + "limits: {delta: 0.1}\n"))).errors
     assert "this machine has no delta: coefficient" in str(error)
 
 

@@ -20,7 +20,7 @@ from kurbel.machine.piston import Piston
 from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.angles import stepped
-from kurbel.report.forces import forces_report
+from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces

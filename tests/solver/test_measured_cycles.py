@@ -21,11 +21,11 @@ from indicated import RATIO, Engine, absolute, columns_file, cycles, fraction, i
 from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError, UsageError
 from kurbel.machine_file import load
-from kurbel.machine_file.motored import Motored, dead_centre
-from kurbel.machine_file.samples import Layout
-from kurbel.numerics.vertex import vertex
+from kurbel.machine_file.trace import Motored, dead_centre
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
+from kurbel.traces.correct import parabola_peak
+from kurbel.traces.read import Layout
 from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -349,9 +349,9 @@ def test_the_dead_centre_of_a_motored_trace(tmp_path: Path, zero: float, noise: 
     assert str(tmp_path / "motored.csv") in own.trace_files
 
 
-def test_the_vertex_of_a_parabola_is_exact() -> None:
+def test_the_peak_of_a_parabola_is_exact() -> None:
     angles = np.arange(-10.0, 10.1, 0.5)
-    found = vertex(angles, 40 - 0.03 * (angles - 1.234) ** 2, 1.0, 6.0)
+    found = parabola_peak(angles, 40 - 0.03 * (angles - 1.234) ** 2, 1.0, 6.0)
     assert found is not None
     assert found.place == pytest.approx(1.234, abs=1e-12)
     assert found.error < 1e-10

@@ -142,7 +142,7 @@ def test_guides_and_pin_of_a_scotch_yoke() -> None:
 
 
 def test_pin_pressure_above_that_of_the_book_is_a_warning() -> None:
-    from kurbel.report.forces import forces_report
+    from kurbel.report.crank import forces_report
     from kurbel.report.frame import Frame
     from kurbel.solver.case import Case
 

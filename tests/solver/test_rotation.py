@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from kurbel.cli import kurbel
 from kurbel.machine_file import loads
-from kurbel.report.forces import forces_report
+from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 

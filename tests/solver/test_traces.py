@@ -492,14 +492,14 @@ def test_firing_in_the_gas_exchange() -> None:
 
 def test_indicated_below_brake_power(tmp_path: Path) -> None:
     machine = machine_of(tmp_path, "\n".join(GOOD), more="brake_power: 500 kW\n")
-    (warning,) = brake_warnings(machine, Case(machine).cylinders)
+    (warning,) = brake_warnings(Case(machine))
     assert "far below what the driven shaft takes, 500 kW" in warning
-    notes = [entry.text for section in checked(machine).sections for entry in section.entries]
+    notes = [entry.text for section in checked(Case(machine)).sections for entry in section.entries]
     assert warning in notes
 
 
 def test_samples_too_far_apart_are_told() -> None:
-    from kurbel.report.forces import forces_report
+    from kurbel.report.crank import forces_report
     from kurbel.report.frame import Frame
 
     def told(points: list[tuple[float, float]]) -> bool:

@@ -15,7 +15,7 @@ def bearings(asked: Asked) -> None:
     throw stands for every throw of a machine with several. --cylinder takes the name of a pin or bearing. Key values
     are exact and do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.bearings import bearings_report
+    from kurbel.report.loads import bearings_report
 
     case = asked.case()
     asked.write(bearings_report(case, asked.frame("bearings", 360.0 * case.machine.revolutions)))

@@ -32,6 +32,7 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
     there. As json every fault, limit, figure and warning has file, line, column, key, message and severity.
     """
     from kurbel.report.check import checked
+    from kurbel.solver.case import Case
 
     written = format_of(format, file_name)
     if written == "json":
@@ -41,7 +42,7 @@ def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: 
     from kurbel.render.output import stdout_look, write_out
     from kurbel.render.page import listing
 
-    result = checked(_loaded(file, overrides, file_name))
+    result = checked(Case(_loaded(file, overrides, file_name)))
     look = Look() if file_name else stdout_look()
     look = replace(look, width=width or look.width)
     sections = [(one.title, [(entry.what, entry.text) for entry in one.entries]) for one in result.told_once]
@@ -68,6 +69,7 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
     from kurbel.render.data import findings_json
     from kurbel.render.output import refuse_overwriting, stdout_look, write_out
     from kurbel.report.check import checked, faults_found, findings
+    from kurbel.solver.case import Case
 
     refuse_overwriting(file_name, (file,))
     try:
@@ -76,7 +78,7 @@ def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> in
         found, status = faults_found(file, error), error.exit_status
     else:
         refuse_overwriting(file_name, machine.trace_files)
-        result = checked(machine)
+        result = checked(Case(machine))
         found = findings(machine, result, located)
         status = min((error.exit_status for error in result.errors), default=BROKEN if result.broken else DONE)
     listed = [one._asdict() for one in found.findings]

@@ -16,7 +16,7 @@ def flywheel(asked: Asked, spreads: Spreads) -> None:
     inertia forces in it. E is the excess of the work over that of the resistance, omega the speed under the load of
     FILE, which may depend on it. Key values are exact and do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.flywheel import flywheel_report
+    from kurbel.report.turning import flywheel_report
 
     case = asked.case()
     frame = asked.frame("flywheel", 360.0 * case.machine.revolutions)

@@ -20,7 +20,7 @@ def forces(asked: Asked, cycle: int | None, each_cycle: bool, spreads: Spreads) 
     count positive. At a jump of the pressure the value just after it stands in the table. Key values are exact and
     do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.forces import cycles_report, forces_report
+    from kurbel.report.crank import cycles_report, forces_report
 
     case = asked.case()
     if cycle is not None:

@@ -16,6 +16,6 @@ def harmonics(asked: Asked, orders: tuple[float, ...] | None, speeds: tuple[floa
     piece between the corners of the cards. t is the tangential pressure |M|/(R A). Major orders are those in which all
     cranks pull together. FILE may be - for standard input.
     """
-    from kurbel.report.harmonics import harmonics_report
+    from kurbel.report.turning import harmonics_report
 
     asked.write(harmonics_report(asked.case(), asked.frame("harmonics", 360.0), orders, speeds))

@@ -14,7 +14,7 @@ def motion(asked: Asked) -> None:
     What slides has x, c, b; what swings has theta, theta_dot, theta_ddot. Without a speed in FILE only the
     positions are printed. Key values are exact and do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.motion import motion_report
+    from kurbel.report.crank import motion_report
 
     case = asked.case()
     asked.write(motion_report(case, asked.frame("motion", 360.0, len(case.cylinders))))

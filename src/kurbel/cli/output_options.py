@@ -267,7 +267,8 @@ class Asked:
                 "--columns names columns of the table that --key-values leaves out; a key value is a line, grep 'p_i '"
             )
         angles = self._rows(command, end) or crank_angles(self.step, self.angles, end, parts)
-        return Frame(command, angles, self.columns, self.units, "z" if self.over else "", self.compare)
+        prose = self.output.look.format != "csv" or self.key_values_only
+        return Frame(command, angles, self.columns, self.units, "z" if self.over else "", self.compare, prose)
 
     def _rows(self, command: str, end: float) -> Any:
         """Return what finds the crank angles of a subject, None for a table over the angle itself."""

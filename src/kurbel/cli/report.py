@@ -40,10 +40,9 @@ def report(
     with their differences. --set holds for each of them. FILE may be - for standard input.
     """
     from kurbel.machine_file.given import given
-    from kurbel.render.html import report_page
     from kurbel.render.output import refuse_overwriting, write_out
-    from kurbel.report.side_by_side import side_by_side
-    from kurbel.report.whole import whole_report
+    from kurbel.render.report_page import report_page
+    from kurbel.report.whole import side_by_side, whole_report
     from kurbel.solver.case import Case
 
     if len(files) > 2 or files.count("-") > 1:

@@ -17,7 +17,7 @@ def stress(asked: Asked, places_only: bool, spreads: Spreads) -> None:
     von Mises (sigma_v). Key values are exact and do not depend on --step. FILE needs 'crankshaft', one cylinder and
     a pressure; it may be - for standard input.
     """
-    from kurbel.report.stress import stress_report
+    from kurbel.report.loads import stress_report
 
     case = asked.case()
     frame = asked.frame("stress", 360.0 * case.machine.revolutions)

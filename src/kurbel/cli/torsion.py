@@ -23,7 +23,7 @@ def torsion(
     M_shaft,tau prints them over the crank angle. FILE needs 'shaft', or a 'coupling' behind a 'flywheel'; it may be -
     for standard input.
     """
-    from kurbel.report.torsion import Wanted, torsion_report
+    from kurbel.report.turning import Wanted, torsion_report
 
     case = asked.case()
     frame = asked.frame("torsion", 360.0 * case.machine.revolutions)

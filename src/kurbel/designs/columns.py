@@ -109,7 +109,7 @@ def _answer(subject: Any, quantity: Quantity, unasked: bool = False) -> Any:
 
 def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
     """Return the values of a machine alone, in SI, a number, a tuple or None; raises KurbelError."""
-    from kurbel.report.shown import too_large
+    from kurbel.report.frame import too_large
 
     found = answers_in(Case(machine), answers)
     for one, value in zip(answers, found):

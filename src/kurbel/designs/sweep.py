@@ -206,7 +206,7 @@ class Sweep:
 
     def _judged(self, found: Sequence[Any]) -> tuple[bool | None, str, str]:
         """Return whether the limits are kept, the first that is not, and which cannot be judged."""
-        from kurbel.report.compared import breaks, without
+        from kurbel.report.limits import breaks, without
 
         there = [(one, value) for one, value in zip(self._limits, found) if value is not None]
         broken = next((one.name for one, value in there if breaks(one.answer.quantity, one.bound, value)), "")
@@ -270,7 +270,7 @@ def _in_unit(number: Any, kind: str, unit: str) -> Any:
 
 def _limit_answers(machine: Machine) -> Iterable[_Limit]:
     """Yield whose value each limit of the file is for, with its bound; raises UsageError where nobody has it."""
-    from kurbel.report.compared import holders, without
+    from kurbel.report.limits import holders, without
 
     case = Case(machine)
     for name, bound in machine.limits:

@@ -1,17 +1,18 @@
 """The keys of a turning effort known from elsewhere: points, a file of columns, or harmonics."""
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
+import numpy as np
+
+from kurbel.arrays import Array
 from kurbel.declared.forms import FilePath, Number, Points, UnitName
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.errors import refuse, refused
 from kurbel.machine.turning import Effort, Harmonics
-from kurbel.machine_file.samples import Layout, layout_keys, samples_of
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
-    from kurbel.machine_file.whole_cycle import Samples
+from kurbel.machine_file.trace import layout_keys
+from kurbel.traces.cycles import Samples, samples_of_file
+from kurbel.traces.read import Layout
 
 _HIGHEST = 1000
 """Periods per turn of a harmonic; each is followed, so that more of them take long."""
@@ -69,7 +70,7 @@ def _by_harmonics(unit: Factor, mean: float, harmonics: list[tuple[float, float,
 
 def _from_file(unit: Factor, file: str, angle_zero: float = 0.0, **layout: Any) -> Effort:
     up, down = unit
-    samples = samples_of(file, Layout.of_keys("torque", **layout), "torque", lambda torques: torques * up / down)
+    samples = samples_of_file(file, Layout.of_keys("torque", **layout), "torque", lambda torques: torques * up / down)
     if len(samples.values) > 1:
         lap = samples.angles[-1] - samples.angles[0]
         refused(f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle", "file")
@@ -78,10 +79,8 @@ def _from_file(unit: Factor, file: str, angle_zero: float = 0.0, **layout: Any) 
     return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed))
 
 
-def _from_zero(samples: "Samples", angle_zero: float) -> "tuple[Array, Array]":
+def _from_zero(samples: Samples, angle_zero: float) -> tuple[Array, Array]:
     """Return the angles (n,) in degrees from 0 to the end of the cycle, and the torques (n,), straight in between."""
-    import numpy as np
-
     period = float(round(samples.angles[-1] - samples.angles[0]))
     begun = samples.angles - angle_zero
     begun = begun - period * np.ceil(begun[0] / period)  # begins in (−period, 0]

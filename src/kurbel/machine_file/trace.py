@@ -1,21 +1,60 @@
-"""The keys of a measured trace, whose samples stand in the machine file or in a file of columns beside it."""
+"""The keys of a measured trace, whose samples are in the machine file or in a file of columns."""
 
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from collections.abc import Callable
+from dataclasses import dataclass
+from os.path import basename
+from typing import Any, ClassVar
 
-from kurbel.declared.forms import Choice, ColumnRange, FilePath, Number, OneOf, Physical, Points, Record, UnitName
+import numpy as np
+
+from kurbel.arrays import Array
+from kurbel.declared.forms import (
+    Choice,
+    ColumnRange,
+    Count,
+    FilePath,
+    Number,
+    OneOf,
+    Physical,
+    Points,
+    Record,
+    UnitName,
+    not_negative,
+    positive,
+)
 from kurbel.declared.keys import Described, Key, Keys
 from kurbel.declared.kinds import Factor, Point
-from kurbel.errors import Fault, refuse, refused
+from kurbel.errors import Fault, RuleError, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE
-from kurbel.machine_file.motored import Motored
-from kurbel.machine_file.samples import Layout, layout_keys, samples_of
-from kurbel.traces.correct import KnownLevel, Trace
+from kurbel.traces.correct import KnownLevel, Trace, motored_peak
+from kurbel.traces.cycles import samples_of_file, whole_cycles
+from kurbel.traces.read import DECIMALS, DELIMITERS, Layout
 
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
-    from kurbel.machine_file.whole_cycle import Samples
 
-_LAYOUT = layout_keys("pressure")
+def layout_keys(what: str) -> Keys:
+    """Return the keys of how a file of columns, angles and what was measured, is laid out."""
+    return {
+        "angle_column": Key(Count(), "Column of the angles, counted from 1", absent="1"),
+        "angle_unit": Key(
+            Choice(("deg", "rad", "s", "ms")), "What the angle column counts: an angle, or time", absent="deg"
+        ),
+        "recorded_speed": positive("speed", "Constant speed at which times were recorded", needs="angle_unit"),
+        "angle_step": positive(
+            "angle", "Crank angle from one row to the next, instead of a column of angles", instead="angle_column"
+        ),
+        f"{what}_column": Key(Count(), f"Column of the {what}s, counted from 1", absent="2"),
+        "skip_rows": Key(Count(least=0), "Number of lines above the first figures", absent="0"),
+        "delimiter": Key(
+            Choice((*DELIMITERS, *DELIMITERS.values())),
+            "What stands between two columns",
+            absent="comma",
+            also=("separator", "sep"),
+        ),
+        "decimal": Key(Choice(tuple(DECIMALS)), "Decimal point or decimal comma", absent="point"),
+        "angle_zero": Key(
+            Physical("angle"), "Angle of the firing or inner dead centre as the file counts", absent="0 deg"
+        ),
+    }
 
 
 class Pegging(Described):
@@ -32,6 +71,26 @@ class Pegging(Described):
         return KnownLevel(angle, pressure)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class Motored(Described):
+    """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
+
+    motored: str
+    loss_angle: float
+
+    KEYS: ClassVar[Keys] = {
+        "motored": Key(
+            FilePath(), "File of a motored trace, laid out as that of the trace", required=True, example="motored.csv"
+        ),
+        "loss_angle": not_negative(
+            "angle",
+            "Angle by which heat loss and leakage put its peak before the dead centre",
+            required=True,
+            example="0.7 deg",
+        ),
+    }
+
+
 class Measured(Described):
     """What becomes a `Trace` once its samples are read and closed to whole cycles."""
 
@@ -44,7 +103,7 @@ class Measured(Described):
         ),
         "points": Key(Points("deg", "pressure"), "Pressure over the crank angle; or give `file`", instead="file"),
         "unit": Key(UnitName("pressure"), "Unit of the pressures", required=True),
-        **_LAYOUT,
+        **layout_keys("pressure"),
         "pressure_columns": Key(
             ColumnRange(), "Columns of pressures, one for each measured cycle", instead="pressure_column"
         ),
@@ -80,7 +139,7 @@ class Measured(Described):
         unit: Factor,
         file: str | None = None,
         points: list[Point] | None = None,
-        angle_zero: "float | Motored" = 0.0,
+        angle_zero: float | Motored = 0.0,
         angle_sense: str = "with",
         scale: float = 1.0,
         offset: float = 0.0,
@@ -91,67 +150,59 @@ class Measured(Described):
         **layout: Any,
     ) -> Trace:
         """Return the trace that these keys describe, its file read."""
-
         against = angle_sense == "against"
-        gauge = _Gauge(unit, scale, offset)
+        up, down = unit
+
+        def pressures(figures: Array) -> Array:
+            """Return the pressures in Pa of figures of the file."""
+            if scale == 0:
+                refused("0 leaves no pressure; write the pressure for 1 of the file", "scale")
+            return figures * up / down * scale + offset
+
         if file is None:
             refuse(*(Fault((key,), f"'{key}' describes a file; leave it out beside 'points'") for key in layout))
-            samples, laid_out = _from_points(points or [], gauge, against), Layout()
+            angles, figures = np.array(points, dtype=float).T
+            values = pressures(figures[np.newaxis])
+            samples = whole_cycles(angles, values, lambda row: Fault(("points", row), ""), against=against)
+            laid_out = Layout(columns=(0,))
         else:
             laid_out = Layout.of_keys("pressure", **layout)
-            samples = samples_of(file, laid_out, "pressure", gauge.pressures, against)
-        zero, files, notes = _zero(angle_zero, laid_out, gauge, against)
+            samples = samples_of_file(file, laid_out, "pressure", pressures, against)
+        files, notes = (file,) if file else (), samples.notes
+        if isinstance(angle_zero, Motored):
+            files, given = (*files, angle_zero.motored), angle_zero
+            angle_zero, note = dead_centre(given, laid_out, pressures, against)
+            notes = (*notes, note)
         return Trace(
             samples.angles,
             samples.values,
-            angle_zero=-zero if against else zero,
-            files=(*((file,) if file else ()), *files),
-            notes=(*samples.notes, *notes),
+            angle_zero=-angle_zero if against else angle_zero,
+            files=files,
+            notes=notes,
             completed=samples.completed,
             clearance=1 / (compression_ratio - 1) if compression_ratio else clearance,
             level=drift == "linear",
             pegging=KnownLevel() if isinstance(pegging, str) else pegging,
             against=against,
-            unit=unit[0] / unit[1],
+            unit=up / down,
             scale=scale,
             offset=offset,
-            column=laid_out.columns[0] if file else 0,
+            column=laid_out.columns[0],
         )
 
 
-class _Gauge(NamedTuple):
-    """What turns figures of a file into pressures in Pa."""
-
-    unit: Factor
-    scale: float
-    offset: float
-
-    def pressures(self, figures: "Array") -> "Array":
-        """Return pressures of the shape of the figures; raises RuleError for a scale of 0."""
-        if self.scale == 0:
-            refused("0 leaves no pressure; write the pressure for 1 of the file", "scale")
-        up, down = self.unit
-        return figures * up / down * self.scale + self.offset
-
-
-def _from_points(points: list[Point], gauge: _Gauge, against: bool) -> "Samples":
-    import numpy as np
-
-    from kurbel.machine_file.recording import Recording
-    from kurbel.machine_file.whole_cycle import whole_cycle
-
-    angles, values = np.array(points, dtype=float).T
-    pressures = gauge.pressures(values[np.newaxis])
-    return whole_cycle(Recording.of(angles, pressures, lambda row: Fault(("points", row), ""), against))
-
-
-def _zero(
-    given: "float | Motored", layout: Layout, gauge: _Gauge, against: bool
-) -> tuple[float, tuple[str, ...], tuple[str, ...]]:
-    """Return the angle of the dead centre as the file counts, the files that it was read from, and what to say."""
-    if isinstance(given, (int, float)):
-        return given, (), ()
-    from kurbel.machine_file.motored import dead_centre
-
-    zero, note = dead_centre(given, layout, gauge.pressures, against)
-    return zero, (given.motored,), (note,)
+def dead_centre(given: Motored, layout: Layout, base: Callable[[Array], Array], against: bool) -> tuple[float, str]:
+    """Return the angle of the dead centre in degrees as the file counts, and a note on it; raises RuleError."""
+    try:
+        samples = samples_of_file(given.motored, layout, "pressure", base, against)
+        peak, doubt = motored_peak(samples.angles, samples.values)
+    except RuleError as error:
+        raise RuleError(*(fault._replace(path=("angle_zero", "motored")) for fault in error.faults)) from None
+    sense = -1 if against else 1
+    zero = sense * (peak.place + given.loss_angle)
+    note = (
+        f"angle_zero is {zero:.4g} deg, uncertain by {doubt:.2g} deg: the peak of a parabola through "
+        f"{peak.samples} samples of {basename(given.motored)} stands at {sense * peak.place:.4g} deg, the dead centre "
+        f"{given.loss_angle:g} deg later"
+    )
+    return zero, note

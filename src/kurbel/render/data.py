@@ -1,15 +1,17 @@
 """Results for programs: CSV and JSON with all digits, and the JSON Schema of the answers."""
 
+import csv
 import json
-from array import array
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from io import StringIO
 from itertools import chain, repeat
 from typing import Any, NamedTuple
 
 from kurbel import __version__
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.numbers import decimal, exact, rounded, whole_if_integral
+from kurbel.render.numbers import decimal, rounded, whole_if_integral
 from kurbel.render.text import TURNING
 from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Provenance, Report, Value
 
@@ -27,15 +29,41 @@ _FIRST = {"ratios": "rod_ratio", "bearings": "bearing", "scenes": "scene"}
 # CSV
 
 
+def csv_lines(rows: Iterable[Iterable[Any]], look: Look) -> Iterator[str]:
+    """Yield rows of texts, numbers and None as lines that end in `\\n`; with the decimal comma, `;` parts the cells."""
+    written = StringIO()
+    writer = csv.writer(written, delimiter=";" if look.comma else ",", lineterminator="\n")
+    for row in rows:
+        writer.writerow(row)
+        yield written.getvalue()
+        written.seek(0)
+        written.truncate()
+
+
+def csv_cell(value: Any, look: Look) -> Any:
+    """Return a value for `csv_lines`: an apostrophe marks a text that a spreadsheet would take for a formula.
+
+    Numbers have the digits that are wanted, or all; the values of a list are parted by blanks.
+    """
+    if isinstance(value, str):
+        text = look.charset.data(value)
+        return f"'{text}" if text.startswith(_FORMULA) else text
+    if isinstance(value, tuple):
+        return " ".join(str(csv_cell(one, look)) for one in value)
+    if value is None:
+        return ""
+    return decimal(repr(rounded(value, look.digits)), True) if look.comma else rounded(value, look.digits)
+
+
 class _Block(NamedTuple):
-    """Rows of one part: head -> texts, quoted where they must be; a head that it lacks is empty there."""
+    """Rows of one part: head -> cells; a head that it lacks is empty there."""
 
     part: Part
-    columns: Mapping[str, Iterable[str]]
+    columns: Mapping[str, Iterable[Any]]
 
 
 def csv_text(report: Report, look: Look) -> Iterator[str]:
-    """Yield head and rows as CSV with `\\n` line ends; with the decimal comma, `;` separates the columns.
+    """Yield head and rows as CSV.
 
     These are the tables over the crank angle; if there are none, the tables of places; if there are none either, the
     key values, a row for each and for each value of a list. Several parts follow one another, with their names in a
@@ -50,15 +78,18 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
         named = report.group == "scenes" or any(one.part is not blocks[0].part for one in blocks)
     else:
         heads = ["key_value", "unit", "value", "at_deg"]
-        blocks = [_Block(part, _key_value_columns(part, look)) for part in parts]
+        blocks = [_Block(part, _key_value_rows(part, look)) for part in parts]
         named = len(parts) > 1
-    separator = ";" if look.comma else ","
-    first = [_FIRST.get(report.group, "cylinder")] if named else []
-    yield separator.join([*first, *(quoted(head, look) for head in heads)]) + "\n"
-    for part, columns in blocks:
-        name = [_name(part, look)] if named else []
-        for row in zip(*(columns.get(head, repeat("")) for head in heads)):
-            yield separator.join((*name, *row)) + "\n"
+
+    def rows() -> Iterator[tuple[Any, ...]]:
+        yield (_FIRST.get(report.group, "cylinder"), *heads) if named else tuple(heads)
+        for part, columns in blocks:
+            name = part.name if isinstance(part.name, str) else whole_if_integral(part.name)
+            first = (csv_cell(name, replace(look, digits=None)),) if named else ()
+            for row in zip(*(columns.get(head, repeat("")) for head in heads)):
+                yield (*first, *row)
+
+    return csv_lines(rows(), look)
 
 
 def _angle_rows(report: Report, look: Look) -> tuple[list[str], list[_Block]]:
@@ -67,7 +98,7 @@ def _angle_rows(report: Report, look: Look) -> tuple[list[str], list[_Block]]:
     heads: list[str] = []
     for part in report.all_parts:
         if part.columns:
-            columns = {_head(column): _texts(column, look) for column in part.columns}
+            columns = {_head(column): _cells(column, look) for column in part.columns}
             blocks.append(_Block(part, columns))
             place = len(heads)
             for head in reversed(columns):
@@ -84,25 +115,28 @@ def _place_rows(report: Report, look: Look) -> tuple[list[str], list[_Block]]:
     quantities: dict[str, None] = {}
     for part in report.all_parts:
         for table in part.place_tables:
-            columns = {_head(column): [number(value, look) for value in column.values] for column in table.columns}
+            columns: dict[str, Iterable[Any]] = {_head(column): _cells(column, look) for column in table.columns}
             quantities |= dict.fromkeys(columns)
             names |= dict.fromkeys(table.heads)
-            for head, cells in zip(table.heads, zip(*table.names)):
-                columns[head] = [quoted(harmless(look.charset.data(cell)), look) for cell in cells]
-            columns["table"] = [quoted(table.id, look)] * len(table.names)
-            blocks.append(_Block(part, columns))
+            columns |= {
+                head: [csv_cell(one, look) for one in found] for head, found in zip(table.heads, zip(*table.names))
+            }
+            blocks.append(_Block(part, columns | {"table": repeat(table.id, len(table.names))}))
     return ["table", *names, *quantities], blocks
 
 
-def _key_value_columns(part: Part, look: Look) -> dict[str, list[str]]:
-    columns: dict[str, list[str]] = {"key_value": [], "unit": [], "value": [], "at_deg": []}
-    for one in part.key_values:
-        for value in one.value if isinstance(one.value, tuple) else (one.value,):
-            columns["key_value"].append(quoted(one.id, look))
-            columns["unit"].append(quoted(one.unit, look))
-            columns["value"].append(number(value, look))
-            columns["at_deg"].append(number(one.at_deg, look, in_full=True))
-    return columns
+def _key_value_rows(part: Part, look: Look) -> dict[str, list[Any]]:
+    pairs = [
+        (one, value)
+        for one in part.key_values
+        for value in (one.value if isinstance(one.value, tuple) else (one.value,))
+    ]
+    return {
+        "key_value": [one.id for one, _ in pairs],
+        "unit": [one.unit for one, _ in pairs],
+        "value": [csv_cell(value, look) for _, value in pairs],
+        "at_deg": [csv_cell(one.at_deg, replace(look, digits=None)) for one, _ in pairs],
+    }
 
 
 def _head(column: Column) -> str:
@@ -111,37 +145,12 @@ def _head(column: Column) -> str:
     return f"{column.id}_{unit}" if unit else column.id
 
 
-def _name(part: Part, look: Look) -> str:
-    if isinstance(part.name, str):
-        return quoted(harmless(look.charset.data(part.name)), look)
-    return number(whole_if_integral(part.name), look, in_full=True)
-
-
-def _texts(column: Column, look: Look) -> Iterator[str]:
-    """Yield the values of a column; angles have all digits, whole ones no decimal point."""
-    if column.id == "phi":
-        values = (None if value is None else whole_if_integral(value) for value in column.values)
-        return (number(value, look, in_full=True) for value in values)
-    if isinstance(column.values, array) and look.digits is None and not look.comma:
-        return (repr(value + 0.0) for value in column.values)  # as `exact` writes them, in half the time
-    return (number(value, look) for value in column.values)
-
-
-def number(value: Value, look: Look, in_full: bool = False) -> str:
-    """Return a number with the digits that are wanted, or all; nothing for no value."""
-    return "" if value is None else decimal(exact(value, None if in_full else look.digits), look.comma)
-
-
-def harmless(name: str) -> str:
-    """Return a name that a spreadsheet does not take for a formula: an apostrophe marks it as text."""
-    return f"'{name}" if name[:1] in _FORMULA else name
-
-
-def quoted(text: str, look: Look) -> str:
-    """Return a text of CSV, in quotes if it has the separator, a quote or a line end."""
-    if any(character in text for character in (";" if look.comma else ",", '"', "\n", "\r")):
-        return '"' + text.replace('"', '""') + '"'
-    return text
+def _cells(column: Column, look: Look) -> Iterator[Any]:
+    """Yield the values of a column; crank angles have all digits, whole ones no decimal point."""
+    if column.id != "phi":
+        return (csv_cell(value, look) for value in column.values)
+    in_full = replace(look, digits=None)
+    return (csv_cell(value if value is None else whole_if_integral(value), in_full) for value in column.values)
 
 
 # JSON
@@ -153,17 +162,18 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
         raise UsageError("--decimal comma: JSON has the decimal point only; use it with table, csv or markdown")
     content = {"kurbel": __version__, "format": FORMAT, "command": report.command}
     if report.machine is not None:
-        content |= {"machine": report.machine, **_provenance(report.provenance)}
+        content |= {"machine": report.machine, **_made_from(report.provenance)}
     if report.head:
-        content["head"] = report.head
-    if report.parts:
-        name = _ratio if report.group == "ratios" else _named
-        content[report.group] = [name(part, look) for part in report.parts]
+        content["head"] = list(report.head)
+    if report.group == "ratios":
+        content["ratios"] = [_ratio(part, look) for part in report.parts]
+    elif report.parts:
+        content[report.group] = [{"name": part.name, **_results(part, look)} for part in report.parts]
     if report.whole is not None:
         content |= {f"machine_{key}": value for key, value in _results(report.whole, look).items()}
     if report.notes:
         content["notes"] = list(report.notes)
-    return chain(_pieces(content, "", look), "\n")
+    return chain(_pieces(content, "\n", look), "\n")
 
 
 def findings_json(
@@ -171,19 +181,14 @@ def findings_json(
 ) -> Iterator[str]:
     """Yield a check as one JSON object in pieces, a line for every finding; machine: None where the file has none."""
     head = {"kurbel": __version__, "format": FORMAT, "command": "check", "machine": machine}
-    return chain(_pieces({**head, **_provenance(made_from), "findings": findings}, "", look), "\n")
+    return chain(_pieces({**head, **_made_from(made_from), "findings": findings}, "\n", look), "\n")
 
 
-def _provenance(given: Provenance | None) -> dict[str, Any]:
-    """Return what results were made from and with."""
+def _made_from(given: Provenance | None) -> dict[str, Any]:
     if given is None:
         return {}
     versions = {"kurbel": __version__, **given.versions}
-    return {"inputs": [vars(one) for one in given.inputs], "overrides": given.overrides, "versions": versions}
-
-
-def _named(part: Part, look: Look) -> dict[str, Any]:
-    return {"name": part.name, **_results(part, look)}
+    return {"inputs": [vars(one) for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
 
 
 def _ratio(part: Part, look: Look) -> dict[str, Any]:
@@ -193,9 +198,9 @@ def _ratio(part: Part, look: Look) -> dict[str, Any]:
 
 
 def _results(part: Part, look: Look) -> dict[str, Any]:
-    tables = {"place_tables": [_place_table(one, look) for one in part.place_tables]} if part.place_tables else {}
+    tables = {"place_tables": [_place_table(one) for one in part.place_tables]} if part.place_tables else {}
     return {
-        "columns": [_column(column, look) for column in part.columns],
+        "columns": list(part.columns),
         **tables,
         "key_values": [_key_value(one, look) for one in part.key_values],
         "left_out": [{"what": one.what, "why": one.why} for one in part.left_out],
@@ -203,68 +208,60 @@ def _results(part: Part, look: Look) -> dict[str, Any]:
     }
 
 
-def _place_table(table: PlaceTable, look: Look) -> dict[str, Any]:
+def _place_table(table: PlaceTable) -> dict[str, Any]:
     rows = {"rows": [dict(zip(table.heads, names)) for names in table.names]} if table.heads else {}
-    columns = [_column(column, look) for column in table.columns]
-    return {"id": table.id, "title": table.title, **rows, "columns": columns}
-
-
-def _column(column: Column, look: Look) -> dict[str, Any]:
-    """Return a column, whose values are rounded only when they are written: a long table is never held."""
-
-    def values() -> Iterator[str]:
-        for start in range(0, len(column.values), _AT_ONCE):
-            piece = [_value(value, column.id == "phi", look) for value in column.values[start : start + _AT_ONCE]]
-            yield (", " if start else "") + json.dumps(piece, allow_nan=False)[1:-1]
-
-    content = {"id": column.id, "symbol": column.symbol, "unit": column.unit, "values": values}
-    return content | ({"marked": list(column.marked)} if column.marked else {})
-
-
-def _value(value: Value, is_angle: bool, look: Look) -> Value:
-    if value is None:
-        return None
-    return whole_if_integral(value) if is_angle else rounded(value, look.digits)
+    return {"id": table.id, "title": table.title, **rows, "columns": list(table.columns)}
 
 
 def _key_value(one: KeyValue, look: Look) -> dict[str, Any]:
-    value = [rounded(each, look.digits) for each in one.value] if isinstance(one.value, tuple) else one.value
-    if isinstance(value, (int, float)):
-        value = rounded(value, look.digits)
+    value = [_value(each, look) for each in one.value] if isinstance(one.value, tuple) else _value(one.value, look)
     content = {"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value}
     return content if one.at_deg is None else content | {"at_deg": rounded(one.at_deg, None)}
 
 
-def _pieces(node: Any, indent: str, look: Look) -> Iterator[str]:
-    """Yield a node on one line, or its entries on lines of their own where one of them holds an object.
+def _value(value: Value, look: Look) -> Value:
+    return None if value is None else rounded(value, look.digits)
 
-    node: what JSON holds, or a function that yields the values of a list as text.
-    """
-    if callable(node):
-        yield from chain("[", node(), "]")
-        return
-    if not isinstance(node, (dict, list, tuple)):
+
+def _pieces(node: Any, line_end: str, look: Look) -> Iterator[str]:
+    """Yield a node in pieces: on one line, or its entries on lines of their own where one of them holds an object."""
+    if isinstance(node, Column):
+        yield from _column_pieces(node, look)
+    elif not _holds_object(node):
         yield _written(node, look)
-        return
-    broken, deeper = _holds_object(node), indent + " "
-    before, between = ("\n" + deeper, ",\n" + deeper) if broken else ("", ", ")
-    opening, closing = "{}" if isinstance(node, dict) else "[]"
-    keys = [f"{_written(key, look)}: " for key in node] if isinstance(node, dict) else [""] * len(node)
-    yield opening + before
-    for index, (key, child) in enumerate(zip(keys, node.values() if isinstance(node, dict) else node)):
-        yield (between if index else "") + key
-        yield from _pieces(child, deeper, look)
-    yield closing
-
-
-def _written(node: Any, look: Look) -> str:
-    """Return a text, number or null; characters that turn the writing are escaped."""
-    return json.dumps(node, ensure_ascii=not look.charset.has("φ"), allow_nan=False).translate(_ESCAPED)
+    else:
+        deeper = line_end + " "
+        is_object = isinstance(node, dict)
+        entries = node.items() if is_object else (("", one) for one in node)
+        for index, (key, child) in enumerate(entries):
+            yield ("," if index else "{" if is_object else "[") + deeper
+            yield f"{_written(key, look)}: " if is_object else ""
+            yield from _pieces(child, deeper, look)
+        yield "}" if is_object else "]"
 
 
 def _holds_object(node: Any) -> bool:
-    children = node.values() if isinstance(node, dict) else node if isinstance(node, (list, tuple)) else ()
-    return any(isinstance(child, dict) or _holds_object(child) for child in children)
+    children = node.values() if isinstance(node, dict) else node if isinstance(node, list) else ()
+    return any(isinstance(child, (dict, Column)) or _holds_object(child) for child in children)
+
+
+def _column_pieces(column: Column, look: Look) -> Iterator[str]:
+    """Yield a column in pieces: a long one is never held as text. Crank angles have all digits."""
+    head = _written({"id": column.id, "symbol": column.symbol, "unit": column.unit}, look)
+    yield head[:-1] + ', "values": ['
+    for start in range(0, len(column.values), _AT_ONCE):
+        values = column.values[start : start + _AT_ONCE]
+        if column.id == "phi":
+            shown = [value if value is None else whole_if_integral(value) for value in values]
+        else:
+            shown = [_value(value, look) for value in values]
+        yield (", " if start else "") + json.dumps(shown, allow_nan=False)[1:-1]
+    yield f'], "marked": {list(column.marked)}}}' if column.marked else "]}"
+
+
+def _written(node: Any, look: Look) -> str:
+    """Return a node on one line; characters that turn the writing are escaped."""
+    return json.dumps(node, ensure_ascii=not look.charset.has("φ"), allow_nan=False).translate(_ESCAPED)
 
 
 # the JSON Schema of what `-f json` prints

@@ -23,7 +23,7 @@ from kurbel.designs.sweep import Row, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.data import harmless, number, quoted
+from kurbel.render.data import csv_cell, csv_lines
 from kurbel.render.numbers import single
 from kurbel.render.output import silence, stdout_look, take_mode, whole_file
 
@@ -66,28 +66,11 @@ class Titles(NamedTuple):
 
 def csv_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]:
     """Yield the rows as CSV; a list is one cell, its values parted by blanks."""
-    separator = ";" if look.comma else ","
-    yield separator.join(quoted(harmless(name), look) for name in titles.whole) + "\n"
-    plain = float if look.digits is None and not look.comma else None
-    for row in rows:
-        cells = [  # most are numbers in full, which `number` writes like this in five times the time
-            repr(value + 0.0) if type(value) is plain else _csv_cell(value, look) for value in titles.values(row)
-        ]
-        yield separator.join(cells) + "\n"
-
-
-def _csv_cell(value: Any, look: Look) -> str:
-    text = _in_full(value, look)
-    return quoted(text, look) if isinstance(value, str) else text
-
-
-def _in_full(value: Any, look: Look) -> str:
-    """Return a value with all its digits, or those that are wanted."""
-    if isinstance(value, str):
-        return harmless(look.charset.data(value))
-    if isinstance(value, tuple):
-        return " ".join(_in_full(one, look) for one in value)
-    return number(value, look)
+    plain = None if look.digits or look.comma else float
+    cells = (  # most are numbers in full, which `csv_cell` would only take longer for
+        [value + 0.0 if type(value) is plain else csv_cell(value, look) for value in titles.values(row)] for row in rows
+    )
+    return csv_lines(chain([[csv_cell(name, look) for name in titles.whole]], cells), look)
 
 
 def json_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]:
@@ -103,8 +86,7 @@ def markdown_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[s
     """Yield a table in Markdown, numbers to four digits."""
     heads = [*(f"{name} ({look.charset.unit(unit)})" if unit else name for name, unit in titles.names)]
     rules = ["--:"] * (len(heads) + 1) + ["---"] * len(titles.last)
-    cells = ([_cell(value, look) for value in titles.values(row)] for row in rows)
-    for line in chain(([titles.row, *heads, *titles.last], rules), cells):
+    for line in chain(([titles.row, *heads, *titles.last], rules), _cells(titles, rows, look)):
         escaped = (text.replace("\\", "\\\\").replace("|", "\\|") for text in line)
         yield f"| {' | '.join(escaped)} |\n"
 
@@ -113,7 +95,7 @@ def table_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]
     """Yield a table of numbers to four digits, flush right, heads and units over it."""
     names = [titles.row, *(name for name, _ in titles.names), *titles.last]
     units = ["", *(look.charset.unit(unit) for _, unit in titles.names), *("" for _ in titles.last)]
-    cells = ([_cell(value, look) for value in titles.values(row)] for row in rows)
+    cells = _cells(titles, rows, look)
     first = list(islice(cells, _WIDTH_OF))
     widths = [max(map(len, column)) for column in zip(names, units, *first)]
     if titles.last:  # a reason may be long, and nothing follows it
@@ -124,16 +106,18 @@ def table_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]
         yield "  ".join(cell.rjust(width) for cell, width in zip(line, widths)).rstrip() + "\n"
 
 
+def _cells(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[list[str]]:
+    """Yield the cells of each row as people read them."""
+    return ([_cell(value, look) for value in titles.values(row)] for row in rows)
+
+
 def _cell(value: Any, look: Look) -> str:
-    """Return a value as people read it, its number to four digits."""
-    if value is None:
-        return ""
-    if isinstance(value, Unit):
-        return look.charset.unit(value)
     if isinstance(value, str):
-        return look.charset.text(value)
+        return look.charset.unit(value) if isinstance(value, Unit) else look.charset.text(value)
     if isinstance(value, tuple):
         return " ".join(_cell(one, look) for one in value)
+    if value is None:
+        return ""
     text, power = single(value, look.digits, look.comma)
     return f"{text}e{power}" if power else text
 
@@ -380,7 +364,7 @@ class KeptRows:
     def _text(self, value: Any) -> str:
         """Return the text of a cell of csv, or of a value of json."""
         if self._look.format == "csv":
-            return _in_full(value, self._look)
+            return str(csv_cell(value, self._look))
         if isinstance(value, (list, tuple)):
             return " ".join(map(repr, value))
         return "" if value is None else value if isinstance(value, str) else repr(value)

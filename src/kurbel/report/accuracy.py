@@ -14,8 +14,7 @@ from kurbel.accuracy.timing import Patience
 from kurbel.accuracy.trials import Lacking, Row, dominating, examined
 from kurbel.machine import Machine
 from kurbel.report.commands import report_of
-from kurbel.report.frame import Frame
-from kurbel.report.provenance import provenance
+from kurbel.report.frame import Frame, provenance
 from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report, Value
 from kurbel.solver.case import Case
 
@@ -70,9 +69,9 @@ def _measured(scene: Scene, quick: bool, uncertain: Sequence[Difference]) -> Mea
 
 def everything(case: Case) -> None:
     """Ask a case for all that `kurbel forces` prints: every column at 37 angles, and every key value."""
-    from kurbel.report.forces import subjects
+    from kurbel.report.crank import forces_subjects
 
-    for subject in subjects(case):
+    for subject in forces_subjects(case):
         assert subject.at
         state = subject.at(np.arange(0.0, 361.0, 10.0))
         for id in subject.lists.columns("forces"):

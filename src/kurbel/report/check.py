@@ -1,45 +1,39 @@
-"""The report of `kurbel check`: what a machine has, what is left out, and how its limits and expectations stand."""
+"""The report of `kurbel check`: what a machine has, what is left out, and how its limits and expectations compare."""
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Sequence
-from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from kurbel.declared.forms import Physical
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.firing import firings, intervals
 from kurbel.mechanisms import Mechanism
 from kurbel.report.alike import grouped, together
-from kurbel.report.compared import Entry, Unjudged, judged
-from kurbel.report.left_out import left_out, missing, stages, strength_left_out, turning_stages
-from kurbel.report.notes import Note, Solved, machine_notes
-from kurbel.report.provenance import provenance
+from kurbel.report.frame import provenance
+from kurbel.report.left_out import balance_left_out, left_out, missing, stages, strength_left_out, turning_stages
+from kurbel.report.limits import Entry, Unjudged, judged
 from kurbel.report.tables import LeftOut, Provenance
-
-if TYPE_CHECKING:
-    from kurbel.solver.case import Case
-
+from kurbel.report.turning import torsion_left_out, torsion_warnings
+from kurbel.report.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
+from kurbel.solver.case import Case
+from kurbel.solver.shaft import shaft_obstacle
 
 _EVEN = 0.5
 """Degrees by which firing intervals differ where angles were rounded."""
 
 
 class Section(NamedTuple):
-    """A head line with its entries; cylinder: they are all of the one whose name it is."""
+    """A head line with its entries; cylinder: they are all about the cylinder whose name it is."""
 
     title: str
     entries: tuple[Entry, ...]
     cylinder: bool = False
 
-    @property
-    def said(self) -> Hashable:
-        """What equal cylinders have in common."""
-        return self.cylinder or self.title, tuple((one.what, one.text, one.severity) for one in self.entries)
-
 
 class Checked(NamedTuple):
-    """The outcome of a check; `broken`: a limit is, or a figure is off; `unjudged`: which cannot be judged, and why."""
+    """The outcome of a check; broken: a limit is, or a figure is off; unjudged: which cannot be compared, and why."""
 
     title: str
     sections: tuple[Section, ...]
@@ -48,59 +42,52 @@ class Checked(NamedTuple):
 
     @property
     def errors(self) -> tuple[KurbelError, ...]:
-        """What keeps limits and expectations from being judged."""
+        """What keeps limits and expectations from being compared."""
         return tuple(one.error for one in self.unjudged)
 
     @property
-    def told_once(self) -> tuple[Section, ...]:
+    def told_once(self) -> list[Section]:
         """The sections, equal cylinders in one."""
-        groups = grouped(self.sections, lambda one: one.said)
-        return tuple(group[0]._replace(title=together([one.title for one in group])) for group in groups)
+        groups = grouped(self.sections, _content)
+        return [group[0]._replace(title=together([one.title for one in group])) for group in groups]
 
 
-def checked(machine: Machine, solved: "Case | None" = None) -> Checked:
-    """Return what is to be said of a machine; key values are computed only as far as it needs.
+def _content(section: Section) -> Hashable:
+    """Return what the sections of equal cylinders have in common."""
+    entries = tuple((one.what, one.text, one.severity) for one in section.entries)
+    return section.cylinder or section.title, entries
 
-    solved: the machine with its results, where there are some.
-    """
 
-    @cache
-    def case() -> "Case":
-        from kurbel.solver.case import Case
-
-        return solved or Case(machine)
-
-    found = tuple(judged(machine, case))
+def checked(case: Case) -> Checked:
+    """Return the check of a machine; key values are computed only as far as it needs."""
+    machine = case.machine
+    found = list(judged(case))
     entries = [one for one in found if isinstance(one, Entry)]
-    notes = machine_notes(machine, case)
+    notes = machine_notes(case)
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
         Section("Cranks", tuple(_crank_entries(machine))),
         Section("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
-        Section("Crankshaft", tuple(_crankshaft_entries(machine, case))),
-        Section("Balance", tuple(_balance_entries(machine, case))),
-        Section("Shaft line", tuple(_shaft_entries(machine, case))),
+        Section("Crankshaft", tuple(_crankshaft_entries(case))),
+        Section("Balance", tuple(_balance_entries(case))),
+        Section("Shaft line", tuple(_shaft_entries(case))),
         Section("Limits", tuple(one for one in entries if one.path[0] == "limits")),
         Section("Expected", tuple(one for one in entries if one.path[0] == "expect")),
     )
-    broken = any(one.severity == "error" for one in entries)
-    unjudged = tuple(one for one in found if isinstance(one, Unjudged))
-    return Checked(f"{machine.name}: a valid machine", tuple(s for s in sections if s.entries), broken, unjudged)
+    return Checked(
+        f"{machine.name}: a valid machine",
+        tuple(one for one in sections if one.entries),
+        any(one.severity == "error" for one in entries),
+        tuple(one for one in found if isinstance(one, Unjudged)),
+    )
 
 
-def _machine_entries(machine: Machine) -> Iterable[Entry]:
+def _machine_entries(machine: Machine) -> Iterator[Entry]:
     none = "none, a given turning effort" if machine.effort else "none, a shaft line alone"
     yield Entry("cylinders", str(len(machine.cylinders)) if machine.cylinders else none)
     yield Entry("cycle", f"{machine.cycle}, {360 * machine.revolutions} deg")
     yield Entry("speed", "not given" if machine.speed is None else show(machine.speed, "speed"))
-    yield from _firing_entries(machine)
-
-
-def _firing_entries(machine: Machine) -> Iterable[Entry]:
-    """Yield the firing angles and intervals of an engine, and a note where they are uneven."""
-    from kurbel.machine.firing import firings, intervals
-
     found = firings(machine)
     if not found:
         return
@@ -134,31 +121,41 @@ def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note
     return Section(cylinder.name, tuple(entries), cylinder=True)
 
 
-def _crank_entries(machine: Machine) -> Iterable[Entry]:
-    """Yield for each of several cylinders when it follows the first, and where that puts its crank pin."""
-    banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
-    for cylinder in machine.cylinders[: len(machine.cylinders) if len(machine.cylinders) > 1 else 0]:
-        # the dead centre of a crank stands at its bank
-        behind = (cylinder.crank_position - cylinder.bank_angle) % 360.0
-        pin = f", stroke line at {cylinder.bank_angle:g} deg: crank pin {behind:g} deg behind the first"
-        yield Entry(cylinder.name, f"{cylinder.crank_position:g} deg after the first{pin if banked else ''}")
-
-
-def _notes(found: Sequence[Note], cylinder: str | None, path: Path = ()) -> Iterable[Entry]:
-    """Yield the notes on a cylinder, or on the whole machine."""
-    return (Entry("note", text, "warning", path) for name, text in found if name == cylinder)
+def _described(mechanism: Mechanism) -> str:
+    """Return the kind of a mechanism and its lengths."""
+    lengths = [
+        f"{name} {'infinite' if math.isinf(size) else show(size, key.form.kind)}"
+        for name, key in mechanism.KEYS.items()
+        if isinstance(key.form, Physical) and isinstance(size := getattr(mechanism, name, None), float) and size
+    ]
+    return f"{mechanism.name}: {', '.join(lengths)}"
 
 
 def _computed(stages: dict[str, str]) -> Entry:
     return Entry("computed", ", ".join(what for what, why in stages.items() if not why))
 
 
-def _without(found: Iterable[LeftOut], path: Path = ()) -> Iterable[Entry]:
+def _without(found: Iterable[LeftOut], path: Path = ()) -> Iterator[Entry]:
     return (Entry("left out", f"{what}: {why}", "info", path) for what, why in found)
 
 
-def _turning_entries(machine: Machine) -> Iterable[Entry]:
-    """Yield what kurbel flywheel has to say of a machine, where that is more than its only cylinder has."""
+def _notes(found: Sequence[Note], cylinder: str | None, path: Path = ()) -> Iterator[Entry]:
+    """Yield the warnings on a cylinder, or on the whole machine."""
+    return (Entry("note", text, "warning", path) for name, text in found if name == cylinder)
+
+
+def _crank_entries(machine: Machine) -> Iterator[Entry]:
+    """Yield for each of several cylinders by how much it follows the first, and where that puts its crank pin."""
+    banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
+    for cylinder in machine.cylinders if len(machine.cylinders) > 1 else ():
+        # the dead centre of a crank is at its bank
+        behind = (cylinder.crank_position - cylinder.bank_angle) % 360.0
+        pin = f", stroke line at {cylinder.bank_angle:g} deg: crank pin {behind:g} deg behind the first"
+        yield Entry(cylinder.name, f"{cylinder.crank_position:g} deg after the first{pin if banked else ''}")
+
+
+def _turning_entries(machine: Machine) -> Iterator[Entry]:
+    """Yield what kurbel flywheel has of a machine, if that is more than its only cylinder has."""
     if not machine.cylinders and not machine.effort:
         return
     given = (machine.flywheel, machine.load, machine.effort, machine.coupling)
@@ -179,36 +176,29 @@ def _load(machine: Machine) -> str:
     return f"slip {load.slip:g}" if load.slip is not None else f"torque as the speed to the power {load.power:g}"
 
 
-def _crankshaft_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
+def _crankshaft_entries(case: Case) -> Iterator[Entry]:
+    machine, path = case.machine, ("crankshaft",)
     if machine.crankshaft is None:
         return
-    from kurbel.report.bearings import bearing_warnings
-    from kurbel.report.warnings import as_far_as_solved
-    from kurbel.solver.shaft import shaft_obstacle
-
-    yield from (
-        Entry("bearings", text, "warning", ("crankshaft",))
-        for text in as_far_as_solved(bearing_warnings(case()), "bearings")
-    )
+    for text in as_far_as_solved(bearing_warnings(case), "bearings"):
+        yield Entry("bearings", text, "warning", path)
     if not shaft_obstacle(machine):
         yield Entry("computed", "loads on pins and main bearings")
-    if obstacle := machine.strength_obstacle:
-        yield Entry("left out", f"strength: {obstacle}", "info", ("crankshaft",))
+    if machine.strength_obstacle:
+        yield Entry("left out", f"strength: {machine.strength_obstacle}", "info", path)
         return
     yield Entry("computed", "forces on the bearings, stresses in pin and webs")
-    yield from _without(strength_left_out(machine), ("crankshaft",))
+    yield from _without(strength_left_out(machine), path)
 
 
-def _balance_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
-    """Yield what kurbel balance has to say of a machine of which a place, a weight or a wheel is told."""
+def _balance_entries(case: Case) -> Iterator[Entry]:
+    """Yield what kurbel balance has of a machine with a place, a weight or a wheel."""
+    machine = case.machine
     placed = any(one.axial_position is not None or one.counterweights for one in machine.cylinders)
     if not (placed or machine.counterweights or machine.balance_shafts or machine.locomotive):
         return
-    from kurbel.report.balance import subjects
-
     try:
-        (whole,) = subjects(case())
-        lacking = tuple(whole.left_out())
+        lacking = balance_left_out(case)
     except KurbelError as error:
         yield Entry("left out", str(error), "info")
         return
@@ -216,35 +206,24 @@ def _balance_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
     yield from _without(lacking)
 
 
-def _shaft_entries(machine: Machine, case: Solved) -> Iterable[Entry]:
-    """Yield what kurbel torsion has to say of a shaft line or a coupling, or why it refuses it."""
-    if machine.shaft is None and machine.coupling is None:
+def _shaft_entries(case: Case) -> Iterator[Entry]:
+    """Yield what kurbel torsion has of a shaft line or a coupling, or why it refuses it."""
+    shaft, path = case.machine.shaft, ("shaft",)
+    if shaft is None and case.machine.coupling is None:
         return
-    from kurbel.report.torsion import torsion_left_out, torsion_warnings
-    from kurbel.report.warnings import as_far_as_solved
-
-    yield from (Entry("torsion", text, "warning") for text in as_far_as_solved(torsion_warnings(case()), "torsion"))
-    if machine.shaft is None:
+    for text in as_far_as_solved(torsion_warnings(case), "torsion"):
+        yield Entry("torsion", text, "warning")
+    if shaft is None:
         return
-    yield Entry("masses", str(len(machine.shaft.masses)))
+    yield Entry("masses", str(len(shaft.masses)))
     try:
-        found = case().torsion
+        found = case.torsion
     except KurbelError as error:
-        yield Entry("left out", f"torsional vibration: {error}", "info", ("shaft",))
+        yield Entry("left out", f"torsional vibration: {error}", "info", path)
         return
     forced = "" if found.obstacle else ", torques and stresses"
     yield Entry("computed", f"natural frequencies, critical speeds{forced}")
-    yield from _without(torsion_left_out(found), ("shaft",))
-
-
-def _described(mechanism: Mechanism) -> str:
-    """Return the kind of a mechanism and its lengths."""
-    lengths = [
-        f"{name} {'infinite' if math.isinf(size) else show(size, key.form.kind)}"
-        for name, key in mechanism.KEYS.items()
-        if isinstance(key.form, Physical) and isinstance(size := getattr(mechanism, name, None), float) and size
-    ]
-    return f"{mechanism.name}: {', '.join(lengths)}"
+    yield from _without(torsion_left_out(found), path)
 
 
 # for programs: each finding with its place in the machine file
@@ -288,23 +267,17 @@ Locate = Callable[[str, "list[Fault]"], "list[Fault]"]
 def findings(machine: Machine, checked: Checked, locate: Locate) -> Findings:
     """Return what was found of a machine; locate: returns faults with their places in the text of the file."""
     several = len(machine.cylinders) > 1
-    said = [
-        (
-            one.path,
-            f"{f'{section.title}: ' if several and section.cylinder else ''}{one.what}: {one.text}",
-            one.severity,
-        )
-        for section in checked.sections
-        for one in section.entries
-        if one.severity
-    ]
-    said += [(path, str(error).removeprefix(f"{path_text(path)}: "), "error") for path, error in checked.unjudged]
-    origin, paths = machine.origin, {path for path, _, _ in said if path}
+    found: list[tuple[Path, str, str]] = []
+    for section in checked.sections:
+        head = f"{section.title}: " if several and section.cylinder else ""
+        found += [(one.path, f"{head}{one.what}: {one.text}", one.severity) for one in section.entries if one.severity]
+    found += [(path, str(error).removeprefix(f"{path_text(path)}: "), "error") for path, error in checked.unjudged]
+    origin, paths = machine.origin, {path for path, _, _ in found if path}
     placed = locate(origin.text, [Fault(path, "", at_key=True) for path in paths]) if origin and paths else []
     places = {fault.path: fault for fault in placed}
     file = origin.name if origin else machine.name
-    found = tuple(_finding(file, path, places.get(path), text, severity) for path, text, severity in said)
-    return Findings(machine.name, found, provenance(machine))
+    listed = tuple(_finding(file, path, places.get(path), text, severity) for path, text, severity in found)
+    return Findings(machine.name, listed, provenance(machine))
 
 
 def _finding(file: str, path: Path, place: Fault | None, message: str, severity: str) -> Finding:

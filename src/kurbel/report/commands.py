@@ -1,39 +1,55 @@
-"""The reports on a machine by the word of their command."""
+"""The commands that report on a machine, in the order of a whole report: word, title, report, and what it is on."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from typing import NamedTuple
 
-from kurbel.report import balance, bearings, flywheel, forces, harmonics, motion, stress, torsion
+from kurbel.report.balance import balance_report, balance_subjects
+from kurbel.report.crank import forces_report, forces_subjects, motion_report, motion_subjects
 from kurbel.report.frame import Frame, Subject
+from kurbel.report.loads import bearings_report, bearings_subjects, stress_report, stress_subjects
 from kurbel.report.tables import Report
+from kurbel.report.turning import (
+    flywheel_report,
+    flywheel_subjects,
+    harmonics_report,
+    harmonics_subjects,
+    torsion_report,
+    torsion_subjects,
+)
 from kurbel.solver.case import Case
 
-_REPORTS: dict[str, Callable[[Case, Frame], Report]] = {
-    "balance": balance.balance_report,
-    "bearings": bearings.bearings_report,
-    "flywheel": flywheel.flywheel_report,
-    "forces": forces.forces_report,
-    "harmonics": harmonics.harmonics_report,
-    "motion": motion.motion_report,
-    "stress": stress.stress_report,
-    "torsion": torsion.torsion_report,
+
+class Command(NamedTuple):
+    """A command; subjects: what it has key values of; turns: its table runs over the cycle, else over one turn."""
+
+    word: str
+    title: str
+    report: Callable[[Case, Frame], Report]
+    subjects: Callable[[Case], list[Subject]]
+    turns: bool = True
+
+
+COMMANDS = {
+    one.word: one
+    for one in (
+        Command("motion", "Motion", motion_report, motion_subjects, turns=False),
+        Command("forces", "Forces", forces_report, forces_subjects),
+        Command("flywheel", "Turning effort and flywheel", flywheel_report, flywheel_subjects),
+        Command("stress", "Strength of the crankshaft", stress_report, stress_subjects),
+        Command("bearings", "Bearings", bearings_report, bearings_subjects),
+        Command("balance", "Balance of the masses", balance_report, balance_subjects),
+        Command("harmonics", "Orders of the turning effort", harmonics_report, harmonics_subjects),
+        Command("torsion", "Torsional vibration", torsion_report, torsion_subjects),
+    )
 }
-_SUBJECTS: dict[str, Callable[[Case], Iterable[Subject]]] = {
-    "balance": balance.subjects,
-    "bearings": bearings.subjects,
-    "flywheel": flywheel.subjects,
-    "forces": forces.subjects,
-    "harmonics": harmonics.subjects,
-    "motion": motion.subjects,
-    "stress": stress.subjects,
-    "torsion": torsion.subjects,
-}
+"""By its word."""
 
 
 def report_of(case: Case, frame: Frame) -> Report:
     """Return the report of the command that the frame is of."""
-    return _REPORTS[frame.command](case, frame)
+    return COMMANDS[frame.command].report(case, frame)
 
 
-def subjects_of(case: Case, command: str) -> Iterable[Subject]:
-    """Return what a command speaks of, with the key values that it has."""
-    return _SUBJECTS[command](case)
+def subjects_of(case: Case, command: str) -> list[Subject]:
+    """Return what a command has results of, with their key values."""
+    return COMMANDS[command].subjects(case)

@@ -1,65 +1,70 @@
-"""The frame of every report on a machine: from the results of a command and its declared quantities to tables."""
+"""From results and their declared quantities to the tables of a report: what all commands on a machine share."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+import math
+import sys
+from array import array
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
+from hashlib import sha256
 from typing import Any
 
 import numpy as np
 
 from kurbel.declared.reading import shown
+from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import NoSolutionError, Nowhere, UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
+from kurbel.numerics.extreme import Extreme, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, called
-from kurbel.report.provenance import provenance
-from kurbel.report.shown import shown_columns, shown_key_values
-from kurbel.report.tables import Column, Later, LeftOut, Part, PlaceTable, Report
+from kurbel.report.tables import Column, Input, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
 from kurbel.solver.figures import Results, answered
+
+_AT_ONCE = 8192
+"""Crank angles computed at once, so that a table of any length needs little memory besides its own numbers."""
+_EVERYWHERE = np.arange(0.0, 720.0, 7.5)
+"""Crank angles in degrees over the longest cycle, which show how large a curve is."""
+_ROUNDING = 1e-12
+"""Values no larger than this, relative to the largest of their curve, are the rounding of a zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """What a command speaks of: one cylinder, or the whole machine.
+    """What a command has results of: a cylinder, a pin or bearing, or the whole machine.
 
-    results: what answers its key values, the first that knows one; at: takes crank angles (n,) in degrees and returns
-    the state whose attributes are its columns, (n,) in SI or None; lists: the quantities that it may have. left_out,
-    warnings, place_tables: are made when they are read; source: where its columns are told of, `angles_where`, None for
-    what has no rows; of: the cylinder that a pin belongs to.
+    results: the objects that have its key values, searched in this order; at: takes crank angles (n,) in degrees and
+    returns a state with its columns, None without columns; lists: the quantities that there may be; source: has
+    `angles_where`, None for what has no rows; of: the cylinder that a pin belongs to. left_out, warnings, tables: what
+    a report shows besides, empty where only figures are wanted.
     """
 
     name: str
-    results: tuple[Any, ...]
+    results: tuple[Any, ...] = ()
     at: Callable[[Any], Any] | None = None
     lists: Lists = field(default_factory=every_quantity)
-    left_out: Callable[[], Iterable[LeftOut]] = tuple
-    warnings: Callable[[], Iterable[str]] = tuple
-    place_tables: tuple[PlaceTable, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    warnings: tuple[str, ...] = ()
+    tables: tuple[PlaceTable, ...] = ()
     source: Any = None
     of: str = ""
 
     def says(self, quantity: Quantity) -> bool:
-        """Whether a quantity says something new here."""
+        """Whether a quantity adds something here: a time ratio does not if both strokes take equally long."""
         return not any(_says_nothing(one, quantity) for one in self.results)
 
+    def answer(self, quantity: Quantity) -> Any:
+        """Return a key value in SI: a number, an Extreme, or a tuple of numbers; None if there is none."""
+        found = (_value(one, quantity) for one in self.results)
+        return next((value for value in found if value is not None), None)
+
     def key_values(self, command: str) -> Iterator[tuple[Quantity, Any]]:
-        """Yield the key values of a command that it has, with their values in SI: a number, an Extreme or a tuple."""
+        """Yield the key values of a command that it has, in SI."""
         for quantity in self.lists.key_values(command).values():
             value = self.answer(quantity) if self.says(quantity) else None
             if value is not None:
                 yield quantity, value
-
-    def answer(self, quantity: Quantity) -> Any:
-        """Return what the results have for a key value, in SI; None where they have none."""
-        found = (_value(one, quantity) for one in self.results)
-        return next((value for value in found if value is not None), None)
-
-    def has(self, command: str) -> list[str]:
-        """Return the ids of the columns of a command that it has."""
-        if self.at is None:
-            return []
-        state = self.at(np.zeros(1))
-        return [id for id in self.lists.columns(command) if id == "phi" or state[id] is not None]
 
 
 def _value(results: Any, quantity: Quantity) -> Any:
@@ -78,27 +83,19 @@ def _says_nothing(results: Any, quantity: Quantity) -> bool:
     return bool(row and row.unless and row.unless(results))
 
 
-def refuse_without_cylinder(machine: Machine, command: str) -> None:
-    """Raise UsageError where a command has nothing to tell of."""
-    if not machine.cylinders:
-        raise UsageError(f"{machine.name} has no cylinder; kurbel {command} needs one")
-
-
-def _nowhere(parts: Sequence[Part]) -> Iterator[str]:
-    """Yield why parts have no row, in one sentence each; raises NoSolutionError where none has."""
-    without = [part.nowhere for part in parts if part.nowhere]
-    if without and not any(part.columns for part in parts):
-        raise NoSolutionError(without[0])
-    return (f"{one}." for one in without)
+def column_of(state: Any, quantity: Quantity) -> Any:
+    """Return a column (n,) of a state in SI, None if the machine does not have it."""
+    return state.phi if quantity.id == "phi" else state[quantity.id]
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """A report to be made: of which command, at which crank angles (n,) in degrees, with which columns, in which units.
+    """What is requested of a report on a machine, whichever its command.
 
-    angles: of every subject, or what tells those of one. columns: ids to show besides φ, None for all that the machine
-    has and shows unasked; system: see `unit_systems`; over: another column over which the rows stand; compare: with
-    the approximations of the book beside the exact columns.
+    angles: the crank angles (n,) of the rows in degrees, or a function that returns those of a subject; columns: ids
+    to show besides φ, None for the usual ones; system: see `unit_systems`; over: another column for the rows;
+    compare: with the approximations of the book next to the exact columns; prose: with key values, notes, warnings,
+    and what is left out, none of which a CSV table shows.
     """
 
     command: str
@@ -107,102 +104,230 @@ class Frame:
     system: str
     over: str = ""
     compare: bool = False
+    prose: bool = True
 
-    @np.errstate(all="ignore")
-    def report(
-        self,
-        machine: Machine,
-        title: str,
-        subjects: Iterable[Subject],
-        whole: Subject | None = None,
-        notes: Iterable[str] = (),
-    ) -> Report:
-        """Return the report on these subjects; what overflows is refused by name."""
-        every = (*subjects, *((whole,) if whole else ()))
-        parts = [self._part(one) for one in every]
-        self._refuse_absent(every, parts)
-        told = (*notes, *self._nothing_compared(parts), *_nowhere(parts))
-        last = parts.pop() if whole else None
-        name = machine.name
-        report = Report(f"{name}. {title}", self.command, name, "cylinders", tuple(parts), last, notes=told)
-        names = tuple(cylinder.name for cylinder in machine.cylinders)
-        return report._replace(provenance=provenance(machine), cylinders=names)
 
-    def _part(self, subject: Subject) -> Part:
-        try:
-            columns, nowhere = self._columns(subject), ""
-        except Nowhere as error:
-            columns, nowhere = (), str(error)
-        return Part(
-            subject.name,
+def refuse_without_cylinder(machine: Machine, command: str) -> None:
+    """Raise UsageError if the machine has no cylinder."""
+    if not machine.cylinders:
+        raise UsageError(f"{machine.name} has no cylinder; kurbel {command} needs one")
+
+
+@np.errstate(all="ignore")
+def report_on(
+    frame: Frame,
+    machine: Machine,
+    title: str,
+    subjects: Iterable[Subject],
+    whole: Subject | None = None,
+    notes: Iterable[str] = (),
+) -> Report:
+    """Return the report on these subjects, and on the whole machine.
+
+    Raises UsageError for what overflows and for a column that no subject has, NoSolutionError if no row is found.
+    """
+    every = (*subjects, *((whole,) if whole else ()))
+    rows = [_rows(frame, one) for one in every]
+    _refuse_absent(frame, every, [columns for columns, _ in rows])
+    nowhere = [why for _, why in rows if why]
+    tabular = any(columns for columns, _ in rows)
+    if nowhere and not tabular:
+        raise NoSolutionError(nowhere[0])
+    with_values = frame.prose or not (tabular or any(one.tables for one in every))
+    parts = [
+        Part(
+            one.name,
             columns,
-            self.later(lambda: shown_key_values(subject.key_values(self.command), self.system)),
-            self.later(subject.left_out),
-            self.later(subject.warnings),
-            subject.place_tables,
-            nowhere,
-            subject.of,
+            tuple(shown_key_values(one.key_values(frame.command), frame.system)) if with_values else (),
+            one.left_out,
+            one.warnings,
+            one.tables,
+            why,
+            one.of,
         )
+        for one, (columns, why) in zip(every, rows)
+    ]
+    last = parts.pop() if whole else None
+    said = (*notes, *_nothing_compared(frame, rows), *(f"{why}." for why in nowhere))
+    return Report(
+        f"{machine.name}. {title}",
+        frame.command,
+        machine.name,
+        "cylinders",
+        tuple(parts),
+        last,
+        notes=said,
+        provenance=provenance(machine) if frame.prose else None,
+        cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
+    )
 
-    def later(self, make: Callable[[], Iterable[Any]]) -> Collection[Any]:
-        """Return what is made when it is read."""
-        return Later(np.errstate(all="ignore")(lambda: tuple(make())))
 
-    def _columns(self, subject: Subject) -> tuple[Column, ...]:
-        if subject.at is None:
-            return ()
-        known = subject.lists.columns(self.command)
-        if self.columns:
-            chosen = [*(known[name] for name in self.columns if name in known), *filter(self._adds, known.values())]
-        else:
-            unasked = (one for one in known.values() if self.command not in one.on_request or self._adds(one))
-            chosen = [*filter(subject.says, unasked)]
-        angles = self.angles(subject) if callable(self.angles) else self.angles
-        return shown_columns(known["phi"], chosen, subject.at, angles, self.system)
+_Rows = tuple[tuple[Column, ...], str]
+"""The columns of a subject, and why it has no row."""
 
-    def _adds(self, column: Quantity) -> bool:
-        return column.id == self.over or (self.compare and column.id.endswith("_book"))
 
-    def _nothing_compared(self, parts: Sequence[Part]) -> Iterator[str]:
-        compared = any(column.id.endswith("_book") for part in parts for column in part.columns)
-        # the balance tells itself what it leaves out
-        if self.compare and not compared and self.command != "balance":
-            yield (
-                "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset "
-                "and of a piston with pressures; this machine has neither."
-            )
+def _rows(frame: Frame, subject: Subject) -> _Rows:
+    if subject.at is None:
+        return (), ""
+    try:
+        angles = frame.angles(subject) if callable(frame.angles) else frame.angles
+    except Nowhere as error:
+        return (), str(error)
+    known = subject.lists.columns(frame.command)
+    added = [one for one in known.values() if one.id == frame.over or (frame.compare and one.id.endswith("_book"))]
+    if frame.columns:
+        chosen = [*(known[name] for name in frame.columns if name in known), *added]
+    else:
+        usual = (one for one in known.values() if frame.command not in one.on_request or one in added)
+        chosen = [one for one in usual if subject.says(one)]
+    wanted = tuple(dict.fromkeys((known["phi"], *chosen)))
+    return shown_columns(subject.at, wanted, angles, frame.system), ""
 
-    def _refuse_absent(self, subjects: Sequence[Subject], parts: Sequence[Part]) -> None:
-        """Raise UsageError for a column that was asked for and that no part has."""
-        printed = {column.id for part in parts for column in part.columns}
-        for name in self.columns or ():
-            if name not in printed:
-                raise UsageError(f"--columns: {self._absent(name, subjects)}")
 
-    def _absent(self, name: str, subjects: Sequence[Subject]) -> str:
-        """Return why there is no such column, and which there are."""
-        every = every_quantity()
-        known = every.columns(self.command)
-        there = {id: known[id] for subject in subjects for id in subject.has(self.command)}
-        has = f"has {', '.join(map(_with_symbol, there.values()))}" if there else ""
-        if name in known:
-            return f"'{name}' is left out for this machine" + (f", which {has}" if has else "")
-        key_values = every.key_values(self.command)
-        for found in called(name, key_values.values()):
-            symbol = key_values[found].symbol
-            return f"'{name}' is a key value and no column: a line below the table, --key-values | grep '{symbol} '"
-        others = [one for one in known if one not in there]
-        near = (did_you_mean(name, _names(one)) for one in (there.values(), known.values()))
-        also = f"other machines also {', '.join(others)}" if others else ""
-        return (
-            f"'{shown(name)}' is no column of kurbel {self.command}{next(filter(None, near), '')} "
-            f"({'; '.join(filter(None, (has and f'this machine {has}', also)))})"
+def _nothing_compared(frame: Frame, rows: Sequence[_Rows]) -> Iterator[str]:
+    compared = any(column.id.endswith("_book") for columns, _ in rows for column in columns)
+    # the balance says itself what it leaves out
+    if frame.compare and not compared and frame.command != "balance":
+        yield (
+            "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset "
+            "and of a piston with pressures; this machine has neither."
         )
 
 
-def _with_symbol(one: Quantity) -> str:
-    return one.id if one.id == one.symbol else f"{one.id} ({one.symbol})"
+def _refuse_absent(frame: Frame, subjects: Sequence[Subject], columns: Iterable[Sequence[Column]]) -> None:
+    """Raise UsageError for a requested column that no subject has."""
+    printed = {column.id for some in columns for column in some}
+    for name in frame.columns or ():
+        if name not in printed:
+            raise UsageError(f"--columns: {_absent(name, frame.command, subjects)}")
 
 
-def _names(quantities: Iterable[Quantity]) -> tuple[str, ...]:
-    return tuple(name for one in quantities for name in (one.id, one.symbol))
+def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
+    """Return why there is no such column, and which there are."""
+    every = every_quantity()
+    known, key_values = every.columns(command), every.key_values(command)
+    there: dict[str, Quantity] = {}
+    for subject in subjects:
+        if subject.at is not None:
+            state, own = subject.at(np.zeros(1)), subject.lists.columns(command)
+            there |= {id: known[id] for id, quantity in own.items() if column_of(state, quantity) is not None}
+    symbols = [one.id if one.id == one.symbol else f"{one.id} ({one.symbol})" for one in there.values()]
+    has = f"has {', '.join(symbols)}" if there else ""
+    if name in known:
+        return f"'{name}' is left out for this machine" + (f", which {has}" if has else "")
+    if found := called(name, key_values.values()):
+        symbol = key_values[found[0]].symbol
+        return f"'{name}' is a key value and no column: a line below the table, --key-values | grep '{symbol} '"
+    others = ", ".join(id for id in known if id not in there)
+    near = [
+        did_you_mean(name, tuple(word for one in some for word in (one.id, one.symbol)))
+        for some in (there.values(), known.values())
+    ]
+    listed = [f"this machine {has}" if has else "", f"other machines also {others}" if others else ""]
+    return f"'{shown(name)}' is no column of kurbel {command}{near[0] or near[1]} ({'; '.join(filter(None, listed))})"
+
+
+def provenance(machine: Machine) -> Provenance:
+    """Return what the results of a machine are made from: files with their SHA-256, values set over them, versions."""
+    inputs, origin = [], machine.origin
+    if origin:  # standard input cannot be read again
+        inputs.append(Input(origin.name, sha256(origin.content).hexdigest()))
+    for name in machine.trace_files:
+        digest = None
+        with suppress(OSError), open(name, "rb") as file:
+            digest = sha256(file.read()).hexdigest()
+        inputs.append(Input(name, digest))
+    numpy = sys.modules.get("numpy")
+    return Provenance(tuple(inputs), origin.overrides if origin else (), {"numpy": numpy.__version__} if numpy else {})
+
+
+# from values in SI to columns and key values in the unit in which they are shown
+
+
+def too_large(quantity: Quantity) -> UsageError:
+    """Return the error for a quantity that overflows."""
+    return UsageError(f"{quantity.id} is too large to compute with: check the numbers and units of the machine file")
+
+
+def shown_columns(
+    at: Callable[[Any], Any], quantities: Sequence[Quantity], angles: Sequence[float], system: str
+) -> tuple[Column, ...]:
+    """Return these columns as far as the machine has them, at crank angles (n,) in degrees; at: as of a Subject.
+
+    Raises UsageError if one is not finite.
+    """
+    found: dict[Quantity, array[float]] = {}
+    sizes: dict[Quantity, float] = {}
+    for start in range(0, len(angles), _AT_ONCE):
+        degrees = np.append(angles[start : start + _AT_ONCE], _EVERYWHERE)
+        state = at(degrees)
+        for quantity in quantities:
+            values = degrees if quantity.id == "phi" else column_of(state, quantity)
+            if values is not None:
+                rows, everywhere = np.split(np.asarray(values, dtype=float), [-len(_EVERYWHERE)])
+                found.setdefault(quantity, array("d")).frombytes(rows.tobytes())
+                sizes[quantity] = 0.0 if quantity.id == "phi" else float(np.abs(everywhere).max())
+    return tuple(shown_column(quantity, values, system, sizes[quantity]) for quantity, values in found.items())
+
+
+def shown_column(
+    quantity: Quantity, values: Sequence[float | None], system: str, size: float = 0.0, beside: float = 0.0
+) -> Column:
+    """Return the column of a quantity; values: (n,) in SI, None for no value; size: of the largest of its curve.
+
+    beside: the largest value in SI that is to have the same unit. Raises UsageError if one is not finite.
+    """
+    given = np.frombuffer(values) if isinstance(values, array) else np.array([v for v in values if v is not None])
+    if not (np.isfinite(given).all() and math.isfinite(size)):
+        raise too_large(quantity)
+    largest = max(given.max(initial=0.0), -given.min(initial=0.0))
+    size = size if largest <= _ROUNDING * size else 0.0
+    unit = shown_unit(quantity.kind, system, max(size or largest, beside))
+    given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
+    given += 0.0
+    numbers = map(float, given)
+    texts = values if isinstance(values, array) else tuple(None if v is None else next(numbers) for v in values)
+    size = convert(size, quantity.kind, unit)
+    symbols = quantity.symbol, quantity.ascii_symbol
+    return Column(quantity.id, *symbols, quantity.marked(unit), texts, quantity.text, size=size)
+
+
+def place_table(
+    id: str,
+    title: str,
+    heads: tuple[str, ...],
+    names: Iterable[tuple[str, ...]],
+    found: Iterable[tuple[Quantity, Sequence[float | None]]],
+    system: str,
+    headed: bool = False,
+) -> PlaceTable:
+    """Return a table of places; found: its quantities with their values in SI.
+
+    Orders and numbers of modes are written as such, 1.5, but 1 and 2; a distance in thousandths.
+    """
+    columns = []
+    for quantity, values in found:
+        decimals = 3 if quantity.id == "distance" else None
+        if quantity.id in ("order", "mode"):
+            decimals = int(any(value and value % 1 for value in values))
+        columns.append(shown_column(quantity, values, system)._replace(decimals=decimals))
+    return PlaceTable(id, title, heads, tuple(names), tuple(columns), headed)
+
+
+def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list[KeyValue]:
+    """Return key values with the largest and the smallest of a column in one unit; found: as `Subject.key_values`."""
+    given = tuple(found)
+    units = units_of([(quantity.kind, quantity.family, size_of(value)) for quantity, value in given], system)
+    return [_key_value(*one, unit) for one, unit in zip(given, units)]
+
+
+def _key_value(quantity: Quantity, value: Any, unit: str) -> KeyValue:
+    at, raw = (value.degrees, value.value) if isinstance(value, Extreme) else (None, value)
+    each: tuple[float, ...] = raw if isinstance(raw, tuple) else (raw,)
+    if not all(math.isfinite(one) for one in each):
+        raise too_large(quantity)
+    numbers = [float(convert(one, quantity.kind, unit)) + 0.0 for one in each]
+    number = tuple(numbers) if isinstance(raw, tuple) else raw if isinstance(raw, int) else numbers[0]  # a count
+    noise = any(map(quantity.is_noise, numbers))
+    symbols = (quantity.symbol, quantity.ascii_symbol)
+    return KeyValue(quantity.id, *symbols, quantity.marked(unit), number, quantity.text, at, noise)

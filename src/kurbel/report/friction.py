@@ -4,7 +4,7 @@ import math
 
 from kurbel.declared.quantity import Quantity
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.report.shown import place_table, shown_key_values
+from kurbel.report.frame import place_table, shown_key_values
 from kurbel.report.tables import LeftOut, Part, Report
 from kurbel.solver.friction import holding_force
 

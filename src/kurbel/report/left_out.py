@@ -1,129 +1,112 @@
-"""What a machine leaves out, and why: decided from the description alone, so that nothing is computed to find out."""
+"""What the results of a machine leave out, and why: for every topic its stages, each with the reason or ""."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from kurbel.machine import Cylinder, Machine
 from kurbel.report.tables import LeftOut
+from kurbel.solver.case import Case
+from kurbel.solver.forces import CylinderForces
+
+_IN_EFFORT = ("gas force", "piston rod", "inertia", "weight", "friction")
+"""Stages of a cylinder that its turning effort consists of."""
+
+
+def missing(reasons: dict[str, str]) -> list[LeftOut]:
+    """Return what of these stages is left out: those with a reason."""
+    return [LeftOut(what, why) for what, why in reasons.items() if why]
+
+
+def _without_speed(machine: Machine) -> str:
+    return "no speed given" if machine.speed is None else ""
+
+
+def _without_power(machine: Machine) -> str:
+    return _without_speed(machine) or ("" if machine.speed else "not defined at rest")
+
+
+# one cylinder, from its description alone
 
 
 def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
-    """Return all that forces and motion of a cylinder can consist of, with the reason why it is left out, or ""."""
-    motion = _motion_stages(machine, cylinder)
+    """Return all that motion and forces of a cylinder can consist of, with the reason why it is left out, or ""."""
+    mechanism, motion = cylinder.mechanism, _motion_stages(machine, cylinder)
     turning = {"moment at the output": "" if cylinder.moment else "no moment given"}
-    acting = _sliding_forces(machine, cylinder) if cylinder.mechanism.slides else turning
-    has_force = not all(why for what, why in acting.items() if what != "friction")
-    if not has_force:
+    acting = _sliding_forces(machine, cylinder) if mechanism.slides else turning
+    if all(why for what, why in acting.items() if what != "friction"):
         idle = {"friction": "no force acts"} if cylinder.friction else {}
         return {**motion, **acting, "forces in the crank train": "no force acts", **idle}
-    of_crank = {"forces in the crank train": "", **_of_mechanism(cylinder)}
+    of_rod = {}
+    if mechanism.slides and not mechanism.has_rod:
+        known = mechanism.known_across and cylinder.inclination is not None and cylinder.masses
+        of_rod = {"S" if known else "S, N": f"a {mechanism.name} has no connecting rod"}
+    of_crank = {"forces in the crank train": "", **of_rod, **dict(mechanism.lacks)}
     return {**motion, **acting, **of_crank, **_works(machine, cylinder, acting)}
+
+
+def left_out(machine: Machine, cylinder: Cylinder) -> list[LeftOut]:
+    """Return everything that motion and forces of this cylinder leave out."""
+    return missing(stages(machine, cylinder))
+
+
+def motion_left_out(machine: Machine, cylinder: Cylinder) -> list[LeftOut]:
+    """Return what the motion of this cylinder leaves out."""
+    return missing(_motion_stages(machine, cylinder))
 
 
 def _motion_stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     position = "displacement" if cylinder.mechanism.slides else "angle of the output"
-    return {position: "", "velocity, acceleration": "no speed given" if machine.speed is None else ""}
+    return {position: "", "velocity, acceleration": _without_speed(machine)}
 
 
 def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     no_masses = "no masses given" if cylinder.masses is None else ""
-    rods = dict.fromkeys(_rod_areas(cylinder), "no crank_end_rod given, its area is taken as 0")
-    ram = {"ram force": "" if cylinder.ram_force else "no ram_force given"}
+    no_gas = "" if cylinder.pistons else "no bore given"
+    if cylinder.pistons and not any(piston.indicator for piston in cylinder.pistons):
+        no_gas = "no indicator given"
+    rods = {
+        f"piston rod of {piston.name}" if number else "piston rod": "no crank_end_rod given, its area is taken as 0"
+        for number, piston in enumerate(cylinder.pistons)
+        if piston.indicator and piston.indicator.crank_end is not None and not piston.crank_end_rod
+    }
+    expected = cylinder.ram_force or cylinder.mechanism.quick_return  # of an engine nobody expects a ram
+    ram = {"ram force": "" if cylinder.ram_force else "no ram_force given"} if expected else {}
     return {
-        "gas force": _no_gas(cylinder),
+        "gas force": no_gas,
         **rods,
-        # of an engine nobody expects one
-        **(ram if cylinder.ram_force or cylinder.mechanism.quick_return else {}),
-        "inertia": no_masses or ("no speed given" if machine.speed is None else ""),
+        **ram,
+        "inertia": no_masses or _without_speed(machine),
         "weight": "no inclination given" if cylinder.inclination is None else no_masses,
         "friction": "no friction given" if cylinder.friction is None else "",
     }
 
 
-def _rod_areas(cylinder: Cylinder) -> Iterable[str]:
-    """Yield what a pressure at the crank end would not act on if the rod were given."""
-    for number, piston in enumerate(cylinder.pistons):
-        if piston.indicator and piston.indicator.crank_end is not None and not piston.crank_end_rod:
-            yield f"piston rod of {piston.name}" if number else "piston rod"
-
-
-def _of_mechanism(cylinder: Cylinder) -> dict[str, str]:
-    """Return what a slider-crank has and this mechanism has not, and what the mechanism itself misses."""
-    mechanism = cylinder.mechanism
-    if not mechanism.slides or mechanism.has_rod:
-        return dict(mechanism.lacks)
-    of_rod = "S" if mechanism.known_across and cylinder.inclination is not None and cylinder.masses else "S, N"
-    return {of_rod: f"a {mechanism.name} has no connecting rod", **dict(mechanism.lacks)}
-
-
 def _works(machine: Machine, cylinder: Cylinder, acting: dict[str, str]) -> dict[str, str]:
     if "gas force" not in acting or (not cylinder.pistons and cylinder.ram_force):
-        # of a ram without a piston nobody expects an indicator
-        return {}
-    power = "no speed given" if machine.speed is None else "" if machine.speed else "not defined at rest"
-    brake = {} if machine.brake_power is None else {"comparison with brake_power": acting["gas force"] or power}
-    return {"work": acting["gas force"], "power": acting["gas force"] or power, **brake}
+        return {}  # of a ram without a piston nobody expects an indicator
+    power = acting["gas force"] or _without_power(machine)
+    brake = {} if machine.brake_power is None else {"comparison with brake_power": power}
+    return {"work": acting["gas force"], "power": power, **brake}
 
 
-def missing(reasons: dict[str, str]) -> tuple[LeftOut, ...]:
-    """Return what of these stages is left out, those with a reason."""
-    return tuple(LeftOut(what, why) for what, why in reasons.items() if why)
+def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOut]:
+    """Yield everything that the computed forces of a cylinder leave out."""
+    cylinder = forces.drive.cylinder
+    yield from left_out(machine, cylinder)
+    if forces.friction_work is not None and not forces.work_driving:
+        yield LeftOut("friction loss as a share", "no piston drives")
+    if not forces.no_compressor and cylinder.masses and cylinder.masses.crosshead is None:
+        yield LeftOut("load on the piston rod", "no mass of the crosshead given")
+    if forces.reversals_in_noise:
+        why = "are within the noise of the trace and no Druckwechsel"
+        yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
 
 
-def left_out(machine: Machine, cylinder: Cylinder) -> tuple[LeftOut, ...]:
-    """Return everything that forces and motion of this cylinder leave out, with the reason."""
-    return missing(stages(machine, cylinder))
-
-
-def motion_left_out(machine: Machine, cylinder: Cylinder) -> tuple[LeftOut, ...]:
-    """Return what of the motion of this cylinder is left out, with the reason."""
-    return missing(_motion_stages(machine, cylinder))
-
-
-def strength_left_out(machine: Machine) -> tuple[LeftOut, ...]:
-    """Return what the strength of a machine's crankshaft leaves out, with the reason."""
-    shaft = machine.crankshaft
-    if shaft is None:
-        return ()
-    upright = "" if all(cylinder.inclination is not None for cylinder in machine.cylinders) else "no inclination given"
-    journals = "" if shaft.journal_diameter else "no journal_diameter given"
-    return missing(
-        {
-            "flywheel weight": upright if shaft.flywheel_mass else "no flywheel_mass given",
-            "journals": journals,
-            "pressure on the journals": journals or ("" if shaft.journal_length else "no journal_length given"),
-            "p_m v": "no speed given" if machine.speed is None else "",
-            "safety": "" if shaft.allowable_bending else "no allowable_bending given",
-            "α₀ of the webs": "" if shaft.allowable_bending and shaft.allowable_torsion else "1 without k_b and k_d",
-        }
-    )
-
-
-def _no_gas(cylinder: Cylinder) -> str:
-    if not cylinder.pistons:
-        return "no bore given"
-    return "" if any(piston.indicator for piston in cylinder.pistons) else "no indicator given"
-
-
-def flywheel_left_out(machine: Machine) -> tuple[LeftOut, ...]:
-    """Return what turning effort, flywheel and speed line of a machine leave out, with the reason."""
-    of_each = [
-        [one for one in left_out(machine, cylinder) if one.what.startswith(_IN_EFFORT)]
-        for cylinder in machine.cylinders
-    ]
-    alike = all(found == of_each[0] for found in of_each)
-    found = [
-        one if alike else LeftOut(f"{one.what} of {cylinder.name}", one.why)
-        for cylinder, ones in list(zip(machine.cylinders, of_each))[: 1 if alike else None]
-        for one in ones
-    ]
-    if machine.flywheel and machine.flywheel.rim and machine.flywheel.rim.sized_by:
-        found.append(LeftOut("arms and hub of the flywheel", "J is that of the rim, whose sizes are given"))
-    return (*found, *missing(turning_stages(machine)))
+# the whole machine
 
 
 def turning_stages(machine: Machine) -> dict[str, str]:
     """Return all that `kurbel flywheel` can have of the whole machine, with the reason why it is left out, or ""."""
-    speed = "no speed given" if machine.speed is None else "" if machine.speed else "not defined at rest"
+    speed = _without_power(machine)
     wheel = speed or ("" if machine.flywheel else "no flywheel given")
     wanted = machine.flywheel is not None and machine.flywheel.fluctuation is not None
     varies = machine.load is not None and machine.load.diagram is None
@@ -138,5 +121,89 @@ def turning_stages(machine: Machine) -> dict[str, str]:
     }
 
 
-_IN_EFFORT = ("gas force", "piston rod", "inertia", "weight", "friction")
-"""Stages of a cylinder that its turning effort is made of."""
+def flywheel_left_out(machine: Machine) -> list[LeftOut]:
+    """Return what turning effort, flywheel and speed line of a machine leave out."""
+    of_each = [
+        [one for one in left_out(machine, cylinder) if one.what.startswith(_IN_EFFORT)]
+        for cylinder in machine.cylinders
+    ]
+    found = [
+        LeftOut(f"{one.what} of {cylinder.name}", one.why)
+        for cylinder, of_one in zip(machine.cylinders, of_each)
+        for one in of_one
+    ]
+    if of_each and all(of_one == of_each[0] for of_one in of_each):
+        found = of_each[0]
+    if machine.flywheel and machine.flywheel.rim and machine.flywheel.rim.sized_by:
+        found = [*found, LeftOut("arms and hub of the flywheel", "J is that of the rim, whose sizes are given")]
+    return [*found, *missing(turning_stages(machine))]
+
+
+def strength_left_out(machine: Machine) -> list[LeftOut]:
+    """Return what the strength of a machine's crankshaft leaves out."""
+    shaft = machine.crankshaft
+    if shaft is None:
+        return []
+    upright = "" if all(cylinder.inclination is not None for cylinder in machine.cylinders) else "no inclination given"
+    journals = "" if shaft.journal_diameter else "no journal_diameter given"
+    return missing(
+        {
+            "flywheel weight": upright if shaft.flywheel_mass else "no flywheel_mass given",
+            "journals": journals,
+            "pressure on the journals": journals or ("" if shaft.journal_length else "no journal_length given"),
+            "p_m v": _without_speed(machine),
+            "safety": "" if shaft.allowable_bending else "no allowable_bending given",
+            "α₀ of the webs": "" if shaft.allowable_bending and shaft.allowable_torsion else "1 without k_b and k_d",
+        }
+    )
+
+
+def bearing_left_out(diameter: float | None, length: float | None, omega: float | None) -> list[LeftOut]:
+    """Return what the load on a pin or bearing leaves out; omega: angular speed of the crank, None if not given."""
+    lacks = " and ".join(name for name, size in (("diameter", diameter), ("length", length)) if not size)
+    return missing(
+        {
+            "pressure, p v": f"no {lacks} given" if lacks else "",
+            "rubbing speed": "no speed given" if omega is None else "",
+        }
+    )
+
+
+def bearings_left_out(case: Case) -> list[LeftOut]:
+    """Return what the loads on all bearings leave out."""
+    machine, shaft = case.machine, case.machine.crankshaft
+    heavy = shaft and shaft.flywheel_mass and machine.cylinders[0].inclination is None
+    return missing(
+        {
+            "main bearings": case.bearings.obstacle or "",
+            "flywheel weight": "no inclination given" if heavy else "",
+            "inertia": _without_speed(machine),
+        }
+    )
+
+
+def balance_left_out(case: Case, compare: bool = False) -> list[LeftOut]:
+    """Return what the balance leaves out; compare: with the figures of first order requested."""
+    balance = case.balance
+    moving = {throw.name for throw in balance.throws}
+    still = [cylinder.name for cylinder in balance.machine.cylinders if cylinder.name not in moving]
+    no_speed = "no speed given; the weights against them do not depend on it"
+    no_book = "the book has no such formula for a stroke line beside the shaft"
+    no_place = f"no axial_position given of {', '.join(_without_place(case))}"
+    return missing(
+        {
+            **{f"inertia of {name}": "no masses given" for name in still},
+            "free forces and moments": no_speed if balance.omega is None else "",
+            "free moments": no_place if balance.free.moment is None else "",
+            "figures of first order": no_book if compare and balance.book is None else "",
+        }
+    )
+
+
+def _without_place(case: Case) -> Iterable[str]:
+    balance = case.balance
+    yield from (throw.name for throw in balance.throws if throw.place is None)
+    if any(one.place is None for one in balance.counterweights):
+        yield "counterweights of the machine"
+    if any(one.axial_position is None for one in balance.machine.balance_shafts):
+        yield "balance_shafts"

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,24 +16,21 @@ from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantities import every_quantity
 from kurbel.report.angles import stepped
-
-if TYPE_CHECKING:
-    from kurbel.report.frame import Subject
-
+from kurbel.report.frame import Subject
 
 _SAME = 1e-9
 """Degrees by which angles differ by rounding only."""
 _OF_SPEED = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
 
 
-def over_stroke(step: float, end: float) -> "Callable[[Subject], Sequence[float]]":
+def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]:
     """Return what finds the angles, up to `end`, at which x passes 0, step, 2 step, … percent of the stroke both ways.
 
     Raises UsageError for a step that is not positive, and for what does not go to and fro.
     """
     fractions = np.asarray(stepped(step, 100.0)) / 100
 
-    def angles(subject: "Subject") -> Sequence[float]:
+    def angles(subject: Subject) -> Sequence[float]:
         mechanism = subject.source.drive.mechanism
         if mechanism.turns:
             raise UsageError(f"--over x: the output of a {mechanism.name} turns on and has no stroke")
@@ -74,7 +71,7 @@ class Place(NamedTuple):
         except UnitError as error:
             raise UsageError(f"--where: {error}") from None
 
-    def angles(self, subject: "Subject") -> Sequence[float]:
+    def angles(self, subject: Subject) -> Sequence[float]:
         """Return the crank angles in degrees, exact but for rounding. Raises NoSolutionError for none."""
         column = self._column(subject)
         value = self._value(subject, column) if column else 0.0
@@ -91,13 +88,13 @@ class Place(NamedTuple):
         apart = np.diff(angles, prepend=-1.0) > _SAME
         return angles[apart].tolist()  # type: ignore[no-any-return]
 
-    def _why(self, subject: "Subject", column: Quantity | None) -> str:
+    def _why(self, subject: Subject, column: Quantity | None) -> str:
         """Return why a column is left out, as far as the speed is the reason."""
         if column is None or column.kind not in _OF_SPEED or subject.source.omega is not None:
             return "; kurbel check says why"
         return ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
 
-    def _column(self, subject: "Subject") -> Quantity | None:
+    def _column(self, subject: Subject) -> Quantity | None:
         """Return the column that is meant, by id or printed symbol; None for one of other machines alone."""
         own, every = (lists.columns(self.command) for lists in (subject.lists, every_quantity()))
         ids = called(self.column, own.values()) or called(self.column, every.values())
@@ -108,7 +105,7 @@ class Place(NamedTuple):
             raise UsageError(f"--where: {wrong}")
         return own.get(ids[0])
 
-    def _value(self, subject: "Subject", column: Quantity) -> float:
+    def _value(self, subject: Subject, column: Quantity) -> float:
         """Return the value in SI: a number with a unit of the column's kind, or a fraction of a key value."""
         factor = 1.0 if self.factor is None else self.factor
         if not self.of:
@@ -123,7 +120,7 @@ class Place(NamedTuple):
             raise UsageError(f"--where: {shown(self.text)} has no number before the unit; write {example(column.kind)}")
         return factor * up / down
 
-    def _key_value(self, subject: "Subject", column: Quantity, no_unit: str) -> float:
+    def _key_value(self, subject: Subject, column: Quantity, no_unit: str) -> float:
         known = subject.lists.key_values(self.command)
         quantity = next((known[id] for id in called(self.of, known.values()) if known[id].kind == column.kind), None)
         if quantity is None:

@@ -1,98 +1,267 @@
-"""What looks wrong in measurements and results: said as warnings, the same whichever command computes them."""
+"""What looks wrong in a machine: in what was given, in measurements, and in results, whichever command finds it.
+
+These are warnings, not errors, since the file may be right. Every command shows those that concern it.
+"""
 
 import math
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from itertools import chain, pairwise
+from typing import NamedTuple
+
+import numpy as np
 
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
-from kurbel.machine import Machine
-from kurbel.report.guide import guide_warnings
-from kurbel.report.notes import LARGEST_PEAK
+from kurbel.machine import Cylinder, Machine
+from kurbel.machine.indicator import Card
+from kurbel.machine.piston import Piston
+from kurbel.report.alike import grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.trace import TracePressure
 from kurbel.traces.checks import doubt
 
-if TYPE_CHECKING:
-    from kurbel.solver.flywheel import MachineTurning
-    from kurbel.solver.stress import CrankshaftStrength
+
+class Note(NamedTuple):
+    """A sentence, and the name of the cylinder that it is about; None for the whole machine."""
+
+    cylinder: str | None
+    text: str
 
 
-def as_far_as_solved(found: Iterable[str], command: str) -> tuple[str, ...]:
-    """Return the warnings; where there is no solution, why; what a command refuses is for that command to tell."""
+def machine_notes(case: Case) -> tuple[Note, ...]:
+    """Return all warnings on a machine, each once: on what was given, on measurements, and on results."""
+    machine, cylinders = case.machine, case.machine.cylinders
+    found = [Note(one.name, text) for one in cylinders for text in _chamber_warnings(one)]
+    found += [Note(one.name, text) for one in cylinders for piston in one.pistons for text in _card_warnings(piston)]
+    found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
+    found += [Note(None, text) for text in _speed_warnings(machine)]
+    found += [Note(one.name, text) for one in cylinders for text in _size_warnings(one)]
+    found += [Note(None, text) for text in pin_warnings(machine)]
+    if machine.effort or any(one.pistons or one.masses or one.ram_force or one.moment for one in cylinders):
+        with np.errstate(all="ignore"):
+            found += _on_results(case)
+    return tuple(dict.fromkeys(found))
+
+
+def _on_results(case: Case) -> Iterator[Note]:
+    for one in case.cylinders:
+        yield from (Note(one.drive.name, text) for text in trace_warnings(one))
+    yield from (Note(None, text) for text in brake_warnings(case))
+    for one in case.cylinders:
+        yield from (Note(one.drive.name, text) for text in as_far_as_solved(cylinder_warnings(one), "forces"))
+    yield from (Note(None, text) for text in as_far_as_solved(turning_warnings(case), "flywheel"))
+    yield from (Note(None, text) for text in as_far_as_solved(_strength_warnings(case), "stress"))
+
+
+def as_far_as_solved(found: Iterable[str], command: str) -> list[str]:
+    """Return the warnings; without a solution, the reason; what a command refuses only that command reports."""
     try:
-        return tuple(found)
+        return list(found)
     except NoSolutionError as error:
-        return (f"{error}. kurbel {command} ends with status {error.exit_status}",)
+        return [f"{error}. kurbel {command} ends with status {error.exit_status}"]
     except (KurbelError, OverflowError):
-        return ()
+        return []
 
 
-_BEYOND = 1e308
-"""Floquet multiplier that is as large as a float can be."""
-_SLOWLY = 0.01
-"""Growth of a disturbance in a cycle below which it is told as a share, since "1 times" says nothing."""
-_LINEAR = 0.1
-"""δ up to which the cranks stand near enough where uniform rotation would have them."""
+def by_cylinder(case: Case) -> dict[str, list[str]]:
+    """Return the warnings on each cylinder by its name; those on the whole machine are with the last one."""
+    found: dict[str, list[str]] = {one.name: [] for one in case.machine.cylinders}
+    for name, text in machine_notes(case):
+        found[name or case.machine.cylinders[-1].name].append(text)
+    return found
+
+
+def of_machine(case: Case) -> tuple[str, ...]:
+    """Return all warnings on a machine, each after the names of its cylinders if there are several."""
+    found = []
+    for notes in grouped(machine_notes(case), lambda note: note.text):
+        names = [note.cylinder for note in notes if note.cylinder is not None]
+        several = names and len(case.machine.cylinders) > 1
+        found.append(f"{together(names)}: {notes[0].text}" if several else notes[0].text)
+    return tuple(found)
+
+
+# what was given: sizes and speeds
+
+_LARGEST_BORE = 5.0  # m; the widest cylinder built, of the Cruquius engine of 1849, has 3.66 m
+_LARGEST_MASS = 1e5  # kg reciprocating in one cylinder; those of the largest marine diesels weigh some 2e4
+_HIGHEST_SPEED = 1000.0  # 1/s; model racing engines stay below 700
+_ASK = "is beyond anything built; is its unit right?"
+_LARGEST_FLUCTUATION = 0.25  # the books allow most to crushers and hammers, 1/5
+
+
+def _speed_warnings(machine: Machine) -> Iterator[str]:
+    """Yield a speed that no crank has reached, and a wanted δ that is hardly a limit."""
+    if machine.speed is not None and machine.speed > _HIGHEST_SPEED:
+        yield f"a speed of {show(machine.speed, 'speed')} {_ASK}"
+    wanted = machine.flywheel.fluctuation if machine.flywheel else None
+    if wanted is not None and wanted > _LARGEST_FLUCTUATION:
+        yield (
+            f"a wanted fluctuation of {wanted:g} lets the speed vary between {1 - wanted / 2:g} and {1 + wanted / 2:g} "
+            "times its mean; those of the books are 1/5 to 1/300: is it right?"
+        )
+
+
+def _size_warnings(cylinder: Cylinder) -> Iterator[str]:
+    """Yield a bore, and moving parts, that no machine has had."""
+    for piston in cylinder.pistons:
+        if piston.bore > _LARGEST_BORE:
+            yield f"{piston.name}: a bore of {show(piston.bore, 'length')} {_ASK}"
+    rod = cylinder.masses.connecting_rod if cylinder.masses else None
+    moving = (cylinder.masses.parts if cylinder.masses else 0.0) + (rod.mass if rod else 0.0)
+    if moving > _LARGEST_MASS:
+        yield f"a mass of {show(moving, 'mass')} in moving parts {_ASK}"
+
+
+_SAME_PLACE = 1e-9  # m
+_SAME_ANGLE = 1e-6  # degrees
+
+
+def pin_warnings(machine: Machine) -> Iterator[str]:
+    """Yield which cylinders at one place along the shaft share no crank pin."""
+    placed = [(one.axial_position, one) for one in machine.cylinders if one.axial_position is not None]
+    for (z, one), (next_z, other) in pairwise(sorted(placed, key=lambda pair: pair[0])):
+        # the throws at φ = 0
+        throws = other.bank_angle - other.crank_position, one.bank_angle - one.crank_position
+        apart = abs(math.remainder(throws[0] - throws[1], 360.0))
+        if next_z - z <= _SAME_PLACE and apart > _SAME_ANGLE:
+            yield (
+                f"{one.name} and {other.name} stand at one place along the shaft, but their throws "
+                f"{show(apart, 'angle')} apart: they share no crank pin. Two on one pin have crank positions that "
+                "differ as their bank angles do; throws of their own need an 'axial_position' each"
+            )
+
+
+# what was given: cards
+
+_EXPONENTS = 0.9, 1.7  # wet steam that dries as it expands; a monatomic gas without heat
+_PLAIN = 0.02
+"""Lean of a card, over its range of pressures, below which it has no high end; one open for half the stroke has ¼."""
+
+
+def _chamber_warnings(cylinder: Cylinder) -> Iterator[str]:
+    for piston in cylinder.pistons:
+        for end, chamber in piston.chambers.items():
+            for text in getattr(chamber, "notes", ()):
+                yield f"{piston.name}, {end.replace('_', ' ')}: {text}"
+
+
+def _card_warnings(piston: Piston) -> Iterator[str]:
+    """Yield cards drawn from the wrong dead centre, and exponents that no gas has."""
+    leans = [_lean(card) for card in piston.chambers.values() if isinstance(card, Card)]
+    # a high pressure on the same side, at the same crank angle: drawn from the same dead centre?
+    if len(leans) == 2 and min(leans) < -_PLAIN and max(leans) > _PLAIN:
+        end, centre = ("crank end", "outer") if leans[1] < 0 else ("head end", "inner")
+        yield (
+            f"{piston.name}, {end}: both ends have their high pressure at the same crank angle; a card counts from its "
+            f"own dead centre, that of the {end} from the {centre} one: is it drawn from the other?"
+        )
+    least, most = _EXPONENTS
+    for end, chamber in piston.chambers.items():
+        given = {getattr(chamber, key) for key in ("exponent", "expansion_exponent") if hasattr(chamber, key)}
+        for value in sorted(one for one in given if not least <= one <= most):
+            text = f"an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
+            yield f"{piston.name}, {end.replace('_', ' ')}: {text}"
+
+
+def _lean(card: Card) -> float:
+    """Return the mean of p (1 − 2z) over both strokes by the range of p: positive if p is high at small volumes."""
+    pressures = [p for line in card.lines for p in line.pressures]
+    middle, span = (max(pressures) + min(pressures)) / 2, max(pressures) - min(pressures)
+    total = 0.0
+    for line in card.lines:
+        points = zip(line.fractions, (p - middle for p in line.pressures))
+        for (z, p), (next_z, next_p) in pairwise(points):  # Simpson's rule, exact on straight lines
+            ends = p * (1 - 2 * z) + next_p * (1 - 2 * next_z)
+            total += abs(next_z - z) / 6 * (ends + 2 * (p + next_p) * (1 - z - next_z))
+    return total / (span * len(card.lines)) if span else 0.0
+
+
+# measured traces and the brake, which only the person who measured can judge
+
+_LEAST_OF_SEVERAL = 1.1
+"""Brake over indicated power of one cylinder from which others are probably missing."""
+_TAKEN = 0.3, 1.0
+"""Indicated over brake power of a machine that is driven."""
+_GOOD = 0.85
+"""Mechanical efficiency assumed for the number of cylinders that the brake power needs."""
+
+
+def trace_warnings(forces: CylinderForces) -> Iterator[str]:
+    """Yield the one warning on each trace of a cylinder, if any."""
+    for gas in forces.drive.gas:
+        for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
+            if isinstance(pressure, TracePressure):
+                text = doubt(pressure.trace, pressure.setting, pressure.each)
+                if text:
+                    yield f"{gas.piston.name}, {end}: {text}"
+
+
+def brake_warnings(case: Case) -> Iterator[str]:
+    """Yield a contradiction of brake and indicator."""
+    brake, indicated = case.machine.brake_power, Brake(case.machine, case.cylinders).indicated
+    if not brake or indicated is None:
+        return
+    shown, taken = f"the indicated power, {show(indicated, 'power')}, is", show(brake, "power")
+    if indicated < 0 and not _TAKEN[0] <= -indicated / brake <= _TAKEN[1]:
+        much = "more than" if -indicated > brake else "far below what"
+        yield f"{shown} {much} the driven shaft takes, {taken}: check angle_zero, units and areas"
+    if 0 <= indicated < brake:
+        times, several = brake / indicated if indicated else math.inf, ""
+        if len(case.machine.cylinders) == 1 and _LEAST_OF_SEVERAL < times < 100:
+            count = max(2, math.ceil(times / _GOOD - 0.3))
+            several = (
+                f"; or is this one cylinder of {count}, say? Then write all of them: 'cylinders: {{count: {count}, "
+                "each: …}' with a firing order"
+            )
+        yield f"{shown} below the brake power, {taken}: check angle_zero, units and areas{several}"
+
+
+# results of a cylinder
+
 _CLOSED = 1e-9
 """An energy residual beyond this is no rounding."""
 _COARSE = 0.01
 """An energy residual beyond this is more than an indicator may miss by its spacing."""
+_LARGEST_PEAK = 300e5  # Pa; of combustion engines
+_LEAST_REVERSAL = 15.0, 0.03
+"""Degrees of crank angle, and share of the larger load, that API 618 requires of the reversed rod load."""
 
 
-def cylinder_warnings(forces: CylinderForces) -> Iterable[str]:
-    """Yield what looks wrong in the forces of a cylinder."""
+def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
+    """Yield what looks wrong in the forces of a cylinder; raises NoSolutionError if its friction locks it."""
     forces.refuse_locking()  # first, with an angle that does not depend on the step
-    yield from _balance_warnings(forces)
-    yield from _bound_warnings(forces)
-    yield from _pressure_warnings(forces)
-    yield from _reversal_warnings(forces)
-    yield from guide_warnings(forces)
-
-
-def _balance_warnings(forces: CylinderForces) -> Iterable[str]:
-    residual = forces.energy_residual or 0.0
-    if any(gas.traced for gas in forces.drive.gas):
-        # with a measured trace it shows the spacing of the samples
-        if abs(residual) > _COARSE:
-            yield (
-                "the samples stand too far apart: the indicated work, by the trapezoid rule, and that of T, by "
-                f"straight lines between them, differ by {abs(residual):.1%} of what goes to and fro"
-            )
-    elif abs(residual) > _CLOSED:
-        yield f"the energy balance of the cycle does not close (residual {residual:.1e}); trust no figure beyond that"
-
-
-def _bound_warnings(forces: CylinderForces) -> Iterable[str]:
-    """Yield what of the mechanism's own key values is above that to which the sources let it go."""
+    residual, traced = abs(forces.energy_residual or 0.0), any(gas.traced for gas in forces.drive.gas)
+    if traced and residual > _COARSE:  # it shows the spacing of the samples
+        yield (
+            "the samples stand too far apart: the indicated work, by the trapezoid rule, and that of T, by "
+            f"straight lines between them, differ by {residual:.1%} of what goes to and fro"
+        )
+    if not traced and residual > _CLOSED:
+        signed = forces.energy_residual
+        yield f"the energy balance of the cycle does not close (residual {signed:.1e}); trust no figure beyond that"
     for offer in forces.drive.mechanism.KEY_OFFERS:
         quantity, bound = offer.quantity, offer.bound
         found = offer.of(forces) if bound else None
         if bound and found and found.value > bound:
             shown, most = show(found.value, quantity.kind), show(bound, quantity.kind)
             yield f"{quantity.text[0].lower()}{quantity.text[1:]}: {shown} is above {most}"
-
-
-def _pressure_warnings(forces: CylinderForces) -> Iterable[str]:
-    """Yield a pressure that no engine has had; pumps and compressors have more, and traces are judged by themselves."""
-    highest, traced = forces.p_max, any(gas.traced for gas in forces.drive.gas)
-    if highest and not traced and highest.value > LARGEST_PEAK and (forces.mean_pressure or 0.0) > 0:
+    peak = forces.p_max.value if forces.p_max else 0.0
+    # pumps and compressors have more, and traces are judged on their own
+    if peak > _LARGEST_PEAK and not traced and (forces.mean_pressure or 0.0) > 0:
         yield (
-            f"a pressure of {show(highest.value, 'pressure')} is more than engines have, at most "
-            f"{show(LARGEST_PEAK, 'pressure')}; is its unit right?"
+            f"a pressure of {show(peak, 'pressure')} is more than engines have, at most "
+            f"{show(_LARGEST_PEAK, 'pressure')}; is its unit right?"
         )
+    yield from chain(_reversal_warnings(forces), _guide_warnings(forces))
 
 
-_LEAST_REVERSAL = 15.0, 0.03
-"""Degrees of crank angle, and share of the larger load, that API 618 asks of the reversed rod load."""
-
-
-def _reversal_warnings(forces: CylinderForces) -> Iterable[str]:
-    load = forces
-    if load.no_compressor:
+def _reversal_warnings(forces: CylinderForces) -> Iterator[str]:
+    if forces.no_compressor:
         return
-    angle, ratio = load.reversal_longest, load.reversal_ratio
+    angle, ratio = forces.reversal_longest, forces.reversal_ratio
     if angle is None or ratio is None:
         return
     if not angle:
@@ -104,7 +273,62 @@ def _reversal_warnings(forces: CylinderForces) -> Iterable[str]:
         )
 
 
-def turning_warnings(case: Case) -> Iterable[str]:
+# the guide of a horizontal machine of known sense of rotation, R p. 602
+
+_OTHER_SENSE = {"over": "under", "under": "over"}
+_MOST_SPANS = 4
+
+
+def guide_notes(case: Case) -> Iterator[str]:
+    """Yield of which cylinders the crosshead rests on the lower guide."""
+    resting = [forces for forces in case.cylinders if _guided(forces) and not forces.lifted]
+    if resting:
+        name = f"{together([one.drive.name for one in resting])}: " if len(case.cylinders) > 1 else ""
+        yield f"{name}{_turning(resting[0])} (R p. 602)."
+
+
+def _guide_warnings(forces: CylinderForces) -> Iterator[str]:
+    """Yield that the crosshead of a cylinder lifts off the lower guide, and whether the other sense avoids it."""
+    if _guided(forces) and forces.lifted:
+        machine, cylinder = forces.drive.machine, forces.drive.cylinder
+        other = _OTHER_SENSE[machine.rotation or "over"]
+        turned = CylinderForces(replace(machine, rotation=other), cylinder)
+        yield f"{_turning(forces)}; turning {other} it {_rests(turned, 'would rest', 'would lift')} (R p. 602)"
+
+
+def _guided(forces: CylinderForces) -> bool:
+    """Whether there is a guide below, and a sense of rotation is given."""
+    drive = forces.drive
+    if drive.machine.rotation is None or not drive.down or not (drive.mechanism.guided and drive.mechanism.has_rod):
+        return False
+    return forces.extremes_of("N") is not None
+
+
+def _turning(forces: CylinderForces) -> str:
+    return f"Turning {forces.drive.machine.rotation}, the crosshead {_rests(forces, 'rests', 'lifts')}"
+
+
+def _rests(forces: CylinderForces, rests: str, lifts: str) -> str:
+    lifted, cycle = forces.lifted, forces.drive.cycle
+    if not lifted:
+        return f"{rests} on the lower guide all round"
+    if lifted[0][1] - lifted[0][0] >= cycle:
+        return f"{rests} on the upper guide all round"
+    spans = ", ".join(f"from {start:.4g} to {end % cycle:.4g} deg" for start, end in lifted)
+    return f"{lifts} off the lower guide {spans if len(lifted) <= _MOST_SPANS else f'{len(lifted)} times a cycle'}"
+
+
+# results of the whole machine
+
+_BEYOND = 1e308
+"""Floquet multiplier that is as large as a float can be."""
+_SLOWLY = 0.01
+"""Growth of a disturbance in a cycle below which it is written as a share, since "1 times" says nothing."""
+_LINEAR = 0.1
+"""δ up to which the cranks are close enough to uniform rotation."""
+
+
+def turning_warnings(case: Case) -> Iterator[str]:
     """Yield what looks wrong in the turning effort and the speed of the whole machine."""
     machine = case.machine
     if machine.efficiency == 1 and not any((machine.flywheel, machine.load, machine.coupling)):
@@ -119,30 +343,28 @@ def turning_warnings(case: Case) -> Iterable[str]:
         )
     if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
         yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
-    yield from _wish_warnings(turning)
+    if turning.J_needed is not None and turning.delta_needed is not None and turning.misses_the_wish:
+        better = "" if turning.J_exact is None else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
+        yield (
+            f"with J = ΔE/(δ ω²) = {show(turning.J_needed, 'inertia')} of the books the speed line has δ = "
+            f"{turning.delta_needed:.4g}{better}"
+        )
     if turning.multiplier is not None and turning.multiplier > 1:
         more, least = turning.multiplier - 1, "at least " if turning.multiplier > _BEYOND else ""
         grows = f"by {more:.2g} of itself" if more < _SLOWLY else f"{least}{turning.multiplier:.4g} times"
         yield f"unstable: a disturbance of the speed grows {grows} in every cycle"
     if turning.load_ignored:
         yield "the mean torque is zero, so that a load in proportion to it does not hold the speed; it is left out"
-    yield from _coupling_warnings(turning)
-    yield from _rim_warnings(turning)
-
-
-def _wish_warnings(turning: "MachineTurning") -> Iterable[str]:
-    """Yield by how much the flywheel of the books misses the wish, which is for the speed under the true load."""
-    if turning.J_needed is None or turning.delta_needed is None or not turning.misses_the_wish:
-        return
-    better = "" if turning.J_exact is None else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
-    yield (
-        f"with J = ΔE/(δ ω²) = {show(turning.J_needed, 'inertia')} of the books the speed line has δ = "
-        f"{turning.delta_needed:.4g}{better}"
-    )
-
-
-def _rim_warnings(turning: "MachineTurning") -> Iterable[str]:
-    rim = turning.machine.flywheel.rim if turning.machine.flywheel else None
+    if turning.elastic:
+        for near in turning.elastic.resonances:
+            yield (
+                f"resonance: harmonic {near.order:g} of the torque ({show(near.amplitude, 'torque')}) lies "
+                f"{100 * abs(near.distance):.2g} % from the natural order {turning.elastic.natural_order:.4g} and is "
+                f"amplified {near.amplification:.3g} times"
+            )
+    if turning.elastic and turning.elastic.delta > _LINEAR:
+        yield "the speed varies so much that the coupling, computed at nearly uniform rotation, is only a rough guide"
+    rim = machine.flywheel.rim if machine.flywheel else None
     if rim and rim.allowable_tension and turning.rim_stress and turning.rim_stress > rim.allowable_tension:
         yield (
             f"the rim bears a hoop stress of {show(turning.rim_stress, 'stress')}, more than the allowable "
@@ -150,86 +372,45 @@ def _rim_warnings(turning: "MachineTurning") -> Iterable[str]:
         )
 
 
-def _coupling_warnings(turning: "MachineTurning") -> Iterable[str]:
-    if not turning.elastic:
-        return
-    for near in turning.elastic.resonances:
-        yield (
-            f"resonance: harmonic {near.order:g} of the torque ({show(near.amplitude, 'torque')}) lies "
-            f"{100 * abs(near.distance):.2g} % from the natural order {turning.elastic.natural_order:.4g} and is "
-            f"amplified {near.amplification:.3g} times"
-        )
-    if turning.elastic.delta > _LINEAR:
-        yield "the speed varies so much that the coupling, computed at nearly uniform rotation, is only a rough guide"
-
-
-def strength_warnings(case: Case) -> Iterable[str]:
-    """Yield what looks wrong in the crankshaft."""
-    if not case.machine.strength_obstacle:
-        cool, verdict = shell_verdict(case.stress)
-        yield from () if cool else verdict
-
-
 _SHELLS = (
     (25, "bronze shells stand it (25)"),
     (30, "too much for bronze shells (25), white metal stands it (30)"),
     (35, "only the best white metal stands it (30 to 35)"),
-    (float("inf"), "more than white metal stands (30 to 35)"),
+    (math.inf, "more than white metal stands (30 to 35)"),
 )
 """p_m v of the crank pin in kgf m/(cm² s), and what G says of it up to there."""
 
 
-def shell_verdict(strength: "CrankshaftStrength") -> tuple[bool, tuple[str, ...]]:
-    """Return whether all shells stand p_m v of the crank pin, and a sentence that tells (G); none without a speed."""
-    found = strength.pressure_velocity("pin")
-    if found is None:
-        return True, ()
-    shown = convert(found, "pressure_velocity", "kgf m/s/cm2")
+def shell_verdict(pressure_velocity: float | None) -> tuple[bool, str]:
+    """Return whether all shells permit p_m v of the crank pin, and a sentence (G), "" if it is not known."""
+    if pressure_velocity is None:
+        return True, ""
+    shown = convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2")
     bound, verdict = next((shell for shell in _SHELLS if shown <= shell[0]), _SHELLS[-1])
-    return bound == _SHELLS[0][0], (f"Crank pin: p_m v = {shown:.3g} kgf m/(cm² s); {verdict}.",)
+    return bound == _SHELLS[0][0], f"Crank pin: p_m v = {shown:.3g} kgf m/(cm² s); {verdict}."
 
 
-# measured traces and the brake, of which only who measured can know
-
-_LEAST_OF_SEVERAL = 1.1
-"""Brake over indicated power of one cylinder from which on others are likely to be missing."""
-_TAKEN = 0.3, 1.0
-"""Indicated over brake power of a machine that is driven."""
-_GOOD = 0.85
-"""Mechanical efficiency by which the number of cylinders is reckoned that the brake asks for."""
+def _strength_warnings(case: Case) -> Iterator[str]:
+    if not case.machine.strength_obstacle:
+        cool, verdict = shell_verdict(case.stress.pressure_velocity("pin"))
+        if not cool:
+            yield verdict
 
 
-def trace_warnings(forces: CylinderForces) -> Iterable[str]:
-    """Yield what is implausible in the traces of a cylinder."""
-    for gas in forces.drive.gas:
-        for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
-            if isinstance(pressure, TracePressure) and (note := doubt(pressure.trace, pressure.setting, pressure.each)):
-                yield f"{gas.piston.name}, {end}: {note}"
+_ROUNDED = 0.05
+"""By how much distances of throws may contradict their crankshaft, over what they should be."""
 
 
-def brake_warnings(machine: Machine, cylinders: Sequence[CylinderForces]) -> Iterable[str]:
-    """Yield a warning where brake and indicator contradict each other."""
-    brake, indicated = machine.brake_power, Brake(machine, cylinders).indicated
-    if not brake or indicated is None:
+def bearing_warnings(case: Case) -> Iterator[str]:
+    """Yield that the throws are not as far apart as their bearings put them."""
+    shaft, cylinders = case.machine.crankshaft, case.machine.cylinders
+    if shaft is None or shaft.overhung or any(one.axial_position is None for one in cylinders):
         return
-    shown = f"the indicated power, {show(indicated, 'power')}, is"
-    if indicated < 0:
-        if not _TAKEN[0] <= -indicated / brake <= _TAKEN[1]:
-            much = "more than" if -indicated > brake else "far below what"
-            yield f"{shown} {much} the driven shaft takes, {show(brake, 'power')}: check angle_zero, units and areas"
-        return
-    if indicated < brake:
+    throws, apart = case.bearings.line.throws if case.bearings.line else (), shaft.a + shaft.b
+    given = [following.place - one.place for one, following in pairwise(throws)]
+    wrong = [one for one in given if abs(one - apart) > _ROUNDED * apart]
+    if wrong:
         yield (
-            f"{shown} below the brake power, {show(brake, 'power')}: check angle_zero, units and areas"
-            f"{_of_several(machine, brake / indicated if indicated else math.inf)}"
+            f"throws {show(wrong[0], 'length')} apart along the shaft do not fit bearings between them, by which they "
+            f"are a + b = {show(apart, 'length')} apart; the loads are those of a and b"
         )
-
-
-def _of_several(machine: Machine, times: float) -> str:
-    if len(machine.cylinders) != 1 or not _LEAST_OF_SEVERAL < times < 100:
-        return ""
-    count = max(2, math.ceil(times / _GOOD - 0.3))
-    return (
-        f"; or is this one cylinder of {count}, say? Then write all of them: 'cylinders: {{count: {count}, each: …}}' "
-        "with a firing order"
-    )

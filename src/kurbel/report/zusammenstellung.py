@@ -1,4 +1,7 @@
-"""Zusammenstellung 112: the factors of the straight slider-crank over the crank angle, for any L/R. Needs no numpy."""
+"""Zusammenstellung 112: the factors of the straight slider-crank over the crank angle, for any L/R. Needs no numpy.
+
+The printed figures are those of F. Rötscher, Die Maschinenelemente (1927), p. 602 f., read from the scan.
+"""
 
 import math
 from array import array
@@ -79,11 +82,7 @@ def zusammenstellung(
     symbols = [column.symbol for column in parts[0].columns[1:]]
     title = f"Zusammenstellung 112. Werte für {_listed(symbols, 'und')} am geraden Kurbeltrieb."
     report = Report(title, "table", None, "ratios", parts, mirrored=_mirrored(parts[0], angles))
-    if not compare:
-        return report
-    from kurbel.report.misprints import compared
-
-    return compared(report, formula)
+    return _with_printed(report, formula) if compare else report
 
 
 def _row_id(row: str) -> str:
@@ -91,8 +90,8 @@ def _row_id(row: str) -> str:
         return ROWS[row]
     if len(found := called(row, FACTORS.values())) == 1:
         return found[0]
-    known = tuple(ROWS)
-    raise UsageError(f"--rows: no row '{row}'{did_you_mean(row, (*known, *ROWS.values()))} (known: {', '.join(known)})")
+    near = did_you_mean(row, (*ROWS, *ROWS.values()))
+    raise UsageError(f"--rows: no row '{row}'{near} (known: {', '.join(ROWS)})")
 
 
 def _part(ratio: float, ids: tuple[str, ...], angles: Sequence[float], formula: str) -> Part:
@@ -127,3 +126,78 @@ def _mirrored(part: Part, angles: Sequence[float]) -> str:
 
 def _listed(words: list[str], last: str) -> str:
     return f" {last} ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
+# the printed figures
+
+__ = None  # illegible: 70° and 80° lie in the fold between the two pages
+
+_ACCELERATION = {
+    5: (1.200, 1.173, 1.093, 0.966, 0.801, 0.608, 0.400, __, __, -0.200,
+        -0.362, -0.495, -0.600, -0.678, -0.731, -0.766, -0.785, -0.796, -0.800),
+    4.5: (1.222, 1.194, 1.110, 0.977, 0.805, 0.604, __, __, __, -0.222,
+          -0.382, -0.512, -0.611, -0.681, -0.727, -0.755, -0.769, -0.776, -0.778),
+    4: (1.250, 1.220, 1.131, 0.981, 0.809, 0.599, __, __, __, -0.250,
+        -0.409, -0.534, -0.625, -0.686, -0.723, -0.741, -0.748, -0.750, -0.750),
+}  # fmt: skip
+"""L/R -> cos φ + R/L cos 2φ as printed, for φ = 0, 10, … 180°."""
+
+_VELOCITY = {
+    5: (0.0, 0.206, 0.405, 0.585, 0.740, 0.865, 0.953, __, __, 1.000,
+        0.950, 0.874, 0.779, 0.666, 0.542, 0.413, 0.278, 0.139, 0.0),
+    4.5: (0.0, 0.212, 0.413, 0.597, 0.753, 0.877, __, __, __, 1.000,
+          0.946, 0.867, 0.768, 0.655, 0.532, 0.403, 0.271, 0.136, 0.0),
+    4: (0.0, 0.216, 0.423, 0.609, 0.768, 0.891, __, __, __, 1.000,
+        0.941, 0.857, 0.755, 0.641, 0.518, 0.391, 0.261, 0.131, 0.0),
+}  # fmt: skip
+"""L/R -> sin(φ+ψ)/cos ψ as printed."""
+
+_PRINTED = {"acceleration_factor": _ACCELERATION, "velocity_factor": _VELOCITY}
+"""Row id -> L/R -> figures."""
+
+_HALF_UNIT = 0.0005
+"""Half a unit of the last printed decimal: what rounding may differ by."""
+
+
+def _with_printed(report: Report, formula: str) -> Report:
+    """Return the table with the printed figures below the computed ones, those marked that rounding cannot explain.
+
+    Raises UsageError if the book prints no such table.
+    """
+    wrong = [
+        *(f"L/R = {one.name:g}" for one in report.parts if one.name not in _VELOCITY),
+        *(f"the row {column.id}" for column in report.parts[0].columns[1:] if column.id not in _PRINTED),
+        *([] if formula == "book" else [f"--formula {formula}"]),
+        *([] if list(report.parts[0].columns[0].values) == list(range(0, 181, 10)) else ["other angles"]),
+    ]
+    if wrong:
+        raise UsageError(
+            f"--compare: the book prints nothing for {', '.join(wrong)}; "
+            "only b and c by --formula book, for L/R = 5, 4.5 and 4, every 10 degrees"
+        )
+    parts, notes = (
+        [],
+        ["* misprint: off the book's own formula by more than half a unit of the last decimal; blank: illegible."],
+    )
+    for part in report.parts:
+        phi, *rows = part.columns
+        columns = [phi]
+        for row in rows:
+            printed = _printed(row, float(part.name))
+            columns += [row, printed]
+            for index in printed.marked:
+                value, figure = row.values[index], printed.values[index]
+                where = f"L/R = {part.name:g}, φ = {phi.values[index]:g}°"
+                notes.append(f"{where}: {row.symbol} is {value:.3f}, printed {figure:.3f}")
+        parts.append(part._replace(columns=tuple(columns)))
+    return report._replace(parts=tuple(parts), notes=tuple(notes))
+
+
+def _printed(row: Column, ratio: float) -> Column:
+    """Return the printed figures of a row, the misprints marked."""
+    figures = _PRINTED[row.id][ratio]
+    # the small margin keeps a figure that rounds a tie the other way
+    slack = _HALF_UNIT * (1 + 1e-9)
+    both = enumerate(zip(row.values, figures))
+    wrong = tuple(index for index, (a, b) in both if a is not None and b is not None and abs(a - b) > slack)
+    return Column(f"{row.id}_printed", "  printed", "  printed", "", figures, f"{row.text}, as printed", 3, wrong)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ import numpy as np
 from kurbel.arrays import Array, Indices
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.cylinder import may_lock
-from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
 from kurbel.quantity import Quantity, for_each, key_value
@@ -120,10 +120,8 @@ class CylinderForces(SampledCylinder, Results):
     def rows(self) -> Rows:
         """The rows that a machine with this mechanism may have, its pressures counted as in the machine file."""
         mechanism, cylinder, gas = self.mechanism, self.drive.cylinder, self.drive.own_gas
-        known = rows_of(CylinderForces, mechanism.OFFERS, mechanism.KEY_OFFERS)
-        if not cylinder.pistons and (cylinder.ram_force or mechanism.quick_return):
-            return known.changed(Quantity.of_ram)
-        return known.changed(Quantity.absolute) if gas and gas.absolute else known
+        of_ram = not cylinder.pistons and bool(cylinder.ram_force or mechanism.quick_return)
+        return _rows(mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, bool(gas and gas.absolute))
 
     @property
     def mechanism(self) -> Mechanism:
@@ -545,6 +543,13 @@ class CylinderForces(SampledCylinder, Results):
         pressed, pulled = (abs(one.value) for one in peaks)
         ratio = where(pressed < pulled, pressed, pulled) / where(pressed < pulled, pulled, pressed)
         return where(angle > 0, ratio, 0.0)
+
+
+@cache
+def _rows(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: bool, absolute: bool) -> Rows:
+    """Return the rows of cylinders with these quantities of mechanisms: of a ram without piston, or absolute."""
+    known = rows_of(CylinderForces, offers, key_offers)
+    return known.changed(Quantity.of_ram if of_ram else Quantity.absolute) if of_ram or absolute else known
 
 
 def _swept_rate(forces: CylinderForces) -> float | None:

@@ -13,7 +13,6 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.lobatto import rule
-from kurbel.numerics.vertex import vertex
 from kurbel.traces.correct import (
     COMPRESSION,
     EXPANSION,
@@ -26,6 +25,8 @@ from kurbel.traces.correct import (
     extrapolated,
     joined_in_pairs,
     noise_of,
+    parabola_peak,
+    volumes_in,
     without_drift,
 )
 
@@ -65,7 +66,7 @@ class Reading:
         self.top = int(np.argmax(self.p))
         self.peak = float(self.p[self.top])
         # a single top sample may be noise; the closing one would count twice
-        self.vertex = vertex(self.place[:-1], self.p[:-1], float(self.place[self.top]), _PARABOLA)
+        self.vertex = parabola_peak(self.place[:-1], self.p[:-1], float(self.place[self.top]), _PARABOLA)
         self.peak_at = self.vertex.place if self.vertex else float(self.place[self.top])
         self.half_width = float(widths[self.p > (self.peak + self.low) / 2].sum()) / 2
         # of a trace that goes down to the vacuum, the ratio as over a good vacuum
@@ -83,17 +84,11 @@ class Reading:
 
         At equal angles the trapezoid rule of p dz/dφ, at others the integral of the straight lines in between.
         """
-        angles = self.after if after is None else after
-        p = self.p if pressures is None else pressures
-        if self.trace.even:
-            rate = p * self._slope(angles)
-            terms = np.radians(np.diff(angles)) * (rate[:-1] + rate[1:]) / 2
-        else:
-            along = rule(10 if len(p) < _FEW_SAMPLES else 4)
-            share = (1 + along.nodes[:, np.newaxis]) / 2
-            between = angles[:-1] + share * np.diff(angles)
-            values = (p[:-1] + share * np.diff(p)) * self._slope(between)
-            terms = along.weights @ values * np.radians(np.diff(angles)) / 2
+        angles, p = self.after if after is None else after, self.p if pressures is None else pressures
+        along = rule(2 if self.trace.even else 10 if len(p) < _FEW_SAMPLES else 4)
+        share = (1 + along.nodes[:, np.newaxis]) / 2
+        values = (p[:-1] + share * np.diff(p)) * self._slope(angles[:-1] + share * np.diff(angles))
+        terms = along.weights @ values * np.radians(np.diff(angles)) / 2
         total = float(terms.sum())
         return total if abs(total) > _CANCELLED * float(np.abs(terms).sum()) else 0.0
 
@@ -285,6 +280,7 @@ _SAME_UNIT = 0.05
 """Share by which units differ at most that cannot be told apart, as at and bar."""
 _NO_UNIT = 0.5
 """What a power of ten that makes no unit of another must fit better, in logarithms."""
+_ROUNDED = 1e-6
 
 
 def _inverted(reading: Reading) -> str:
@@ -301,55 +297,52 @@ def _inverted(reading: Reading) -> str:
 
 def _unit(reading: Reading) -> str:
     """Judge the peak by what this clearance can compress to, or else by what cylinders withstand."""
-    trace, setting = reading.trace, reading.setting
+    trace, setting, ambient = reading.trace, reading.setting, reading.setting.ambient
     peak, low = reading.peak + setting.lift, reading.low + setting.lift
-    compressed = setting.ambient * (1 + 1 / trace.clearance) ** _AIR if trace.clearance else _USUAL_PEAK / 2
-    bounds = (_SMALLEST_PEAK + setting.ambient if setting.cycle == 720 and setting.head_end else 0.0), _LARGEST_PEAK
-    can = "cylinders peak at 1 to 300 bar"
     if trace.clearance:
-        bounds = _TO_COMPRESSION[0] * compressed, max(_TO_COMPRESSION[1] * compressed, _SMALLEST_PEAK)
+        compressed = ambient * (1 + 1 / trace.clearance) ** _AIR
+        least, most = _TO_COMPRESSION[0] * compressed, max(_TO_COMPRESSION[1] * compressed, _SMALLEST_PEAK)
         can = f"compression gives about {in_bar(compressed)}"
-    if bounds[0] <= peak <= bounds[1]:
-        if setting.cycle == 360 or not _hardly_compresses(reading):
+    else:
+        compressed, most = _USUAL_PEAK / 2, _LARGEST_PEAK
+        least = _SMALLEST_PEAK + ambient if setting.cycle == 720 and setting.head_end else 0.0
+        can = "cylinders peak at 1 to 300 bar"
+    flat = least <= peak <= most
+    if flat:
+        # four strokes that hardly compress, or only against a vacuum
+        as_gauge = (reading.peak + ambient) / max(reading.low + ambient, 1.0)
+        against_vacuum = 0 < low < _NEAR_VACUUM * ambient and as_gauge <= _ENGINE
+        if setting.cycle == 360 or not (against_vacuum if setting.absolute else reading.ratio <= _ENGINE):
             return ""
         can = f"four strokes compress more than from {in_bar(low)}"
-    factor, unit = _likely_unit(reading, 2 * compressed, (bounds[0], max(bounds[1], setting.ambient)))
+    factor, unit = _likely_unit(reading, least, 2 * compressed, max(most, ambient), _ENGINE if flat else 0.0)
     if factor == 1:
         return ""
     what = f"{1 / factor:.3g} times too large" if factor < 1 else f"{factor:.3g} times too small"
-    named = f" (unit: {unit} fits)" if unit else ""
-    scaled = f", or write 'scale: {trace.scale * factor:g}'" if math.log10(factor) % 1 == 0 else ""
+    power = math.log10(factor)
+    scaled = f", or write 'scale: {trace.scale * factor:g}'" if abs(power - round(power)) < _ROUNDED else ""
     return (
-        f"the peak is {in_bar(peak)} absolute, where {can}: pressures {what}? mend 'unit'{named}{scaled}; "
-        f"{reading.then(factor * reading.p_i())}"
+        f"the peak is {in_bar(peak)} absolute, where {can}: pressures {what}? mend 'unit'"
+        f"{f' (unit: {unit} fits)' if unit else ''}{scaled}; {reading.then(factor * reading.p_i())}"
     )
 
 
-def _hardly_compresses(reading: Reading) -> bool:
-    """Whether a four-stroke trace, as it is, hardly compresses, or only against a vacuum."""
-    ambient, low = reading.setting.ambient, reading.low
-    if reading.setting.lift:
-        return reading.ratio <= _ENGINE
-    as_gauge = (reading.peak + ambient) / max(low + ambient, 1.0)
-    return 0 < low < _NEAR_VACUUM * ambient and as_gauge <= _ENGINE
-
-
-def _likely_unit(reading: Reading, aimed: float, bounds: tuple[float, float]) -> tuple[float, str]:
+def _likely_unit(reading: Reading, least: float, aimed: float, most: float, ratio: float) -> tuple[float, str]:
     """Return the factor on the pressures that fits best, and the unit that it makes of theirs, or ''; 1 if none does.
 
     Judged by how far, in logarithms, the absolute peak is from the one aimed at, and an absolute low level from the
-    ambient.
+    ambient. least, most: bounds of the peak in Pa; ratio: that it must be over the low level.
     """
     lift, ambient, unit = reading.setting.lift, reading.setting.ambient, reading.trace.unit
-    names = {round(size / unit, 9): name for name, size in _UNITS.items() if abs(size / unit - 1) > _SAME_UNIT}
-    judged = []
-    for factor in {*names, *_POWERS}:
-        peak, low = reading.peak * factor + lift, 1.0 if lift else reading.low * factor / max(ambient, 1.0)
-        if bounds[0] <= peak <= bounds[1] and peak > 0:
-            misfit = abs(math.log(peak / aimed)) + abs(math.log(max(low, 1e-3)))
-            judged.append((misfit + (0.0 if factor in names else _NO_UNIT), factor))
-    _, factor = min(judged, default=(0.0, 1.0))
-    return factor, names.get(factor, "")
+    factors = [(size / unit, name, 0.0) for name, size in _UNITS.items() if abs(size / unit - 1) > _SAME_UNIT]
+    factors += [(factor, "", _NO_UNIT) for factor in _POWERS]
+    fits = []
+    for factor, name, extra in factors:
+        peak, low = reading.peak * factor + lift, reading.low * factor + lift
+        if least <= peak <= most and peak > ratio * max(low, 0.2 * ambient, 0.0):
+            at_ambient = 1.0 if lift else max(low / max(ambient, 1.0), 1e-3)
+            fits.append((abs(math.log(peak / aimed)) + abs(math.log(at_ambient)) + extra, factor, name))
+    return min(fits, default=(0.0, 1.0, ""))[1:]
 
 
 # the place of the peak
@@ -366,6 +359,8 @@ _MOTORED_LEAD = 1.5  # deg; heat loss and leakage put a motored peak up to about
 _MOTORED_SEARCH = 10.0, 30.0  # deg before and after the dead centre; what peaks elsewhere is a compressor or pump
 _SURE = 3.0  # standard errors of the place of the peak, and what a crooked peak may be off
 _OFF = 0.1  # deg
+
+
 _MOTORED_SIDES = np.array([10.0, 20.0, 30.0, 45.0, 60.0, 75.0, 90.0])  # deg from the peak; both sides are compared
 _AROUND = 2.5  # deg on either side of such a place over which the pressures are a mean: one sample is noise
 _MOTORED_RATIO = 0.6, 1.1  # of the pressures after and before the peak: what heat loss and leakage take, and noise
@@ -435,13 +430,10 @@ def _motored(reading: Reading) -> bool:
     """
     trace, p = reading.trace, reading.p + reading.setting.lift
     around = trace.angles[reading.top] + np.linspace(-_AROUND, _AROUND, 21)
-    before, after = (
-        np.interp(np.add.outer(sign * _MOTORED_SIDES, around), trace.angles, p, period=trace.period).mean(axis=1)
-        for sign in (-1, 1)
-    )
-    low, high = _MOTORED_RATIO
-    alike = bool(np.all((low * before <= after) & (after <= high * before)))
-    return alike and bool(p[reading.top] > _MOTORED_RISE * max(before[-1], after[-1]))
+    places = np.multiply.outer([-1.0, 1.0], _MOTORED_SIDES)[..., np.newaxis] + around
+    before, after = np.interp(places, trace.angles, p, period=trace.period).mean(axis=-1)
+    alike = (_MOTORED_RATIO[0] * before <= after) & (after <= _MOTORED_RATIO[1] * before)
+    return bool(alike.all() and p[reading.top] > _MOTORED_RISE * max(before[-1], after[-1]))
 
 
 # level, and the exponents of compression and expansion
@@ -490,59 +482,42 @@ def _exponents(reading: Reading) -> str:
     compression, expansion = reading.exponent(COMPRESSION), reading.exponent(EXPANSION)
     if compression is None or not reading.engine:
         return ""
-    apart = 0.0
-    if expansion is not None:
-        sure = _APART + 2 * math.hypot(compression.error, expansion.error)
-        apart = max(0.0, abs(compression.value - expansion.value) - sure)
-    if _is_sensible(compression) and not apart:
+    seen, sensible = f"its compression goes by p V^{compression.value:.3g}", _is_sensible(compression)
+    sure = _APART + 2 * math.hypot(compression.error, expansion.error if expansion else 0.0)
+    if expansion and abs(compression.value - expansion.value) > sure:
+        seen += f" and its expansion by p V^{expansion.value:.3g}"
+    elif sensible:
         return ""
-    seen = f"its compression goes by p V^{compression.value:.3g}, where air has 1.2 to 1.4"
-    if apart and expansion is not None:
-        seen = f"its compression goes by p V^{compression.value:.3g} and its expansion by p V^{expansion.value:.3g}"
-    if (later := _common_exponent(reading)) is not None:
+    else:
+        seen += ", where air has 1.2 to 1.4"
+    later = _common_exponent(reading)
+    if abs(later) <= _LATEST and _is_sensible(reading.exponent(COMPRESSION, later)):
         key, effect = reading.put_later(-later)
         return f"{seen}: a dead centre {abs(later):.2g} deg off does that; write {key}; {effect}"
-    if _is_sensible(compression):
+    if sensible:
         return ""
     swapped = reading.setting.ambient if reading.setting.absolute else -reading.setting.ambient
     if _is_sensible(reading.exponent(COMPRESSION, raised=swapped)):
         word = "absolute" if swapped < 0 else "gauge"
         return f"{seen}: as {word} pressures it would; write 'pressures: {word}'; p_i stays"
-    raised = _zero(lambda lift: _off(reading.exponent(COMPRESSION, raised=lift), _AIR), reading.setting.ambient / 10)
-    level = ""
-    if raised is not None and abs(raised) <= 2 * reading.setting.ambient:
-        level = f"write 'offset: {in_bar(reading.trace.offset + raised)}' or 'pegging' (p_i stays), or "
-    return f"{seen}: {level}mend the clearance"
+    volumes, absolute = volumes_in(reading.setting, reading.trace.clearance or 0.0, reading.place, COMPRESSION)
+    pressures = reading.p[absolute] + reading.setting.lift
+    raised = -float(np.polyfit(volumes**-_AIR, pressures, 1)[1])  # p = C V^−n − Δp
+    level = f"write 'offset: {in_bar(reading.trace.offset + raised)}' or 'pegging' (p_i stays), or "
+    return f"{seen}: {level if abs(raised) <= 2 * reading.setting.ambient else ''}mend the clearance"
 
 
-def _common_exponent(reading: Reading) -> float | None:
-    """Return by how many degrees later compression and expansion have one and a sensible exponent; None where not."""
+def _common_exponent(reading: Reading) -> float:
+    """Return by how many degrees later compression and expansion have one exponent, by secants; nan where not."""
 
     def apart(later: float) -> float:
-        expansion = reading.exponent(EXPANSION, later)
-        return math.nan if expansion is None else _off(reading.exponent(COMPRESSION, later), expansion.value)
+        compression, expansion = reading.exponent(COMPRESSION, later), reading.exponent(EXPANSION, later)
+        return compression.value - expansion.value if compression and expansion else math.nan
 
-    later = _zero(apart, 1.0)
-    if later is None or abs(later) > _LATEST or not _is_sensible(reading.exponent(COMPRESSION, later)):
-        return None
+    now, later = apart(0.0), 1.0
+    for _ in range(3):
+        later *= now / (now - apart(later))
     return later
-
-
-def _off(found: Exponent | None, aimed: float) -> float:
-    return math.nan if found is None else found.value - aimed
-
-
-def _zero(off: Callable[[float], float], step: float) -> float | None:
-    """Return a zero of a nearly straight function by the secant method from 0 and a step; None where there is none."""
-    x, y, next_x = 0.0, off(0.0), step
-    for _ in range(12):
-        next_y = off(next_x)
-        if abs(next_y) < 1e-9:
-            return next_x
-        if not abs(next_y - y) > 0:
-            return None
-        x, y, next_x = next_x, next_y, next_x - next_y * (next_x - x) / (next_y - y)
-    return None
 
 
 CHECKS: tuple[Callable[[Reading], str], ...] = (

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Flags
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import refused
 from kurbel.mechanisms import Mechanism
@@ -202,19 +202,11 @@ def drift_of(trace: Trace, samples: Array) -> Array:
 
 def extrapolated(angles: Array, samples: Array) -> Array:
     """Return the same in Pa where the closing sample is missing, or not trusted: by lines through both ends."""
-    end = angles[-1]
-    last = max(3, int(np.searchsorted(-angles[:-1][::-1], LAST - end)))
-    first = max(3, int(np.searchsorted(angles, angles[0] + LAST, side="right")))
-    before = _line_at_zero(angles[-1 - last : -1] - end, samples[:, -1 - last : -1])
-    after = _line_at_zero(angles[:first] - angles[0], samples[:, :first])
+    to_end, from_begin = angles[:-1] - angles[-1], angles[:-1] - angles[0]
+    last, first = max(3, int((to_end > -LAST).sum())), max(3, int((from_begin <= LAST).sum()))
+    before = np.polyfit(to_end[-last:], samples[:, -1 - last : -1].T, 1)[1]
+    after = np.polyfit(from_begin[:first], samples[:, :first].T, 1)[1]
     return np.asarray(after - before)
-
-
-def _line_at_zero(angles: Array, samples: Array) -> Array:
-    """Return the values (m,) at angle 0 of the lines of least squares through samples (m, k) at angles (k,)."""
-    from_mean = angles - angles.mean()
-    slopes = samples @ from_mean / (from_mean @ from_mean)
-    return np.asarray(samples.mean(axis=1) - slopes * angles.mean())
 
 
 def _lift(trace: Trace, samples: Array, pegging: KnownLevel, setting: Setting) -> Array:
@@ -265,6 +257,15 @@ class Exponent(NamedTuple):
     error: float
 
 
+def volumes_in(setting: Setting, clearance: float, after: Array, stretch: tuple[float, float]) -> tuple[Array, Flags]:
+    """Return the volumes (k,), over that of the stroke, at samples in a stretch of angle, and which they are (n,).
+
+    after (n,): degrees from the dead centre.
+    """
+    inside = (after >= stretch[0]) & (after <= stretch[1])
+    return setting.stroke_fraction(after[inside]) + clearance, inside
+
+
 def exponent(
     setting: Setting, clearance: float | None, after: Array, absolute: Array, stretch: tuple[float, float]
 ) -> Exponent | None:
@@ -273,13 +274,81 @@ def exponent(
     after (n,): degrees from the dead centre; absolute (n,): pressures in Pa. None without a clearance, with fewer than
     five samples there, or where the pressure is not above the vacuum.
     """
-    inside = (after >= stretch[0]) & (after <= stretch[1])
-    figures = absolute[inside]
-    if clearance is None or len(figures) < _FEWEST or not (figures > 0).all():
+    volumes, inside = volumes_in(setting, clearance or 0.0, after, stretch)
+    if clearance is None or len(volumes) < _FEWEST or not (absolute[inside] > 0).all():
         return None
-    volumes, pressures = np.log(setting.stroke_fraction(after[inside]) + clearance), np.log(figures)
-    from_mean = volumes - volumes.mean()
-    square = float(from_mean @ from_mean)
-    slope = float(from_mean @ pressures) / square
-    left = pressures - pressures.mean() - slope * from_mean
-    return Exponent(0.0 - slope, math.sqrt(float(left @ left) / (len(left) - 2) / square))
+    x, y = (np.log(one) - np.log(one).mean() for one in (volumes, absolute[inside]))
+    slope = float(x @ y / (x @ x))
+    left = y - slope * x
+    return Exponent(0.0 - slope, math.sqrt(float(left @ left / (x @ x)) / (len(x) - 2)))
+
+
+# the dead centre from a motored trace: without combustion the pressure peaks just before it
+
+_HALF = 6.0
+"""Degrees on either side of the peak through which the parabola goes."""
+_SIDES = (20.0, 50.0), (50.0, 80.0)
+"""Degrees from the peak between which both its sides are compared: where something burnt, they are not alike."""
+_LOW = 0.15
+"""Share of the cycle below the level from which pressures are compared."""
+_FEWEST_MOTORED = 36
+_ALIKE = 0.5, 1.15
+
+
+class Peak(NamedTuple):
+    """The peak of a parabola: its place, the standard error of that, and how many samples it goes through."""
+
+    place: float
+    error: float
+    samples: int
+
+
+def parabola_peak(places: Array, values: Array, top: float, width: float) -> Peak | None:
+    """Return the peak of the parabola of least squares through samples (n,) within `width` of the top one.
+
+    None where they are fewer than five, or have no peak within that width. A single top sample may be noise: each
+    parabola goes on from the peak of the one before.
+    """
+    for _ in range(3):
+        near = np.abs(places - top) <= width
+        along = places[near] - top
+        if len(along) < _FEWEST or len(np.unique(along.round(3))) < 3:
+            return None
+        (bend, slope, _), covariance = np.polyfit(along, values[near], 2, cov=True)
+        if not bend < 0 or abs(slope / (2 * bend)) > width:
+            return None
+        top = top - slope / (2 * bend)
+    by_parameters = np.array([slope / (2 * bend**2), -1 / (2 * bend), 0.0])
+    return Peak(float(top), math.sqrt(max(0.0, by_parameters @ covariance @ by_parameters)), len(along))
+
+
+def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
+    """Return the peak of a motored trace, and by how many degrees it is uncertain; raises RuleError.
+
+    angles (n,) in degrees over one lap; laps (m, n) in Pa, of which the mean is taken, of turns in pairs.
+    """
+    if len(laps) % 2 == 0:
+        angles, laps = np.concatenate((angles[:-1], angles + angles[-1] - angles[0])), joined_in_pairs(laps)
+    pressures, period = laps.mean(axis=0)[:-1], float(angles[-1] - angles[0])
+    if len(pressures) // 2 * 2 < _FEWEST_MOTORED:
+        refused(f"has {len(pressures) // 2 * 2} samples only; measure it finer")
+    top = float(angles[int(np.argmax(pressures))])
+    places = np.remainder(angles[:-1] - top + period / 2, period) - period / 2
+    if np.count_nonzero(np.abs(places) <= _HALF / 2) < _FEWEST:
+        refused(f"has fewer than five samples within {_HALF / 2:g} deg of its peak; measure it finer")
+    whole = parabola_peak(places, pressures, 0.0, _HALF)
+    if whole is None:
+        refused("is no motored trace: it has no peak that a parabola could be laid through")
+    low = float(np.quantile(pressures, _LOW))
+    for near, far in _SIDES:
+        away = np.multiply.outer([-1.0, 1.0], np.linspace(near, far, 301)) + whole.place
+        before, after = np.interp(away, places, pressures, period=period).mean(axis=1) - low
+        if not _ALIKE[0] * before <= after <= _ALIKE[1] * before:
+            times = f"{after / before:.2g} times that" if before > 0 else "not that"
+            rise = f"{near:g} to {far:g} deg after its peak the pressure rises to {times} before"
+            refused(f"is no motored trace: {rise}; name one without combustion")
+    half = parabola_peak(places, pressures, whole.place, _HALF / 2)
+    # of a peak that is no parabola the half of the samples gives another place; where their noise hides it, its
+    # standard error, √8 times that of all, is the bound
+    doubt = math.hypot(whole.error, math.sqrt(8) * whole.error if half is None else whole.place - half.place)
+    return whole._replace(place=top + whole.place), doubt

@@ -11,9 +11,9 @@ from kurbel.arrays import Array
 from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
+from kurbel.report.frame import too_large
 from kurbel.report.pictures.picture import Axis, Curve, Figure, Mark, Panel, Piece, Words
 from kurbel.report.pictures.sampling import Samples, Values, pieces, sampled
-from kurbel.report.shown import too_large
 
 PHI = "phi"
 FILE, TERMINAL = 1 / 2000, 1 / 250
